@@ -5,8 +5,9 @@
 
 A process that ends with 0 has wanted to, and one that ends with 2 has said why it cannot run (its component lives
 already, for one); every other end is a crash. After a crash the program is started again with a pause, until it has
-crashed too often (`selfconf.site.restart_limit`). What still runs of the process is ended first: there is never more
-than one.
+crashed too often (`selfconf.site.restart_limit`). The pause after a first crash ends when the program is asked for, as
+a task may stand still without it; further ones do not, else a task that asks at once would leave no pauses. What still
+runs of the process is ended first: there is never more than one.
 """
 
 from __future__ import annotations
@@ -84,7 +85,8 @@ class ComponentProgram:
         """Whether it is to be started again once it is gone."""
         self._when_gone: list[Callable[[], None]] = []
         self._undo_check: Callable[[], None] = lambda: None
-        self._undo_pause: Callable[[], None] = lambda: None
+        self._pause: Callable[[], None] | None = None
+        """Ends the pause after a crash; None if there is none."""
 
     @property
     def running(self) -> bool:
@@ -103,13 +105,14 @@ class ComponentProgram:
             crashed = f"has ended more than {self._restarts()} times within {CRASH_WINDOW:.0f} s"
             raise PeerError(f"the command of {profile.component} {crashed}; it can be started in {wait:.0f} s")
         if self.group is None:
-            self._launch()
+            if self._pause is None or self._limit.first(self._bus.now()):
+                self._launch()
         else:
             self._again = True  # one process at a time; the end of this one is near
 
     def end(self, gone: Callable[[], None], again: bool = False) -> None:
         """End the process: TERM, after `TERMINATION` seconds KILL; then call `gone`. It can be started again."""
-        self._undo_pause()
+        self._end_pause()
         if self.group is None:
             gone()
             return
@@ -134,7 +137,7 @@ class ComponentProgram:
 
     def _launch(self) -> None:
         """Start the process. Raises PeerError."""
-        self._undo_pause()
+        self._end_pause()
         self._life = secrets.token_hex(4)
         environment = {
             **os.environ,
@@ -257,9 +260,15 @@ class ComponentProgram:
         """Start the program after a pause, if it has not crashed too often."""
         pause = self._limit.pause(self._bus.now(), self._restarts())
         if pause is not None:
-            self._undo_pause = self._bus.later(pause, self._launch_again)
+            self._pause = self._bus.later(pause, self._launch_again)
+
+    def _end_pause(self) -> None:
+        if self._pause is not None:
+            self._pause()
+            self._pause = None
 
     def _launch_again(self) -> None:
+        self._pause = None
         if self.group is None and not self._closed:
             try:
                 self._launch()

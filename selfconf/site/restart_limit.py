@@ -16,6 +16,8 @@ FIRST_PAUSE = 0.1
 """Seconds between a first crash and the start after it."""
 PAUSE_FACTOR = 4.0
 """How much longer each further pause is."""
+LONGEST_RESTART_PAUSE = 10.0
+"""Seconds that a pause takes at most: a configurator that has woken a component waits for 15 seconds until it lives."""
 
 
 class RestartLimit:
@@ -31,7 +33,16 @@ class RestartLimit:
     def pause(self, now: float, restarts: int) -> float | None:
         """Seconds until it is to be started again after its last crash; None if it has crashed too often for that."""
         crashes = self._recent(now)
-        return None if crashes > restarts else FIRST_PAUSE * PAUSE_FACTOR ** (crashes - 1)
+        if crashes > restarts:
+            return None
+        pause = FIRST_PAUSE
+        for _ in range(crashes - 1):  # no power: of many crashes that is no number any more
+            pause = min(pause * PAUSE_FACTOR, LONGEST_RESTART_PAUSE)
+        return pause
+
+    def first(self, now: float) -> bool:
+        """Whether it has crashed once at most within the window."""
+        return self._recent(now) <= 1
 
     def wait(self, now: float, restarts: int) -> float:
         """Seconds until it may be started by whoever asks for it: none, unless it has crashed too often."""

@@ -106,6 +106,25 @@ def test_a_program_that_crashes_is_started_again_and_that_is_said(
     ] * 2
 
 
+def test_whoever_asks_for_a_program_again_and_again_leaves_it_its_pauses_after_the_first(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made, heard = site(python(NUMBERED + "; raise SystemExit(3)")), fails(network)
+
+    def crashed(times: int) -> bool:
+        return live(network, lambda: len(heard) == times and program(made).group is None)
+
+    made.start(SLEEPER)
+    assert crashed(1)
+    made.start(SLEEPER)
+    assert program(made).running
+    for number, pause in ((2, 0.4), (3, 1.6)):
+        assert crashed(number)
+        made.start(SLEEPER)
+        assert not live(network, lambda: program(made).running, 0.8 * pause)
+        assert live(network, lambda number=number: len(runs(tmp_path)) == number + 1)
+
+
 def test_a_program_that_crashes_too_often_is_given_up(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.site.restart_limit import CRASH_WINDOW, FIRST_PAUSE, PAUSE_FACTOR, RestartLimit
+from selfconf.deployment.calls import WAKING
+from selfconf.site.restart_limit import CRASH_WINDOW, FIRST_PAUSE, LONGEST_RESTART_PAUSE, PAUSE_FACTOR, RestartLimit
 
 
 def test_the_first_pause_is_short_and_each_further_one_longer() -> None:
@@ -15,6 +16,22 @@ def test_the_first_pause_is_short_and_each_further_one_longer() -> None:
         limit.crashed(now)
         pauses.append(limit.pause(now, 3))
     assert pauses == [FIRST_PAUSE, FIRST_PAUSE * PAUSE_FACTOR, FIRST_PAUSE * PAUSE_FACTOR**2]
+
+
+def test_a_pause_is_no_longer_than_a_configurator_waits_however_many_crashes_are_allowed() -> None:
+    limit = RestartLimit()
+    for _ in range(2000):
+        limit.crashed(0.0)
+    assert limit.pause(0.0, 1_000_000) == LONGEST_RESTART_PAUSE < WAKING
+
+
+def test_a_crash_is_the_first_of_its_window() -> None:
+    limit = RestartLimit()
+    firsts = []
+    for now in (0.0, 1.0, CRASH_WINDOW + 1.0):
+        limit.crashed(now)
+        firsts.append(limit.first(now))
+    assert firsts == [True, False, True]
 
 
 def test_what_has_crashed_too_often_is_given_up_until_the_window_has_passed() -> None:
