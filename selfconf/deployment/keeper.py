@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
 from selfconf.deployment.task_folder import TaskFolder
-from selfconf.errors import PeerError, SelfconfError
+from selfconf.errors import PeerError, SelfconfError, reason
 from selfconf.model.run_event import RunEvent, TaskRunning
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of
@@ -36,6 +36,8 @@ OTHERS = 2.0
 """Seconds that the other sites may take to say what they keep."""
 RESPITE = 60.0
 """Seconds after which a task is tried again that could not be read for want of room, or whose search broke."""
+MOST_REJECTIONS = 100
+"""How many different things are said of the records of other sites; a site that sends nonsense fills no disk."""
 
 
 def keeper_of(task: str, sites: Iterable[str]) -> str:
@@ -56,6 +58,7 @@ class Keeper:
         self._requests: dict[str, RunRequest | None] = {}
         self._respites: dict[str, float] = {}
         """Until when each task is left alone that has given trouble."""
+        self._complaints: set[str] = set()
         self._living: dict[str, set[str]] = {site: {""}}
         self._to_ask: set[str] = set()
         """The sites that have come and were not asked once more since: they may not have been reached at first."""
@@ -106,8 +109,17 @@ class Keeper:
     def _take(self, sample: Sample) -> None:
         try:
             self._learn(decode(sample.payload, TaskRecord))
-        except (PeerError, OSError) as error:
-            log.warning("passed over a task on %s: %s", sample.key, error)
+        except PeerError as error:
+            self._complain(f"this site does not keep the task that another one has sent on {sample.key}: {error}")
+        except OSError as error:
+            wrong = f"a task that came on {sample.key} is lost with this site, which cannot write it: {reason(error)}"
+            self._complain(wrong)
+
+    def _complain(self, trouble: str) -> None:
+        """Log what people should see, once: the other sites send what they keep again and again."""
+        if trouble not in self._complaints and len(self._complaints) < MOST_REJECTIONS:
+            self._complaints.add(trouble)
+            log.error("%s", trouble)
 
     def _learn(self, record: TaskRecord) -> None:
         if self.folder.learn(record):
@@ -196,7 +208,7 @@ class Keeper:
                 runner.adopt(recorded_configuration(record.configuration), record.epoch)
                 return
             except PeerError as error:
-                log.warning("the record of %s: %s", record.task, error)
+                log.error("the task %s begins anew, as its configuration is not to be read: %s", record.task, error)
         runner.start()
 
     def _report(self, task: str, event: RunEvent) -> None:

@@ -1,8 +1,9 @@
-"""The tasks that a site keeps, on its disk: one JSON file for each, so that they outlive the site."""
+"""The tasks that a site keeps, on its disk: one JSON file for each, so that they outlive the site and a power cut."""
 
 from __future__ import annotations
 
 import logging
+import os
 from contextlib import suppress
 from pathlib import Path
 
@@ -27,7 +28,12 @@ class TaskFolder:
             try:
                 record = decode(path.read_bytes(), TaskRecord)
             except (OSError, PeerError) as error:
-                log.warning("passed over %s: %s", path, error)
+                log.error(
+                    "the task in %s cannot be read, and this site does not run it: %s; mend the file, or remove it and"
+                    " hand the task over again with `selfconf run --detach`",
+                    path,
+                    error.strerror if isinstance(error, OSError) else error,
+                )
                 continue
             self.records[record.task] = record
 
@@ -67,7 +73,9 @@ class TaskFolder:
         temporary = path.with_suffix(".new")
         try:
             temporary.write_bytes(encode(record))
+            _synchronize(temporary)  # else a power cut may leave the new name with nothing in the file
             temporary.replace(path)
+            _synchronize(folder)
         except OSError:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
@@ -80,3 +88,12 @@ class TaskFolder:
             del self.records[record.task]
             if self._folder is not None:
                 self._path(self._folder, record.task).unlink(missing_ok=True)
+
+
+def _synchronize(path: Path) -> None:
+    """Have the disk hold what was written to a file, or which files are in a folder. Raises OSError."""
+    opened = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(opened)
+    finally:
+        os.close(opened)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import logging
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from selfconf.bus.port import Bus
+from selfconf.bus.port import Bus, Urgency
 from selfconf.composition import Composer
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
@@ -183,3 +185,25 @@ def test_a_task_that_cannot_be_read_keeps_no_site_from_its_other_tasks(
     keepers.lab.let_pass(3.0)
     keepers.hand_over(RECORD)
     assert keepers.lab.until(lambda: bool(keepers.running()))
+
+
+def test_what_a_site_cannot_keep_of_what_others_send_is_said_to_people_once(
+    keepers: Keepers, caplog: pytest.LogCaptureFixture
+) -> None:
+    publisher = keepers.lab.network.node().publisher(keepers.lab.keys.task("odd~1"), Urgency.EVENT)
+    with caplog.at_level(logging.ERROR):
+        for payload in (b"{", b"{", b"["):
+            publisher.put(payload)
+            keepers.lab.let_pass(0.1)
+    said = [record.getMessage() for record in caplog.records if "does not keep the task" in record.getMessage()]
+    assert len(said) == 2 * len(keepers.keepers)
+    assert all(keepers.lab.keys.task("odd~1") in one for one in said)
+
+
+def test_a_task_whose_configuration_cannot_be_read_begins_anew_and_that_is_said(
+    keepers: Keepers, caplog: pytest.LogCaptureFixture
+) -> None:
+    with caplog.at_level(logging.ERROR):
+        keepers.hand_over(replace(RECORD, configuration={"nonsense": 1}, epoch=3))
+        assert keepers.lab.until(lambda: len(keepers.running()) == 1)
+    assert "the task patrol~1 begins anew, as its configuration is not to be read" in caplog.text

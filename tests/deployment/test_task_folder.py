@@ -53,12 +53,37 @@ def test_without_a_folder_records_are_kept_in_memory() -> None:
     assert folder.records == {"navigate~1": FIRST}
 
 
-def test_a_file_that_is_no_record_is_passed_over_and_named(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_file_that_is_no_record_is_passed_over_and_that_is_said_to_people(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     TaskFolder(tmp_path).learn(FIRST)
     (tmp_path / "broken.json").write_text("{")
-    with caplog.at_level(logging.WARNING):
+    (tmp_path / "folder.json").mkdir()
+    with caplog.at_level(logging.ERROR):
         assert TaskFolder(tmp_path).records == {"navigate~1": FIRST}
-    assert f"passed over {tmp_path / 'broken.json'}" in caplog.text
+    for path, why in (("broken.json", "not a message"), ("folder.json", "Is a directory")):
+        assert f"the task in {tmp_path / path} cannot be read, and this site does not run it: {why}" in caplog.text
+    assert "`selfconf run --detach`" in caplog.text
+
+
+def test_a_record_is_on_the_disk_before_it_has_its_name_and_the_name_before_it_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[str] = []
+    replace, fsync = Path.replace, os.fsync
+
+    def noted_replace(path: Path, target: Path) -> Path:
+        done.append(f"replace {path.name}")
+        return replace(path, target)
+
+    def noted_fsync(opened: int) -> None:
+        done.append(f"fsync {Path(f'/proc/self/fd/{opened}').readlink().name}")
+        fsync(opened)
+
+    monkeypatch.setattr(Path, "replace", noted_replace)
+    monkeypatch.setattr(os, "fsync", noted_fsync)
+    TaskFolder(tmp_path / "tasks").learn(FIRST)
+    assert done == ["fsync navigate~1.new", "replace navigate~1.new", "fsync tasks"]
 
 
 def test_of_too_many_tasks_those_that_have_ended_go_and_then_none_is_taken(tmp_path: Path) -> None:
