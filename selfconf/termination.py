@@ -1,4 +1,6 @@
-"""When a program of selfconf ends: SIGINT, SIGTERM, or because the program that started it is gone.
+"""When a program of selfconf ends: SIGINT, SIGTERM, SIGHUP, or because the program that started it is gone.
+
+SIGHUP comes when the terminal is closed, and ends a program as Ctrl-C does; one that `nohup` has started ignores it.
 
 A program that starts others puts `parent_environment()` into their environment; they look at intervals whether it is
 still there, so that a parent that is killed with -9 leaves no process behind.
@@ -87,18 +89,24 @@ def _status(process: int) -> list[bytes]:
         return []
 
 
+def ending_signals() -> tuple[signal.Signals, ...]:
+    """The signals that end a program in order: SIGINT, SIGTERM, and SIGHUP unless it is ignored, as by `nohup`."""
+    ignored = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    return (signal.SIGINT, signal.SIGTERM) if ignored else (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
 def end_as_by_ctrl_c() -> None:
-    """Let SIGINT and SIGTERM raise KeyboardInterrupt, until there is a `Termination` that handles both.
+    """Let the signals that end a program raise KeyboardInterrupt, until there is a `Termination` that handles them.
 
     A program that a shell has started in the background ignores SIGINT otherwise.
     """
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in ending_signals():
         signal.signal(number, signal.default_int_handler)
 
 
 def ignore_from_now_on() -> None:
-    """Let SIGINT and SIGTERM change nothing any more: everything is taken down, and the exit code is decided."""
-    for number in (signal.SIGINT, signal.SIGTERM):
+    """Let no signal that ends a program change anything: everything is taken down, and the exit code is decided."""
+    for number in ending_signals():
         signal.signal(number, signal.SIG_IGN)
 
 
@@ -114,7 +122,7 @@ class Termination:
         """`told` wakes whoever waits for the end, and is called where a signal is noticed, or on the bus's thread."""
         self._bus, self._then, self._told, self._ending = bus, then, told, False
         self._parent = os.getppid()
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in ending_signals():
             signal.signal(number, self._signalled)
         if started_by_another():
             bus.wake_up(self._look)

@@ -43,13 +43,14 @@ def test_a_process_of_another_user_may_live() -> None:
 @pytest.fixture
 def handlers() -> Iterator[None]:
     """Afterwards signals are handled as they were."""
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
     for number, handler in before.items():
         signal.signal(number, handler)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.usefixtures("handlers")
 def test_a_signal_ends_the_program_once_however_often_it_comes(number: signal.Signals) -> None:
     network, said = Network(0), list[str]()
@@ -79,11 +80,22 @@ def test_a_program_ends_when_the_one_that_started_it_is_gone(monkeypatch: pytest
     assert network.run(ended, 10 * PARENT_CHECK)
 
 
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.usefixtures("handlers")
-def test_before_that_sigterm_ends_a_program_as_ctrl_c_does() -> None:
+def test_before_that_a_signal_ends_a_program_as_ctrl_c_does(number: signal.Signals) -> None:
     end_as_by_ctrl_c()
     with pytest.raises(KeyboardInterrupt):
-        signal.raise_signal(signal.SIGTERM)
+        signal.raise_signal(number)
+
+
+@pytest.mark.usefixtures("handlers")
+def test_a_program_that_ignores_the_end_of_its_terminal_goes_on() -> None:
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+    network = Network(0)
+    end_as_by_ctrl_c()
+    ended = Termination(network.node())
+    signal.raise_signal(signal.SIGHUP)
+    assert not network.run(ended, 1.0)
 
 
 def test_a_program_that_another_one_started_is_an_orphan_once_that_one_is_gone(

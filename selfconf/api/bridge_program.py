@@ -25,7 +25,7 @@ class BridgeSite:
 
 
 def serve_bridge(world: ForeignWorld, site: BridgeSite, complain: Callable[[str], None]) -> None:
-    """Bridge a world to an ecology until SIGINT or SIGTERM. Raises AuthorError and NetworkError."""
+    """Bridge a world to an ecology until SIGINT, SIGTERM or SIGHUP. Raises AuthorError and NetworkError."""
     with tempfile.TemporaryDirectory(prefix="selfconf-bridge-") as folder:
         bridge = Bridge(Path(folder), complain)
         serve(

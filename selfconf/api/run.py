@@ -136,7 +136,7 @@ class Run:
         self._bus.wake_up(self._runner.stop)
 
     def stop_on_signals(self) -> None:
-        """From now on SIGINT and SIGTERM stop the run, instead of ending the program in the middle of it."""
+        """From now on SIGINT, SIGTERM and SIGHUP stop the run, instead of ending the program in the middle of it."""
         Termination(self._bus, self._runner.stop)
 
     @property

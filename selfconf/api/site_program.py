@@ -64,7 +64,7 @@ def serve(
     ontologies: Sequence[Path] = (),
     reasoning: str = Reasoning.SYNTACTIC.value,
 ) -> None:
-    """Serve the advertisements in some files and folders to an ecology until SIGINT or SIGTERM.
+    """Serve the advertisements in some files and folders to an ecology until SIGINT, SIGTERM or SIGHUP.
 
     Without a name it gets one of its own; without an endpoint it listens where a site of the ecology usually does.
     `complain` hears what is left out, and where it listens. In the folder `state` are the tasks that it keeps, in the

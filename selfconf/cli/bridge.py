@@ -111,7 +111,7 @@ def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Bridge until SIGINT or SIGTERM; then 0."""
+    """Bridge until SIGINT, SIGTERM or SIGHUP; then 0."""
     module, extra = ("rosbags", "ros2") if given.world == "ros2" else ("aiohttp", "wot")
     if importlib.util.find_spec(module) is None:
         raise InstallationError(f"{module} is missing; install the extra `{extra}`")

@@ -60,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 when it is ended by Ctrl-C or SIGTERM."""
+    """0 when it is ended by Ctrl-C, SIGTERM or SIGHUP."""
     missing = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
     if missing:
         raise InstallationError(f"{' and '.join(missing)} is missing; install the extra `serve`")

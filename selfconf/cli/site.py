@@ -64,7 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Serve until SIGINT or SIGTERM; then 0. Of `restart`: 0 once the component lives again."""
+    """Serve until SIGINT, SIGTERM or SIGHUP; then 0. Of `restart`: 0 once the component lives again."""
     if given.paths[:1] == [RESTART]:
         return _restart(given)
     from selfconf.api.site_program import serve

@@ -220,7 +220,7 @@ def _media(found: QueryAnswer, question: Mapping[str, Any]) -> str:
 
 def main(control: int) -> int:
     """Serve the control socket of that number."""
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)  # its end is that of the program that has started it
     os.nice(NICENESS)
     Dataset().query("ASK {}")  # loads what every copy needs

@@ -22,13 +22,13 @@ from selfconf.termination import Termination, started_by_another
 HUNG_ENDS = 0.2
 """Seconds from the FAIL of code that hangs to the end of its process, if a site started it and can start it again."""
 TIME_TO_END = 2.5
-"""Seconds that a program may take to end on SIGINT or SIGTERM; code that does not return is not waited for longer."""
+"""Seconds that a program may take to end on a signal; code that does not return is not waited for longer."""
 HUNG_EXIT_CODE = 70
 """The exit code of a program that was ended because its code hung: EX_SOFTWARE of sysexits.h."""
 
 
 def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run components as one program until SIGINT or SIGTERM; then exit, with 2 if it cannot run.
+    """Run components as one program until SIGINT, SIGTERM or SIGHUP; then exit, with 2 if it cannot run.
 
     Arguments that are not options of selfconf are the program's own. The ecology is taken from `--ecology` and
     `--connect`, else from `SELFCONF_ECOLOGY` and `SELFCONF_CONNECT` (as set by a site that starts a dormant
@@ -96,7 +96,7 @@ def open_host(
 
 
 def run_until_ended(host: Host) -> None:
-    """Run a host until SIGINT or SIGTERM, or until the site that started this program is gone; then close it.
+    """Run a host until SIGINT, SIGTERM or SIGHUP, or until the site that started this program is gone; then close it.
 
     Raises NetworkError if another process is the same component, and this one has to leave.
     """

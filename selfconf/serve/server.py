@@ -33,7 +33,7 @@ from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
 from selfconf.serve.watcher import EcologyWatcher
-from selfconf.termination import PARENT_CHECK, orphaned, started_by_another
+from selfconf.termination import PARENT_CHECK, ending_signals, orphaned, started_by_another
 
 log = logging.getLogger(__name__)
 
@@ -74,7 +74,7 @@ def serve_ecology(
     options: ServerOptions,
     listening: Callable[[str], None],
 ) -> None:
-    """Serve an ecology over HTTP until SIGINT or SIGTERM; `listening` receives the URL.
+    """Serve an ecology over HTTP until SIGINT, SIGTERM or SIGHUP; `listening` receives the URL.
 
     `credentials` are what it shows where there are keys. Raises NetworkError where the port is taken or the ecology
     cannot be reached, and AuthorError for a folder that cannot be used.
@@ -183,8 +183,8 @@ class _Server(uvicorn.Server):
         super().__init__(config)
         self._board, self._onlookers = board, onlookers
         self._parent, self._looked = os.getppid(), 0.0
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: None)  # uvicorn raises them again for who was there before it
+        for number in ending_signals():
+            signal.signal(number, self.handle_exit)  # uvicorn itself listens for SIGINT and SIGTERM alone
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         """End, by a signal."""

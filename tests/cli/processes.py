@@ -15,6 +15,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from selfconf.access import KeysFolder, PrincipalKind, introduce
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
@@ -28,6 +30,8 @@ from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertiseme
 
 PATIENCE = 60.0
 """Seconds that a process may take for anything, on a busy machine."""
+NO_NOHUP = pytest.mark.skipif(signal.getsignal(signal.SIGHUP) is signal.SIG_IGN, reason="SIGHUP is ignored here")
+"""Marks what needs programs that the end of their terminal ends."""
 PROGRAM = '''
 """Components for tests: each acts a little, and fails, or dies in `started`, when a file says so."""
 

@@ -10,7 +10,7 @@ import pytest
 from selfconf.access import believe
 from selfconf.sdk.supervision import GRACE
 from tests.cli.endpoints import oxigraph
-from tests.cli.processes import Home, component_of, dormant
+from tests.cli.processes import NO_NOHUP, Home, component_of, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
 
 pytestmark = pytest.mark.process
@@ -77,10 +77,11 @@ def test_a_run_that_upgrades_changes_to_what_is_rather_had_and_back_when_that_is
     assert run.end(signal.SIGINT) == 0
 
 
-def test_ctrl_c_takes_everything_down(inhabited: Home) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGHUP, marks=NO_NOHUP)])
+def test_ctrl_c_or_the_end_of_its_terminal_takes_everything_down(inhabited: Home, number: signal.Signals) -> None:
     run = inhabited.run()
     run.act("running")
-    assert run.end(signal.SIGINT) == 0
+    assert run.end(number) == 0
     assert run.complaints == ""
     assert inhabited.active(*EVERYBODY) == set()
 

@@ -17,7 +17,7 @@ import pytest
 
 from selfconf.rdf.vocabulary import SC
 from tests.cli.command import run
-from tests.cli.processes import Home, Program, component_of
+from tests.cli.processes import NO_NOHUP, Home, Program, component_of
 
 pytest.importorskip("starlette", reason="the extra `serve` is not installed")
 pytestmark = [pytest.mark.process]
@@ -57,6 +57,13 @@ def serve(home: Home, *options: str) -> tuple[Program, Browser]:
     """A server of an ecology, once it listens."""
     program = home.selfconf("serve", "--ecology", home.ecology, "--port", "0", *options)
     return program, Browser(program)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, pytest.param(signal.SIGHUP, marks=NO_NOHUP)])
+def test_a_server_ends_by_ctrl_c_and_with_its_terminal(ecology: Home, number: signal.Signals) -> None:
+    server, browser = serve(ecology)
+    assert browser.get("/")[0] == 200
+    assert server.end(number) == 0
 
 
 @pytest.mark.slow
