@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import count
 
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.port import Replies
@@ -19,6 +20,8 @@ COMING_TO_REST = 5.0
 """Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""
 STATE = 1.0
 """Seconds that a component may take to say how it is."""
+UNNUMBERED = 56
+"""How many characters of a task's name stand before a number; with that they are 64 at most."""
 REST_CHECK = 0.1
 """Seconds between two looks at components that have not obeyed yet."""
 
@@ -138,11 +141,21 @@ class LivingTasks:
         found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
         return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
 
+    def check_unused(self, name: str) -> None:
+        """Raises NetworkError if a task of that name lives already."""
+        if any(task.name == name for task in self.all()):
+            raise NetworkError(f"a task {name!r} lives already; give another name, or `selfconf stop {name}`")
+
+    def unused(self, wanted: str) -> str:
+        """The wanted name, or if a task has it, that with the first number from 2 on which is free: `patrol-2`."""
+        taken = {task.name for task in self.all()}
+        numbered = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2))
+        return wanted if wanted not in taken else next(name for name in numbered if name not in taken)
+
     def detach(self, record: TaskRecord) -> str:
         """Hand a task to the sites; returns its name. Raises NetworkError if none keeps it, or if its name is taken."""
         wanted = task_name(record.task)
-        if any(task_name(status.task) == wanted for status in self.running()) or self.kept(wanted):
-            raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
+        self.check_unused(wanted)
         try:
             self._keep(record)
         except NetworkError:

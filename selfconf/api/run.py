@@ -8,8 +8,10 @@ from types import TracebackType
 
 from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.detached import task_record
+from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
 from selfconf.api.places import Places
+from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.api.task import TaskSpecification
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.credentials import Credentials
@@ -21,6 +23,7 @@ from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import RunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys, task_name
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.termination import Termination
 
@@ -61,8 +64,9 @@ class Run:
     ) -> None:
         """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
 
-        Raises BindingError, ProgrammerError for a priority that is none, and NetworkError, also for credentials that do
-        not let it run tasks.
+        A task without a `name` has that of its template, or where that is taken, one with a number: `patrol-2`. Raises
+        BindingError, ProgrammerError for a priority that is none, and NetworkError, also for credentials that do not
+        let it run tasks, and for a name that is taken.
         """
         check_may_run(credentials)
         self.task, self.method = task.complete(), method
@@ -75,6 +79,10 @@ class Run:
         self._ended = False
         record = task_record(self.task, method, policy, name, priority, upgrade)
         self._bus = member(ecology, endpoints, credentials)
+        self.wanted_name = task_name(record.task)
+        """The name that was given to the task, or that of its template."""
+        self.task_name = self._unused_name(Keys(ecology), given=bool(name))
+        """The name that the task has in the ecology."""
         self._runner = TaskRunner(
             self._bus,
             ecology,
@@ -87,7 +95,7 @@ class Run:
                 policy=policy,
                 patient=wait,
                 believed=beliefs(credentials),
-                name=name,
+                name=self.task_name,
                 priority=record.priority,
                 upgrade=upgrade,
                 aside=self._work.work,
@@ -97,6 +105,18 @@ class Run:
             ),
             configurator_name(credentials),
         )
+
+    def _unused_name(self, keys: Keys, given: bool) -> str:
+        """A name that no other task of the ecology has: `stop` goes by it. Raises NetworkError for a given one."""
+        tasks, wanted = LivingTasks(SynchronousBus(self._bus), keys), self.wanted_name
+        try:
+            if not given:
+                return tasks.unused(wanted)
+            tasks.check_unused(wanted)
+            return wanted
+        except BaseException:
+            self._bus.close()
+            raise
 
     def __enter__(self) -> Run:
         self._bus.run_aside()

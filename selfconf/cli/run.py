@@ -55,7 +55,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--wait", action="store_true", help="when there is no configuration, wait for the ecology to change"
     )
-    parser.add_argument("--name", metavar="NAME", help="the name of the task (default: that of its template)")
+    parser.add_argument(
+        "--name",
+        metavar="NAME",
+        help="the name of the task (default: that of its template, with a number where a task has it already)",
+    )
     parser.add_argument(
         "--priority",
         metavar="N",
@@ -115,6 +119,8 @@ def run(given: argparse.Namespace) -> int:
     _tell_of_others(given)
     with _begun(given, task) as (running, site):
         running.stop_on_signals()
+        if running.task_name != running.wanted_name:
+            complain(f"a task {running.wanted_name!r} lives already, so this one is {running.task_name!r}")
         lines = TextLines(task)
         printer = LinePrinter(json_lines if given.format == "json" else lines, running.stop)
         for event in running.events():
@@ -171,8 +177,6 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
         paths = given.ads if given.endpoint is None else [stack.enter_context(_fetched(given, task, method))]
         if paths is None:
             ecology, endpoints = rendezvous.find(given.ecology, given.connect, shown)
-            if given.name is not None:
-                _check_name(given)
             yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
             return
         site = stack.enter_context(
@@ -181,15 +185,6 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
         described = partial(_described, given.ads or ())
         running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)
         yield stack.enter_context(running), site
-
-
-def _check_name(given: argparse.Namespace) -> None:
-    """Raises NetworkError if a task of that name lives already."""
-    with joined(given) as ecology:
-        if any(task.name == given.name for task in ecology.all_tasks()):
-            raise NetworkError(
-                f"a task {given.name!r} lives already; give another name, or `selfconf stop {given.name}`"
-            )
 
 
 def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:

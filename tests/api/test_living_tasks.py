@@ -13,7 +13,7 @@ from selfconf.bus.port import Request
 from selfconf.errors import NetworkError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys
+from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import CallAnswer, Status, TaskRecord, Verdict
 
 KEYS = Keys("lab")
@@ -190,6 +190,18 @@ def test_a_task_is_handed_over_once(tasks: Tasks) -> None:
     assert tasks.kept == [PATROL]
     with pytest.raises(NetworkError, match="a task 'tidy' lives already"):
         tasks.asked.detach(replace(TIDY, task="tidy~3"))
+
+
+def test_a_name_that_a_task_has_gets_the_first_number_that_is_free(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.site(replace(TIDY, task="patrol-2~1"), TIDY)
+    assert [tasks.asked.unused(name) for name in ("watch", "tidy", "patrol")] == ["watch", "tidy-2", "patrol-3"]
+    tasks.configurator("c2", f"{'x' * 64}~1")
+    assert checked_name(tasks.asked.unused("x" * 64), "a task").endswith("x-2")
+    tasks.asked.check_unused("watch")
+    for taken in ("patrol", "tidy"):
+        with pytest.raises(NetworkError, match=f"a task '{taken}' lives already"):
+            tasks.asked.check_unused(taken)
 
 
 def test_a_task_that_no_site_can_keep_is_refused_and_called_off(tasks: Tasks) -> None:

@@ -42,6 +42,23 @@ def test_a_task_that_runs_is_listed_by_its_name_and_stopped_by_it(
     assert program.ended() == 0
 
 
+def test_two_runs_of_one_template_have_names_of_their_own(house: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    house.site("kitchen", CLOCK)
+    where = house.arguments()
+    first = house.selfconf("run", TEMPLATE, *where, "--format", "json")
+    first.act("running")
+    second = house.selfconf("run", TEMPLATE, *where, "--format", "json", "--wait")
+    second.act("waiting")
+    assert "a task 'tell-the-time' lives already, so this one is 'tell-the-time-2'" in second.complaints
+    tasks = run(capsys, "tasks", "--format", "json", *where).body
+    assert [task["task"] for task in tasks] == ["tell-the-time", "tell-the-time-2"]
+    assert run(capsys, "stop", "tell-the-time", *where).code == 0
+    assert first.ended() == 0
+    second.act("running")
+    assert run(capsys, "stop", "tell-the-time-2", *where).code == 0
+    assert second.ended() == 0
+
+
 def test_a_detached_task_runs_without_the_command_that_began_it(
     house: Home, capsys: pytest.CaptureFixture[str]
 ) -> None:
