@@ -123,8 +123,10 @@ class ComponentCode:
             done()
 
         def stop() -> None:
-            self._stop()
-            self._report(lambda _: at_rest(), None)
+            try:
+                self._stop()
+            finally:  # also where `stopped` ends the program: the caller hears first that it has obeyed
+                self._report(lambda _: at_rest(), None)
 
         self._thread.call(stop)
 

@@ -137,6 +137,23 @@ def test_a_release_is_answered_when_the_code_is_at_rest_and_calls_that_come_mean
     assert recorder.said == [("started",), ("stopped",), ("started",)]
 
 
+def test_a_component_whose_stop_ends_its_program_has_obeyed() -> None:
+    class Ending(Recorder):
+        def stopped(self) -> None:
+            super().stopped()
+            raise SystemExit(0)
+
+    split = Split(recorder := Ending())
+    split.call(apply(1, US))
+    split.run_code()
+    split.call(release(2, US))
+    with pytest.raises(SystemExit):
+        split.code.poll()
+    split.let_pass()
+    assert (recorder.said, split.verdicts) == ([("started",), ("stopped",)], [Verdict.DONE] * 2)
+    assert not split.answers[-1].stopping
+
+
 def test_an_apply_that_changes_a_parameter_while_the_code_starts_is_obeyed_after_the_start() -> None:
     class Picky(Recorder):
         def parameter_set(self, name: str, value: Any) -> None:
