@@ -119,7 +119,7 @@ def _word(value: object, name: Name) -> object:
 def event_body(event: RunEvent) -> dict[str, Any]:
     """An event of a run, as a line of `run --format json`: its act, time and facts, a sentence, and the process."""
     facts = {one.name: _fact(getattr(event, one.name)) for one in fields(event) if one.name != "time"}
-    message = sentence(event, short)
+    message = sentence(event, short).lstrip()  # the indentation is for lines below each other
     return {"act": event.act, "time": event.time, **facts, "message": message, "process": os.getpid()}
 
 

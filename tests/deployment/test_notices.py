@@ -92,4 +92,4 @@ def test_an_event_that_is_too_large_is_told_in_a_sentence(lab: Lab) -> None:
     told = RunNotices(lab.network.node(), Keys("lab"), "c1", "tidy~c1")
     told.put(TaskRunning(Configuration(iri("navigate"), (), settings=(setting,)), 7, time=3.0))
     (notice,) = latest(lab, Keys("lab").notices("c1"))
-    assert notice.event == {"act": "running", "time": 3.0, "message": "       running"}
+    assert notice.event == {"act": "running", "time": 3.0, "message": "running"}

@@ -82,7 +82,7 @@ def test_every_event_has_a_body_with_act_time_message_process_and_its_facts(kind
     event = instance(kind)
     body = event_body(event)
     assert (body["act"], body["time"], body["process"]) == (kind.act, 12.5, os.getpid())
-    assert body["message"] == sentence(event, short)
+    assert body["message"] == sentence(event, short).strip()
     assert body.keys() == {"act", "message", "process", *(one.name for one in fields(kind))}
     assert json.loads(json.dumps(body, allow_nan=False)) == body
 
