@@ -6,13 +6,14 @@ file has one meaning, whether a command, a site or a component reads it.
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import sys
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 from selfconf.errors import AuthorError, TurtleError
 
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
 
 STDIN = Path("-")
 """What stands for standard input where a file can be given."""
+MOST_READ = 1 << 30
+"""The most bytes that are read of a file, or of standard input: 1 GiB. More of it cannot be meant."""
+_CHUNK = 1 << 20
+_NO_FILES = ((stat.S_ISFIFO, "a named pipe"), (stat.S_ISSOCK, "a socket"), (stat.S_ISCHR, "a device"))
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 TURTLE = (".ttl",)
 """The ending of the files that stand for a folder."""
@@ -116,7 +121,7 @@ def signal_fields(
 def octets(path: Path) -> bytes:
     """The bytes of a file. Raises AuthorError if it cannot be read."""
     try:
-        return path.read_bytes()
+        return read_bounded(path)
     except IsADirectoryError:
         raise AuthorError(f"{path} is a folder; a file is needed here") from None
     except FileNotFoundError:
@@ -130,9 +135,56 @@ def standard_input() -> bytes:
     if sys.stdin is None:  # so Python says that the file descriptor was closed when it began
         raise AuthorError("standard input is closed")
     try:
-        return sys.stdin.buffer.read()
+        return bounded(sys.stdin.buffer)
     except OSError as error:
         raise AuthorError(f"cannot read standard input: {error.strerror}") from None
+
+
+def read_bounded(path: Path) -> bytes:
+    """The bytes of a file. Raises OSError, also for what has no end or too much in it."""
+    status = path.stat()
+    _check_kind(path, status.st_mode)
+    if status.st_size > MOST_READ:
+        raise _too_large()
+    with path.open("rb") as file:
+        return bounded(file)
+
+
+def bounded(stream: BinaryIO) -> bytes:
+    """All that comes on a stream. Raises OSError if it is too much."""
+    found: list[bytes] = []
+    size = 0
+    while chunk := stream.read(_CHUNK):
+        found.append(chunk)
+        size += len(chunk)
+        if size > MOST_READ:
+            raise _too_large()
+    return b"".join(found)
+
+
+def check_kind(path: Path) -> None:
+    """Raises AuthorError for what is there and is neither file nor folder: to read it might never end."""
+    status = _status(path)
+    try:
+        _check_kind(path, 0 if status is None else status.st_mode)
+    except OSError as error:
+        raise AuthorError(f"cannot read {path}: {error.strerror}") from None
+
+
+def _check_kind(path: Path, mode: int) -> None:
+    """Raises OSError for what is neither file nor folder, unless this program was given it open."""
+    kind = next((kind for is_so, kind in _NO_FILES if is_so(mode)), None)
+    if kind is not None and not _is_open_already(path):
+        raise OSError(errno.EINVAL, f"it is {kind} and no file")
+
+
+def _is_open_already(path: Path) -> bool:
+    """Whether a path names a stream that this program has from the one that started it, as `<(command)` of a shell."""
+    return path == Path("/dev/stdin") or os.path.realpath(path.parent) in ("/dev/fd", f"/proc/{os.getpid()}/fd")
+
+
+def _too_large() -> OSError:
+    return OSError(errno.EFBIG, f"it is larger than {MOST_READ >> 20} MiB, which cannot be meant")
 
 
 def text(found: bytes, name: str) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import socket
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -113,4 +114,45 @@ def test_standard_input_that_is_closed_or_cannot_be_read_is_said(monkeypatch: py
     with io.TextIOWrapper(io.BufferedReader(Folder())) as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)
         with pytest.raises(AuthorError, match=r"^cannot read standard input: Is a directory$"):
+            files.standard_input()
+
+
+def test_what_is_neither_file_nor_folder_is_not_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.ttl")
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind(str(tmp_path / "socket.ttl"))
+    (tmp_path / "link.ttl").symlink_to("/dev/zero")
+    for name, kind in (("pipe", "a named pipe"), ("socket", "a socket"), ("link", "a device")):
+        path = tmp_path / f"{name}.ttl"
+        for read in (files.octets, files.check_kind):
+            with pytest.raises(AuthorError, match=f"cannot read {path}: it is {kind} and no file"):
+                read(path)
+    assert files.within(tmp_path) == []
+
+
+def test_a_stream_that_a_program_was_given_is_read_as_a_file() -> None:
+    """As `<(command)` of a shell is."""
+    for folder in ("/dev/fd", "/proc/self/fd", f"/proc/{os.getpid()}/fd"):
+        reads, writes = os.pipe()
+        os.write(writes, CLOCK.encode())
+        os.close(writes)
+        try:
+            files.check_kind(Path(folder) / str(reads))
+            assert files.octets(Path(folder) / str(reads)) == CLOCK.encode()
+        finally:
+            os.close(reads)
+
+
+def test_no_more_is_read_than_can_be_meant(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    large = tmp_path / "large.ttl"
+    with large.open("wb") as file:
+        file.truncate(files.MOST_READ + 1)
+    with pytest.raises(AuthorError, match=f"cannot read {large}: it is larger than 1024 MiB, which cannot be meant"):
+        files.octets(large)
+    monkeypatch.setattr(files, "MOST_READ", 3 << 20)
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b" " * (3 << 20))))
+    assert len(files.standard_input()) == 3 << 20
+    with Path("/dev/zero").open() as endless:
+        monkeypatch.setattr(sys, "stdin", endless)
+        with pytest.raises(AuthorError, match="cannot read standard input: it is larger than 3 MiB"):
             files.standard_input()

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from selfconf import files
 from selfconf.api.answer import Method
 from selfconf.api.arguments import checked_priority, option
 from selfconf.api.task import TaskSpecification
@@ -67,8 +68,8 @@ def task_record(
 
 
 def _texts(path: Path) -> list[str]:
-    files = sorted(path.rglob("*.ttl")) if path.is_dir() else [path]
-    return [file.read_text(encoding="utf-8") for file in files]
+    found = sorted(path.rglob("*.ttl")) if path.is_dir() else [path]
+    return [files.octets(file).decode() for file in found]
 
 
 def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Composer]:

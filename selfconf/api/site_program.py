@@ -153,9 +153,9 @@ def _do_next(work: WorkQueue) -> None:
 
 
 def _check_readable(paths: Sequence[Path], ontologies: Sequence[Path]) -> None:
-    """Raise AuthorError for paths that are not there, and for ontologies that cannot be read."""
+    """Raise AuthorError for paths that are not there, or are no files, and for ontologies that cannot be read."""
     for path in (*paths, *ontologies):
-        existing(path)
+        files.check_kind(existing(path))
     files.signal_fields((file for path in ontologies for file in files.within(path)), ())
 
 

@@ -90,7 +90,7 @@ def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach 
                     message = f"This file is larger than {LARGEST_FILE >> 20} MiB: that cannot be meant."
                     found.append(Diagnostic(name, 1, 1, "SC-S05", message))
                 elif Path(name).name == PROJECT_FILE:
-                    found += project_problems(name, Path(name).read_bytes(), Path(name).parent)
+                    found += project_problems(name, files.read_bounded(Path(name)), Path(name).parent)
                     projects.add(name)
                 else:
                     sources.setdefault(Path(name).resolve(), _read(name))
@@ -150,4 +150,4 @@ def _read(name: str) -> SourceText:
 
 
 def _load(path: Path) -> SourceText:
-    return SourceText(str(path), path.read_bytes(), path.resolve().as_uri())
+    return SourceText(str(path), files.read_bounded(path), path.resolve().as_uri())

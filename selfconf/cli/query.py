@@ -18,7 +18,7 @@ from selfconf.cli.options import (
     one_stdin,
 )
 from selfconf.cli.terminal import complain
-from selfconf.errors import AuthorError, reason
+from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
     from selfconf.query import Shown
@@ -117,9 +117,7 @@ def _text(given: str) -> str:
         if not Path(given).exists():
             raise AuthorError(f"there is no file or folder {given}")
         try:
-            return Path(given).read_text(encoding="utf-8-sig")
-        except OSError as error:
-            raise AuthorError(f"cannot read {reason(error)}") from None
+            return files.octets(Path(given)).decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise AuthorError(f"cannot read {given}: {error}") from None
     return given

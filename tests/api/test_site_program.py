@@ -65,6 +65,14 @@ def test_a_site_that_cannot_be_announces_nothing(
     assert list(runtime_folder.glob("*.json")) == []
 
 
+@pytest.mark.parametrize("given", [["/dev/zero"], ["ads", "--ontology", "/dev/zero"]])
+@pytest.mark.process
+def test_a_site_does_not_begin_where_reading_would_not_end(home: Home, given: list[str]) -> None:
+    site = home.selfconf("site", *given, "--ecology", home.ecology)
+    assert site.ended() == 2
+    assert "cannot read /dev/zero: it is a device and no file" in site.complaints
+
+
 @pytest.mark.process
 def test_a_site_without_a_name_gets_one_and_leaves_when_it_is_told_to(home: Home) -> None:
     site = home.selfconf("site", "ads", "--ecology", home.ecology)
