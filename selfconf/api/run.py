@@ -11,7 +11,7 @@ from selfconf.api.detached import task_record
 from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
 from selfconf.api.places import Places
-from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.credentials import Credentials
@@ -27,6 +27,8 @@ from selfconf.protocol.keys import Keys, task_name
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.termination import Termination
 
+TASKS_CALL = 0.5
+"""Seconds that the other tasks may take to say their names, where none was given: one that hangs holds up no other."""
 TAKING_DOWN = 15.0
 """How long, in seconds, a configurator may take to turn off everything that it holds."""
 CHECK = 0.5
@@ -108,7 +110,8 @@ class Run:
 
     def _unused_name(self, keys: Keys, given: bool) -> str:
         """A name that no other task of the ecology has: `stop` goes by it. Raises NetworkError for a given one."""
-        tasks, wanted = LivingTasks(SynchronousBus(self._bus), keys), self.wanted_name
+        patience = ROLL_CALL if given else TASKS_CALL
+        tasks, wanted = LivingTasks(SynchronousBus(self._bus, patience), keys), self.wanted_name
         try:
             if not given:
                 return tasks.unused(wanted)

@@ -10,7 +10,7 @@ from selfconf.bus.port import Bus, Replies
 from selfconf.errors import NetworkError
 
 ROLL_CALL = 3.0
-"""How long, in seconds, a roll-call or a question may take."""
+"""How long, in seconds, a roll-call or a question may take, if nothing else is said."""
 ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
 _Result = TypeVar("_Result")
@@ -19,8 +19,9 @@ _Result = TypeVar("_Result")
 class SynchronousBus:
     """Asks over a bus, and lets that run until the answer is there."""
 
-    def __init__(self, bus: Bus) -> None:
-        self._bus = bus
+    def __init__(self, bus: Bus, seconds: float = ROLL_CALL) -> None:
+        """`seconds` is how long a roll-call or a question may take, unless it says otherwise."""
+        self._bus, self._seconds = bus, seconds
 
     def wait(self, begin: Callable[[Callable[[_Result], None]], None]) -> _Result:
         """Begin something that says when it is done, and return its result. Raises NetworkError if it never does."""
@@ -32,11 +33,11 @@ class SynchronousBus:
             raise NetworkError("the ecology does not answer")
         return results[0]
 
-    def ask(self, key: str, payload: bytes = b"", seconds: float = ROLL_CALL) -> Replies:
+    def ask(self, key: str, payload: bytes = b"", seconds: float | None = None) -> Replies:
         """Return all answers to a question."""
 
         def begin(done: Callable[[Replies], None]) -> None:
-            self._bus.ask(key, payload, seconds, done)
+            self._bus.ask(key, payload, self._seconds if seconds is None else seconds, done)
 
         return self.wait(begin)
 
@@ -55,7 +56,7 @@ class SynchronousBus:
 
         return self.wait(begin) if questions else []
 
-    def demand(self, key: str, payload: bytes, trouble: str, seconds: float = ROLL_CALL) -> None:
+    def demand(self, key: str, payload: bytes, trouble: str, seconds: float | None = None) -> None:
         """Have something done. Raises NetworkError, which begins with the trouble, where nobody has done it."""
         replies = self.ask(key, payload, seconds)
         if not replies.samples:
@@ -65,7 +66,7 @@ class SynchronousBus:
         """Return the liveliness keys that match a key."""
 
         def begin(done: Callable[[tuple[str, ...]], None]) -> None:
-            self._bus.roll_call(key, ROLL_CALL, done)
+            self._bus.roll_call(key, self._seconds, done)
 
         return self.wait(begin)
 
