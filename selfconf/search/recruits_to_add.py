@@ -15,6 +15,7 @@ from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.relaxation import Addition, AddRecruits
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
+from selfconf.search.supposed_outputs import supposed
 
 MOST_LACKING = 24
 """How many outputs are looked at, at most, each of which takes a trial."""
@@ -43,7 +44,10 @@ def with_more_recruits(problem: Problem, added: AddRecruits) -> Problem:
     """Return a problem in which recruits are added, each for its role."""
     index = {role.iri: number for number, role in enumerate(problem.roles)}
     more = [
-        Recruit(Profile(IRI(f"{NEWCOMER}{number}"), ports=Ports(outputs=one.outputs)), frozenset((index[one.role],)))
+        Recruit(
+            Profile(IRI(f"{NEWCOMER}{number}"), ports=Ports(outputs=supposed(one.outputs))),
+            frozenset((index[one.role],)),
+        )
         for number, one in enumerate(added.additions)
     ]
     partition = replace(problem.partition, recruits=(*problem.partition.recruits, *more))

@@ -50,6 +50,7 @@ from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
 from selfconf.search.reduction import Fed, LazyReduction, Played, recruits_that_matter, reduced
 from selfconf.search.strategies import possible, solution
 from selfconf.search.supply import Issued
+from selfconf.search.supposed_outputs import supposed
 
 TRIALS = 24
 """How many changed problems are tried for each sort of relaxation."""
@@ -206,7 +207,8 @@ def _with_candidates(problem: Problem, more: dict[IRI, list[Candidate]]) -> Prob
 
 def _newcomer(problem: Problem, role: IRI, number: int, outputs: tuple[Output, ...]) -> Candidate:
     name = IRI(f"{ADDITION}{number}:{role}")
-    return Candidate(Profile(name, ports=Ports(outputs=outputs)), tuple(ANY_VALUE for _ in problem.variables))
+    ports = Ports(outputs=supposed(outputs))
+    return Candidate(Profile(name, ports=ports), tuple(ANY_VALUE for _ in problem.variables))
 
 
 Added = Counter[tuple[int, tuple[Output, ...]]]
@@ -373,9 +375,9 @@ def _trimmed(
 def _without(candidate: Candidate, known: tuple[Output, ...], outputs: tuple[Output, ...]) -> Candidate:
     """Return a component that is added, and has the outputs that are known, with these instead; any other as it is."""
     profile = candidate.profile
-    if not profile.component.startswith(ADDITION) or profile.outputs != known:
+    if not profile.component.startswith(ADDITION) or profile.outputs != supposed(known):
         return candidate
-    return replace(candidate, profile=replace(profile, ports=Ports(profile.inputs, outputs)))
+    return replace(candidate, profile=replace(profile, ports=Ports(profile.inputs, supposed(outputs))))
 
 
 def _with_values(problem: Problem, asked: AddComponents, playing: list[list[Candidate]]) -> AddComponents:

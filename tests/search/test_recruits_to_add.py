@@ -10,7 +10,7 @@ from selfconf.search.problem import Problem
 from selfconf.search.recruiting import possible_with_recruits
 from selfconf.search.recruits_to_add import MOST_LACKING, recruits_to_add, with_more_recruits
 from tests.search.test_recruiting import with_recruits
-from tests.search.worlds import component, problem
+from tests.search.worlds import component, iri, problem
 
 STEPS = 5_000
 
@@ -65,3 +65,11 @@ def test_there_is_no_advice_where_recruits_do_not_help() -> None:
     assert advice(fixed) is None
     many = " ".join(f"p{k}:S{k}" for k in range(MOST_LACKING + 1))
     assert advice(with_recruits(problem({"user": [component("user", many)]}))) is None
+
+
+def test_what_has_to_conform_to_a_shape_is_not_taken_to_have_a_unit() -> None:
+    user = component("user", "s:S t:S")
+    asking = Condition(unit=iri("CentiM")), Condition(accepts="in metres")
+    inputs = tuple(port._replace(condition=one) for port, one in zip(user.inputs, asking, strict=True))
+    given = with_recruits(problem({"user": [replace(user, ports=Ports(inputs, ()))]}))
+    assert issued(advice(given)) == [["S"], ["S"]]

@@ -275,3 +275,15 @@ def test_additions_that_differ_in_what_they_state_are_put_in_order() -> None:
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
     assert with_relaxations(given_, refused).repairs
+
+
+def test_an_output_that_is_to_conform_to_a_shape_is_not_taken_to_have_the_unit_that_another_input_asks_for() -> None:
+    both = component("x", "p:S q:S")
+    asking = Condition(unit=iri("CentiM")), Condition(accepts="in metres")
+    inputs = tuple(port._replace(condition=one) for port, one in zip(both.inputs, asking, strict=True))
+    given_ = problem({"src": [], "sink": [replace(both, ports=both.ports._replace(inputs=inputs))]}, "src>sink")
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    (added,) = (str(one) for one in with_relaxations(given_, refused).repairs if isinstance(one, AddComponents))
+    signals = "S in CentiM and S as the sc:accepts of its input asks"
+    assert added == f"add one more component for the role src that issues {signals}"
