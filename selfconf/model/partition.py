@@ -37,6 +37,13 @@ class Variable:
 
 
 @immutable
+class Mention:
+    """A free parameter that the shape of a role mentions, so that it matters what a component states for it."""
+
+    parameter: IRI
+
+
+@immutable
 class Candidate:
     """A component that is eligible for a role, and what it allows each variable to be."""
 
@@ -86,6 +93,12 @@ class Partition:
     variables: tuple[Variable, ...] = ()
     recruits: tuple[Recruit, ...] = ()
     """The components that may be recruited, in the order in which they are preferred; none where no role recruits."""
+    mentions: tuple[tuple[Mention, ...], ...] = ()
+    """For each role the free parameters that its shape mentions, whether or not any candidate states a value."""
+
+    def mentioned(self, role: int) -> tuple[Mention, ...]:
+        """The free parameters that the shape of a role, given by its number, mentions."""
+        return self.mentions[role] if role < len(self.mentions) else ()
 
     def without(self, lost: frozenset[IRI]) -> Partition:
         """The partition once some components, and with them the values that no other states, have left the ecology."""
@@ -106,7 +119,7 @@ class Partition:
         """The partition with these candidates, and without the values of variables that none of them states."""
         kept = [_places_stated(variable, number, left) for number, variable in enumerate(self.variables)]
         if all(len(places) == len(variable.domain) for places, variable in zip(kept, self.variables, strict=True)):
-            return Partition(left, self.variables, recruits)
+            return replace(self, candidates=left, recruits=recruits)
         numbers = [number for number, places in enumerate(kept) if places]
 
         def narrowed(candidate: Candidate) -> Candidate:
@@ -115,7 +128,8 @@ class Partition:
 
         domains = ((self.variables[n], tuple(self.variables[n].domain[place] for place in kept[n])) for n in numbers)
         variables = tuple(replace(variable, domain=domain) for variable, domain in domains)
-        return Partition(tuple(tuple(map(narrowed, role)) for role in left), variables, recruits)
+        candidates = tuple(tuple(map(narrowed, role)) for role in left)
+        return replace(self, candidates=candidates, variables=variables, recruits=recruits)
 
 
 def _places_stated(variable: Variable, number: int, roles: Iterable[Iterable[Candidate]]) -> list[int]:

@@ -389,12 +389,12 @@ def _with_values(problem: Problem, asked: AddComponents, playing: list[list[Cand
     index = {role.iri: number for number, role in enumerate(problem.roles)}
     found = []
     for addition in asked.additions:
-        candidates = problem.candidates[index[addition.role]]
+        mentioned = {mention.parameter for mention in problem.partition.mentioned(index[addition.role])}
         values = tuple(
             (names[variable.parameter], value)
             for number, variable in enumerate(problem.variables)
             if left[number] > 0 and (value := variable.first(left[number])) is not None
-            if not candidates or any(c.admits[number] != ANY_VALUE for c in candidates)
+            if variable.parameter in mentioned
         )
         found.append(replace(addition, values=values))
     return AddComponents(tuple(found))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from decimal import Decimal
 
 from selfconf.model.candidate_order import candidate_order
-from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable, ordered
+from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Partition, Variable, ordered
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 
@@ -48,3 +48,12 @@ def test_a_partition_with_one_candidate_for_a_role_keeps_the_others_and_only_the
     assert partition.with_only(0, IRI("urn:b")) == Partition(
         ((Candidate(b.profile, (0b1,)),), (c,)), (Variable(IRI("urn:p"), (y,)),)
     )
+
+
+def test_what_shapes_mention_stays_whatever_is_lost() -> None:
+    a, b = (Candidate(Profile(IRI(f"urn:{name}")), (mask,)) for name, mask in (("a", 0b1), ("b", -1)))
+    mention = Mention(IRI("urn:p"))
+    partition = Partition(((a, b),), (Variable(IRI("urn:p"), (IRI("urn:x"),)),), mentions=((mention,),))
+    assert partition.without(frozenset({IRI("urn:a")})).mentioned(0) == (mention,)
+    assert partition.without(frozenset({IRI("urn:b")})).mentioned(0) == (mention,)
+    assert partition.mentioned(1) == ()  # what is outside of a composite is no role of its template

@@ -287,3 +287,16 @@ def test_an_output_that_is_to_conform_to_a_shape_is_not_taken_to_have_the_unit_t
     (added,) = (str(one) for one in with_relaxations(given_, refused).repairs if isinstance(one, AddComponents))
     signals = "S in CentiM and S as the sc:accepts of its input asks"
     assert added == f"add one more component for the role src that issues {signals}"
+
+
+def test_an_addition_names_the_value_that_matters_to_its_role_though_no_candidate_states_one() -> None:
+    given_ = problem(
+        {"sonar": [component("sonar")], "drive": [component("drive")]},
+        counts={"drive": (2, None)},
+        values={"sonar": {"sonar": 0b01}},
+        domain=["astrid", "pippi"],
+    )
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
+    assert words[0] == "add one more component for the role drive, with robot astrid"

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
+from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Partition, Variable
 from selfconf.model.profile import (
     Condition,
     Input,
@@ -98,7 +98,8 @@ def problem(
         tuple(Candidate(profile, _mask(values, name, profile) if domain else ()) for profile in profiles)
         for name, profiles in roles.items()
     )
-    return Problem(Task(template), Partition(candidates, variables), hierarchy)
+    mentions = ((Mention(iri("robot")),) if domain else (),) * len(roles)
+    return Problem(Task(template), Partition(candidates, variables, mentions=mentions), hierarchy)
 
 
 def _mask(values: Mapping[str, Mapping[str, int]] | None, role: str, profile: Profile) -> tuple[int, ...]:
@@ -204,7 +205,11 @@ def a_problem(
         iri("template"), tuple(parts), tuple(interactions), (*parameters, Parameter(iri("goal"), "goal"))
     )
     task = Task(template, {iri("goal"): Literal("(AT BEDROOM)")})
-    return Problem(task, Partition(candidates, variables), hierarchy)
+    stating = [
+        [v for k, v in enumerate(variables) if any(c.admits[k] != ANY_VALUE for c in some)] for some in candidates
+    ]
+    mentions = tuple(tuple(Mention(variable.parameter) for variable in some) for some in stating)
+    return Problem(task, Partition(candidates, variables, mentions=mentions), hierarchy)
 
 
 def _input(chance: Chance, name: str, signal: IRI, kinds: Sequence[str]) -> Input:

@@ -18,7 +18,7 @@ from selfconf.model.candidate_order import candidate_order
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
-from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Recruit, Variable, ordered
+from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Partition, Recruit, Variable, ordered
 from selfconf.model.profile import Profile
 from selfconf.model.template import Role
 from selfconf.model.term import IRI, Term, sort_key
@@ -133,6 +133,7 @@ class Partitioner:
             tuple(ordered([Candidate(one.profile, admits(one)) for one in role]) for role in eligible),
             variables,
             self._recruits(ecology),
+            tuple(map(self._mentions, self.roles)) if self.free else (),
         )
         judged = self._acceptance.judged(
             self.task.template, found, lambda component: tuple(self.visible([ecology[component]]))
@@ -253,6 +254,10 @@ class Partitioner:
                 self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, ecology)
             )
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
+
+    def _mentions(self, role: CompiledRole) -> tuple[Mention, ...]:
+        """The free parameters that the shape of a role mentions."""
+        return tuple(map(Mention, sorted(mentions(self.document, role.iri, self.free))))
 
     def mentioned(self, role: CompiledRole) -> IRI | None:
         """The free parameter that the shape of a role mentions, if it does."""

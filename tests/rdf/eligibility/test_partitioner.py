@@ -292,3 +292,21 @@ def test_a_value_that_has_no_order_with_a_limit_does_not_pass_it(path: str) -> N
     values = ('"2024-01-01"^^xsd:date', "true", '"10"^^:own', "10.5")
     ads = [f":c{number} a sc:Component, :Lamp ; :p {value} ." for number, value in enumerate(values)]
     assert names(partitioner(text).partition(read(ads))) == [["c3"]]
+
+
+def test_a_partition_tells_which_free_parameters_a_shape_mentions_whatever_components_state() -> None:
+    text = """
+        :t a sc:Template ; sc:roles ( :one :two ) ; sc:parameter :par , :other .
+        :par a sc:Parameter ; sc:name "par" . :other a sc:Parameter ; sc:name "other" .
+        :one a sc:Role ; sh:class :Other ; sh:property [ sh:path rob:place ; sh:in ( :other ) ] ;
+            sh:property [ sh:path rob:support ; sh:in ( :par ) ] .
+        :two a sc:Role ; sh:class :Other ; sh:property [ sh:path rob:support ; sh:hasValue :par ] .
+    """
+    ecology = read([":silent a sc:Component, :Other ."])
+    free = partitioner(text).partition(ecology)
+    assert [[mention.parameter for mention in role] for role in free.mentions] == [
+        [iri("other"), iri("par")],
+        [iri("par")],
+    ]
+    bound = partitioner(text, bound=(("par", ":Astrid"), ("other", ":here"))).partition(ecology)
+    assert bound.mentions == ()
