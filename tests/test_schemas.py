@@ -258,6 +258,21 @@ def test_a_refusal_for_what_other_tasks_hold_keeps_to_the_schema(
     assert body["held"] == [{"component": screen, "task": "watch", "priority": 2, "since": 1.5, "configurator": "c1"}]
 
 
+def test_a_value_that_components_to_add_share_keeps_to_the_schema(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shape = "sh:property [ sh:path :on ; sh:in ( :robot ) ]"
+    (tmp_path / "t.ttl").write_text(
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:t:> .\n"
+        ':t a sc:Template ; sc:roles ( :eye :ear ) ; sc:parameter :robot . :robot a sc:Parameter ; sc:name "robot" .\n'
+        f":eye a sc:Role ; sh:class :Eye ; {shape} . :ear a sc:Role ; sh:class :Ear ; {shape} .\n"
+    )
+    (tmp_path / "ad.ttl").write_text("@prefix sc: <https://w3id.org/selfconf#> . <urn:t:e> a sc:Component .\n")
+    body = printed(capsys, "configure", str(tmp_path / "t.ttl"), "--ads", str(tmp_path / "ad.ttl"))
+    validator("configure").validate(body)
+    assert [one.get("shared") for one in body["repairs"] if one["code"] == "add-components"] == [["robot"]]
+
+
 @pytest.mark.usefixtures("asked_here")
 def test_every_kind_of_term_keeps_to_the_schema_of_solutions(capsys: pytest.CaptureFixture[str]) -> None:
     query = 'SELECT * { VALUES (?a ?b ?c) { (<x:y> "text" "Wort"@de) (UNDEF UNDEF 1.5) } BIND(BNODE() AS ?d) }'

@@ -70,6 +70,8 @@ class AddComponents:
 
     code: ClassVar[str] = "add-components"
     additions: tuple[Addition, ...]
+    shared: tuple[str, ...] = ()
+    """The free parameters, by name, of which all of them have to state one value, whichever that is."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the role or component to be changed is described, if that is known."""
 
@@ -79,7 +81,12 @@ class AddComponents:
         return self.additions[0].role
 
     def __str__(self) -> str:
-        return f"add {listed(map(str, self.additions))}"
+        return f"add {listed(map(str, self.additions))}{self._sharing}"
+
+    @property
+    def _sharing(self) -> str:
+        all_ = "both" if sum(one.count for one in self.additions) == 2 else "all"
+        return "".join(f", with one {name} for {all_}" for name in self.shared)
 
 
 @immutable

@@ -160,7 +160,8 @@ def _additions(repair: Relaxation) -> dict[str, Any]:
                 "values": {name: value_body(value) for name, value in one.values},
             }
             for one in repair.additions
-        ]
+        ],
+        **({"shared": list(repair.shared)} if repair.shared else {}),
     }
 
 

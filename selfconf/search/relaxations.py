@@ -26,8 +26,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss
-from selfconf.model.profile import CALL_MARK, Input, Output, Ports, Profile, WantedSignal
+from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.profile import CALL_MARK, Input, Output, Ports, WantedSignal
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.relaxation import (
     AcceptNearMiss,
@@ -44,6 +44,7 @@ from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.explain import FeasibilityOracle, core
+from selfconf.search.newcomers import ADDITION, newcomer, with_mentioned_variables, with_values
 from selfconf.search.problem import Link, Problem
 from selfconf.search.recruiting import first_recruited, possible_with_recruits
 from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
@@ -71,8 +72,6 @@ MOST_ROLES = 8
 """How many roles of a conflict are tried with a smaller count; where more clash, that is no advice."""
 MOST_ADDED = 200
 """How many components are asked for at most; a task that lacks more has asked for too many."""
-ADDITION = "urn:selfconf:addition:"
-"""What the names of added components begin with, which do not exist yet."""
 
 NearMisses = Sequence[tuple[NearMiss, Candidate]]
 """Near misses, each with the candidate that it would be."""
@@ -103,7 +102,7 @@ def relaxations(
 def _with_recruits(problem: Problem, relaxation: Relaxation) -> Relaxation | None:
     """Return a change as it has to be for players that have recruits; None if there are none."""
     changed = relaxed_by(problem, relaxation)
-    if isinstance(relaxation, AddRecruits) or not isinstance(relaxation, AddComponents) or not problem.variables:
+    if isinstance(relaxation, AddRecruits) or not isinstance(relaxation, AddComponents) or not changed.variables:
         return relaxation if possible_with_recruits(changed, RECRUIT_TRIAL_STEPS) else None
     found = first_recruited(changed, RECRUIT_TRIAL_STEPS)
     if not isinstance(found, Configuration):
@@ -112,7 +111,7 @@ def _with_recruits(problem: Problem, relaxation: Relaxation) -> Relaxation | Non
         [candidate for candidate in some if candidate.profile.component in one.components]
         for some, one in zip(changed.candidates, found.assignments, strict=True)
     ]
-    return _with_values(problem, relaxation, playing)
+    return with_values(changed, relaxation, playing)
 
 
 def _relaxations(
@@ -143,10 +142,11 @@ def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
     if isinstance(relaxation, AddRecruits):
         return with_more_recruits(problem, relaxation)
     if isinstance(relaxation, AddComponents):
+        problem = with_mentioned_variables(problem)
         more: dict[IRI, list[Candidate]] = {}
         for addition in relaxation.additions:
             some = more.setdefault(addition.role, [])
-            some += [_newcomer(problem, addition.role, len(some) + k, addition.outputs) for k in range(addition.count)]
+            some += [newcomer(problem, addition.role, len(some) + k, addition.outputs) for k in range(addition.count)]
         return _with_candidates(problem, more)
     if isinstance(relaxation, AcceptNearMiss):
         return _with_candidates(problem, {relaxation.role: [relaxation.candidate]})
@@ -205,12 +205,6 @@ def _with_candidates(problem: Problem, more: dict[IRI, list[Candidate]]) -> Prob
     return Problem(problem.task, replace(problem.partition, candidates=candidates), problem.hierarchy)
 
 
-def _newcomer(problem: Problem, role: IRI, number: int, outputs: tuple[Output, ...]) -> Candidate:
-    name = IRI(f"{ADDITION}{number}:{role}")
-    ports = Ports(outputs=supposed(outputs))
-    return Candidate(Profile(name, ports=ports), tuple(ANY_VALUE for _ in problem.variables))
-
-
 Added = Counter[tuple[int, tuple[Output, ...]]]
 """How many components are added for each role and choice of outputs."""
 
@@ -221,6 +215,7 @@ Works = Callable[[AddComponents], bool]
 
 def _additions(problem: Problem, budget: Budget, works: Works) -> AddComponents | None:
     """Return the fewest components to add, if a few are enough: breadth-first search over sets of additions."""
+    problem = with_mentioned_variables(problem)
     lacking = _lacking(problem)
     if lacking is None:
         return None
@@ -369,7 +364,7 @@ def _trimmed(
             if not works(_asked(problem, trial)):
                 continue
             left, playing, added = fewer, changed, trial
-    return _with_values(problem, _asked(problem, added), playing)
+    return with_values(problem, _asked(problem, added), playing)
 
 
 def _without(candidate: Candidate, known: tuple[Output, ...], outputs: tuple[Output, ...]) -> Candidate:
@@ -378,26 +373,6 @@ def _without(candidate: Candidate, known: tuple[Output, ...], outputs: tuple[Out
     if not profile.component.startswith(ADDITION) or profile.outputs != supposed(known):
         return candidate
     return replace(candidate, profile=replace(profile, ports=Ports(profile.inputs, supposed(outputs))))
-
-
-def _with_values(problem: Problem, asked: AddComponents, playing: list[list[Candidate]]) -> AddComponents:
-    """Return additions with the values of free parameters that the others leave, where the role speaks of them."""
-    names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
-    left = list(problem.open_values)
-    for candidate in itertools.chain(*playing):
-        left = [value & allowed for value, allowed in zip(left, candidate.admits, strict=True)]
-    index = {role.iri: number for number, role in enumerate(problem.roles)}
-    found = []
-    for addition in asked.additions:
-        mentioned = {mention.parameter for mention in problem.partition.mentioned(index[addition.role])}
-        values = tuple(
-            (names[variable.parameter], value)
-            for number, variable in enumerate(problem.variables)
-            if left[number] > 0 and (value := variable.first(left[number])) is not None
-            if variable.parameter in mentioned
-        )
-        found.append(replace(addition, values=values))
-    return AddComponents(tuple(found))
 
 
 def _unfed(refused: Refusal) -> list[InputFed]:

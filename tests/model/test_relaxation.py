@@ -44,6 +44,11 @@ WORDED: list[tuple[Relaxation, str]] = [
         "add one more component for the role eye that issues Image and offers an operation -> Image",
     ),
     (
+        AddComponents((Addition(EYE, 1), Addition(MIND, 1)), ("robot",)),
+        "add one more component for the role eye and one more component for the role mind, with one robot for both",
+    ),
+    (AddComponents((Addition(EYE, 3),), ("robot",)), "add 3 more components for the role eye, with one robot for all"),
+    (
         AddComponents((Addition(EYE, 2, (Output("reset()", ()),), frozenset(("reset()",))),)),
         "add 2 more components for the role eye that offer an operation by the name 'reset'",
     ),

@@ -74,14 +74,14 @@ def followed(repair: Relaxation, template: str, about: dict[str, str]) -> tuple[
     """What an author has who does what a repair says: the words are all that is looked at."""
     said, about, new = str(repair), dict(about), []
     if isinstance(repair, AddComponents):
-        parts = said.removeprefix("add ")
+        parts, *shared = re.split(r", with one robot for (?:both|all)$", said.removeprefix("add "))
         for number, role, recruited, issues, robot in ADDED.findall(parts):
             outputs = {}
             for signal, name in ISSUED.findall(issues.replace(" and ", ", ")) if issues else ():
                 outputs[name or f"any{len(outputs)}"] = signal
             for k in range(1 if number == "one" else int(number)):
                 kind = "helper" if recruited else role
-                new.append(component(f"new{role}{len(new)}{k}", kind, {}, outputs, robot or None))
+                new.append(component(f"new{role}{len(new)}{k}", kind, {}, outputs, robot or ("C" if shared else None)))
     elif isinstance(repair, AddInteraction):
         source, sink = re.findall(r"the role (\w+)", said)
         template += f"\n:{source} sc:feeds :{sink} ."
