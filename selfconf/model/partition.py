@@ -41,6 +41,21 @@ class Mention:
     """A free parameter that the shape of a role mentions, so that it matters what a component states for it."""
 
     parameter: IRI
+    only: frozenset[Term] | None = None
+    """The values that the rest of the shape permits a component to state for it; None if these are not listed."""
+    never: frozenset[Term] = frozenset()
+    """Of the values that candidates state, those that the rest of the shape does not permit."""
+    required: bool = False
+    """Whether a component has to state a value for it."""
+
+    def beside(self, other: Mention) -> Mention:
+        """What is asked by this and another mention of the same parameter together."""
+        only = other.only if self.only is None else self.only if other.only is None else self.only & other.only
+        return Mention(self.parameter, only, self.never | other.never, self.required or other.required)
+
+    def among(self, values: frozenset[Term]) -> Mention:
+        """The mention if only some values may be stated."""
+        return replace(self, only=values)
 
 
 @immutable
@@ -95,6 +110,8 @@ class Partition:
     """The components that may be recruited, in the order in which they are preferred; none where no role recruits."""
     mentions: tuple[tuple[Mention, ...], ...] = ()
     """For each role the free parameters that its shape mentions, whether or not any candidate states a value."""
+    contradictory: frozenset[int] = frozenset()
+    """The roles, by number, whose shape contradicts itself: no component can be eligible for one."""
 
     def mentioned(self, role: int) -> tuple[Mention, ...]:
         """The free parameters that the shape of a role, given by its number, mentions."""

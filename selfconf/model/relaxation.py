@@ -25,8 +25,8 @@ class Addition:
     outputs: tuple[Output, ...] = ()
     named: frozenset[str] = frozenset()
     """The names of outputs that an interaction asks for; the others may be called anything."""
-    values: tuple[tuple[str, Term], ...] = ()
-    """Of free parameters, by name, the value that each component must admit."""
+    values: tuple[tuple[str, Term | None], ...] = ()
+    """Of free parameters, by name, the value that each component must admit; None if it must not state any."""
 
     def __str__(self) -> str:
         return self.worded("")
@@ -41,7 +41,10 @@ class Addition:
             if any(_is_operation(output) is called for output in self.outputs)
         ]
         issuing = f" that {listed(clauses)}" if clauses else ""
-        values = "".join(f", with {name} {in_words((value,))}" for name, value in self.values)
+        values = "".join(
+            f", with no {name}" if value is None else f", with {name} {in_words((value,))}"
+            for name, value in self.values
+        )
         return f"{number} for the role {self.role.short}{purpose}{issuing}{values}"
 
     def _ports(self, outputs: Sequence[Output]) -> str:

@@ -157,7 +157,7 @@ def _additions(repair: Relaxation) -> dict[str, Any]:
                     }
                     for o in one.outputs
                 ],
-                "values": {name: value_body(value) for name, value in one.values},
+                "values": {name: None if value is None else value_body(value) for name, value in one.values},
             }
             for one in repair.additions
         ],

@@ -1,9 +1,10 @@
 """Components that are yet to be added, as candidates, and the values of free parameters that they have to suit.
 
-A component that does not exist yet suits any value of a parameter; but one that is made for a role whose shape mentions
-the parameter will state one. Where what else plays leaves a few values, one of these is what it should state. Where it
-leaves any, several such components have to share one. For the latter a parameter that nobody has stated a value for has
-to be a variable as well.
+A component that states no value of a parameter suits any, and a trial supposes that of one that does not exist yet,
+unless the shape of its role asks for a value. But one that is made for a role whose shape mentions the parameter will
+mostly state one. Where what else plays leaves a few values, it should be one of these, if the shape permits that, and
+none otherwise. Where any are left, several such components have to share one. For the latter a parameter that nobody
+has stated a value for has to be a variable as well, and so have all values that shapes list.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from selfconf.model.partition import ANY_VALUE, Candidate, Variable
-from selfconf.model.profile import Output, Ports, Profile
+from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Variable
+from selfconf.model.profile import Ports, Profile
 from selfconf.model.relaxation import AddComponents, Addition
-from selfconf.model.term import IRI, Term
+from selfconf.model.term import IRI, Term, sort_key
 from selfconf.search.problem import Problem
 from selfconf.search.supposed_outputs import supposed
 
@@ -23,28 +24,61 @@ ADDITION = "urn:selfconf:addition:"
 """What the names of added components begin with, which do not exist yet."""
 
 
-def newcomer(problem: Problem, role: IRI, number: int, outputs: Sequence[Output]) -> Candidate:
-    """Return a component to be added for a role, the one of some number, which issues some outputs."""
-    ports = Ports(outputs=supposed(outputs))
-    return Candidate(Profile(IRI(f"{ADDITION}{number}:{role}"), ports=ports), (ANY_VALUE,) * len(problem.variables))
+def newcomer(problem: Problem, addition: Addition, number: int) -> Candidate:
+    """Return one of the components to be added, under a name with some number.
+
+    It admits the values that the addition names, or what any component for the role may admit.
+    """
+    names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
+    named = dict(addition.values)
+    role = _index(problem)[addition.role]
+    admits = []
+    for variable in problem.variables:
+        mention, name = _mention(problem, role, variable), names[variable.parameter]
+        if name in named:
+            value = named[name]
+            admits.append(ANY_VALUE if value is None else 1 << variable.domain.index(value))
+        else:
+            admits.append(_statable(mention, variable) if mention is not None and mention.required else ANY_VALUE)
+    ports = Ports(outputs=supposed(addition.outputs))
+    return Candidate(Profile(IRI(f"{ADDITION}{number}:{addition.role}"), ports=ports), tuple(admits))
+
+
+def impossible(problem: Problem) -> set[int]:
+    """Return the roles, by number, for which no component can be added that would be eligible."""
+    found = set(problem.partition.contradictory)
+    for role, variable in itertools.product(range(len(problem.roles)), problem.variables):
+        mention = _mention(problem, role, variable)
+        if mention is not None and mention.required and not _statable(mention, variable):
+            found.add(role)
+    return found
 
 
 def with_mentioned_variables(problem: Problem) -> Problem:
     """Return a problem in which each free parameter that a shape mentions is a variable, though nobody states a value.
 
-    But for those that roles set something to, which without a value leave a role without components.
+    All values that shapes list for it are in its domain. But what roles also set something to keeps the values that are
+    stated, and has to have one; and what lists its values itself has all of them already.
     """
-    known = {variable.parameter for variable in problem.variables}
-    set_ = {parameter.iri for parameter in problem.task.template.parameters if parameter.is_set}
-    mentioned = {mention.parameter for mention in itertools.chain(*problem.partition.mentions)}
-    missing = sorted(mentioned - known - set_)
-    if not missing:
+    fixed = {parameter.iri for parameter in problem.task.template.parameters if parameter.is_set}
+    fixed |= {variable.parameter for variable in problem.variables if variable.listed}
+    listed: dict[IRI, set[Term]] = {}
+    for mention in itertools.chain(*problem.partition.mentions):
+        if mention.parameter not in fixed:
+            listed.setdefault(mention.parameter, set()).update(mention.only or ())
+    variables = [_wider(one, listed.pop(one.parameter, set())) for one in problem.variables]
+    more = [Variable(parameter, tuple(sorted(listed[parameter], key=sort_key))) for parameter in sorted(listed)]
+    if not more and tuple(variables) == problem.variables:
         return problem
-    more = (ANY_VALUE,) * len(missing)
-    candidates = tuple(tuple(replace(c, admits=(*c.admits, *more)) for c in some) for some in problem.candidates)
-    variables = (*problem.variables, *(Variable(parameter, ()) for parameter in missing))
-    partition = replace(problem.partition, candidates=candidates, variables=variables)
+    any_ = (ANY_VALUE,) * len(more)
+    candidates = tuple(tuple(replace(c, admits=(*c.admits, *any_)) for c in some) for some in problem.candidates)
+    partition = replace(problem.partition, candidates=candidates, variables=(*variables, *more))
     return Problem(problem.task, partition, problem.hierarchy)
+
+
+def without_values(asked: AddComponents) -> AddComponents:
+    """Return additions of which no values of parameters are known."""
+    return replace(asked, additions=tuple(replace(one, values=()) for one in asked.additions), shared=())
 
 
 def with_values(problem: Problem, asked: AddComponents, playing: Sequence[Sequence[Candidate]]) -> AddComponents:
@@ -53,24 +87,39 @@ def with_values(problem: Problem, asked: AddComponents, playing: Sequence[Sequen
     It matters to components for a role whose shape mentions the parameter.
     """
     names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
-    index = {role.iri: number for number, role in enumerate(problem.roles)}
-    values: list[dict[str, Term]] = [{} for _ in asked.additions]
+    index = _index(problem)
+    values: list[dict[str, Term | None]] = [{} for _ in asked.additions]
     shared = []
     for variable, left in zip(problem.variables, _left(problem, playing), strict=True):
-        name = names[variable.parameter]
-        stating = [n for n, one in enumerate(asked.additions) if _mentions(problem, index[one.role], variable)]
+        name, stating = names[variable.parameter], []
+        for number, one in enumerate(asked.additions):
+            mention = _mention(problem, index[one.role], variable)
+            if mention is None:
+                continue
+            if not left & _statable(mention, variable):
+                values[number][name] = None
+                continue
+            left &= _statable(mention, variable)
+            stating.append(number)
         value = variable.first(left)
         if value is not None:
             for number in stating:
                 values[number][name] = value
         elif sum(asked.additions[number].count for number in stating) > 1:
             shared.append(name)
-    additions = tuple(_with(one, some) for one, some in zip(asked.additions, values, strict=True))
+    additions = tuple(
+        replace(one, values=tuple(some.items())) for one, some in zip(asked.additions, values, strict=True)
+    )
     return replace(asked, additions=additions, shared=tuple(shared))
 
 
-def _with(addition: Addition, values: dict[str, Term]) -> Addition:
-    return replace(addition, values=tuple(values.items()))
+def _index(problem: Problem) -> dict[IRI, int]:
+    return {role.iri: number for number, role in enumerate(problem.roles)}
+
+
+def _wider(variable: Variable, values: set[Term]) -> Variable:
+    """Return a variable with further values behind those of its domain, so that masks of candidates stay right."""
+    return replace(variable, domain=(*variable.domain, *sorted(values.difference(variable.domain), key=sort_key)))
 
 
 def _left(problem: Problem, playing: Sequence[Sequence[Candidate]]) -> Iterator[int]:
@@ -84,5 +133,14 @@ def _left(problem: Problem, playing: Sequence[Sequence[Candidate]]) -> Iterator[
         yield known if mask != ANY_VALUE and known else mask
 
 
-def _mentions(problem: Problem, role: int, variable: Variable) -> bool:
-    return any(mention.parameter == variable.parameter for mention in problem.partition.mentioned(role))
+def _mention(problem: Problem, role: int, variable: Variable) -> Mention | None:
+    """Return what the shape of a role says of a variable, if it mentions it."""
+    mentioned = problem.partition.mentioned(role)
+    return next((mention for mention in mentioned if mention.parameter == variable.parameter), None)
+
+
+def _statable(mention: Mention, variable: Variable) -> int:
+    """Return the values that a component may state for a variable, as a mask."""
+    if mention.only is None:
+        return ANY_VALUE & ~sum(1 << bit for bit, value in enumerate(variable.domain) if value in mention.never)
+    return sum(1 << bit for bit, value in enumerate(variable.domain) if value in mention.only - mention.never)

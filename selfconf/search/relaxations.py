@@ -44,7 +44,14 @@ from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.explain import FeasibilityOracle, core
-from selfconf.search.newcomers import ADDITION, newcomer, with_mentioned_variables, with_values
+from selfconf.search.newcomers import (
+    ADDITION,
+    impossible,
+    newcomer,
+    with_mentioned_variables,
+    with_values,
+    without_values,
+)
 from selfconf.search.problem import Link, Problem
 from selfconf.search.recruiting import first_recruited, possible_with_recruits
 from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
@@ -101,7 +108,7 @@ def relaxations(
 
 def _with_recruits(problem: Problem, relaxation: Relaxation) -> Relaxation | None:
     """Return a change as it has to be for players that have recruits; None if there are none."""
-    changed = relaxed_by(problem, relaxation)
+    changed = relaxed_by(problem, without_values(relaxation) if isinstance(relaxation, AddComponents) else relaxation)
     if isinstance(relaxation, AddRecruits) or not isinstance(relaxation, AddComponents) or not changed.variables:
         return relaxation if possible_with_recruits(changed, RECRUIT_TRIAL_STEPS) else None
     found = first_recruited(changed, RECRUIT_TRIAL_STEPS)
@@ -146,7 +153,7 @@ def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
         more: dict[IRI, list[Candidate]] = {}
         for addition in relaxation.additions:
             some = more.setdefault(addition.role, [])
-            some += [newcomer(problem, addition.role, len(some) + k, addition.outputs) for k in range(addition.count)]
+            some += [newcomer(problem, addition, len(some) + k) for k in range(addition.count)]
         return _with_candidates(problem, more)
     if isinstance(relaxation, AcceptNearMiss):
         return _with_candidates(problem, {relaxation.role: [relaxation.candidate]})
@@ -220,7 +227,7 @@ def _additions(problem: Problem, budget: Budget, works: Works) -> AddComponents 
     if lacking is None:
         return None
     recruiting = any(role.recruits for role in problem.roles)
-    choices = [wanted_of(problem, role) for role in range(len(problem.roles))]
+    choices = _choices(problem)
     waiting = _lacked(lacking, choices)
     seen = {frozenset[object](added.items()) for added in waiting}
     for added in itertools.islice(waiting, TRIALS):  # which grows meanwhile
@@ -235,6 +242,12 @@ def _additions(problem: Problem, budget: Budget, works: Works) -> AddComponents 
         helpful = _helpful(changed, budget) if playing is None else _feeding_first(changed)
         waiting += _with_one_more(added, [(role, outputs) for role in helpful for outputs in choices[role]], seen)
     return None
+
+
+def _choices(problem: Problem) -> list[list[tuple[Output, ...]]]:
+    """Return for each role the choices of outputs for a component to be added; none where none could be eligible."""
+    closed = impossible(problem)
+    return [[] if role in closed else wanted_of(problem, role) for role in range(len(problem.roles))]
 
 
 def _with_one_more(

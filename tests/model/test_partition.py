@@ -57,3 +57,11 @@ def test_what_shapes_mention_stays_whatever_is_lost() -> None:
     assert partition.without(frozenset({IRI("urn:a")})).mentioned(0) == (mention,)
     assert partition.without(frozenset({IRI("urn:b")})).mentioned(0) == (mention,)
     assert partition.mentioned(1) == ()  # what is outside of a composite is no role of its template
+
+
+def test_two_mentions_of_a_parameter_ask_for_what_both_ask_for() -> None:
+    p, (x, y, z) = IRI("urn:p"), (IRI(f"urn:{name}") for name in "xyz")
+    some, other = Mention(p, frozenset((x, y)), frozenset((z,))), Mention(p, frozenset((y, z)), required=True)
+    assert some.beside(other) == Mention(p, frozenset((y,)), frozenset((z,)), True)
+    assert some.beside(Mention(p)) == Mention(p).beside(some) == some
+    assert some.among(frozenset((x,))) == Mention(p, frozenset((x,)), frozenset((z,)))

@@ -47,6 +47,10 @@ WORDED: list[tuple[Relaxation, str]] = [
         AddComponents((Addition(EYE, 1), Addition(MIND, 1)), ("robot",)),
         "add one more component for the role eye and one more component for the role mind, with one robot for both",
     ),
+    (
+        AddComponents((Addition(EYE, 1, values=(("robot", iri("Pippi")), ("spot", None))),)),
+        "add one more component for the role eye, with robot Pippi, with no spot",
+    ),
     (AddComponents((Addition(EYE, 3),), ("robot",)), "add 3 more components for the role eye, with one robot for all"),
     (
         AddComponents((Addition(EYE, 2, (Output("reset()", ()),), frozenset(("reset()",))),)),

@@ -19,8 +19,8 @@ PREFIXES = """\
 @prefix : <urn:t:> .
 """
 ADDED = re.compile(
-    r"(one|\d+) more components? for the role (\w+)( to recruit)?(?: that issues? (.*?))?(?:, with robot (\w+))?"
-    r"(?=$|(?:,| and) (?:one|\d+) more)"
+    r"(one|\d+) more components? for the role (\w+)( to recruit)?(?: that issues? (.*?))?"
+    r"(?:, with robot (\w+)|, with no robot)?(?=$|(?:,| and) (?:one|\d+) more)"
 )
 ISSUED = re.compile(r"(\w+)(?: by the output '(\w+)')?")
 

@@ -35,6 +35,7 @@ from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
 from selfconf.rdf.eligibility.judgements import Judgements, Values, Violations
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
+from selfconf.rdf.eligibility.statable_values import contradictory, mentions_of, stated_on_paths
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
@@ -133,7 +134,7 @@ class Partitioner:
             tuple(ordered([Candidate(one.profile, admits(one)) for one in role]) for role in eligible),
             variables,
             self._recruits(ecology),
-            tuple(map(self._mentions, self.roles)) if self.free else (),
+            *self._mentions(variables),
         )
         judged = self._acceptance.judged(
             self.task.template, found, lambda component: tuple(self.visible([ecology[component]]))
@@ -255,9 +256,16 @@ class Partitioner:
             )
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
 
-    def _mentions(self, role: CompiledRole) -> tuple[Mention, ...]:
-        """The free parameters that the shape of a role mentions."""
-        return tuple(map(Mention, sorted(mentions(self.document, role.iri, self.free))))
+    def _mentions(self, variables: Iterable[Variable]) -> tuple[tuple[tuple[Mention, ...], ...], frozenset[int]]:
+        """The free parameters that the shape of each role mentions, and the roles whose shape contradicts itself."""
+        known = {variable.parameter: variable.domain for variable in variables}
+        paths = [stated_on_paths(role.tests, self.hierarchy) for role in self.roles]
+        found = tuple(
+            mentions_of(sorted(mentions(self.document, role.iri, self.free)), some, known, self.suitable.of)
+            for role, some in zip(self.roles, paths, strict=True)
+        )
+        wrong = frozenset(n for n, (some, one) in enumerate(zip(paths, found, strict=True)) if contradictory(some, one))
+        return found if self.free else (), wrong
 
     def mentioned(self, role: CompiledRole) -> IRI | None:
         """The free parameter that the shape of a role mentions, if it does."""
