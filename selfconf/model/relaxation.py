@@ -156,13 +156,16 @@ class AddInteraction:
 
 @immutable
 class AcceptNearMiss:
-    """A component that was kept out by one thing would make the task possible."""
+    """A role that takes a component, as it is, which one thing keeps out makes the task possible.
+
+    To change the component instead may not be enough: another constraint of the role may then fail.
+    """
 
     code: ClassVar[str] = "accept-near-miss"
     near: NearMiss
     candidate: Candidate = field(repr=False)
     place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component to be changed is described, if that is known."""
+    """Where the component is described, if that is known."""
 
     @property
     def role(self) -> IRI:
@@ -170,7 +173,7 @@ class AcceptNearMiss:
         return self.near.role
 
     def __str__(self) -> str:
-        return f"let {self.near.component.short} play {self.near.role.short}, although {self.near}"
+        return f"let the role {self.near.role.short} take {self.near.component.short}, although {self.near}"
 
 
 Relaxation = AddComponents | AddRecruits | AskForFewer | AddInteraction | LetRecruit | AcceptNearMiss

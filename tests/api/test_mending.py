@@ -19,7 +19,9 @@ ECOLOGY = {one.component: one for one in map(advertisement, ADVERTISEMENTS.value
 
 def test_a_refusal_is_told_with_what_would_mend_it() -> None:
     told = what_would_mend(record(), ECOLOGY, {iri("astrid-drive")})
-    assert "let pippi-drive play drive, although its support is Pippi, not Astrid" in json.dumps(told["repairs"])
+    assert "let the role drive take pippi-drive, although its support is Pippi, not Astrid" in json.dumps(
+        told["repairs"]
+    )
     assert "no component is eligible for the role drive" in json.dumps(told["reasons"])
 
 

@@ -24,7 +24,7 @@ from tests.lab import iri
 
 def test_a_repair_by_type_says_what_the_component_is_not() -> None:
     near = NearMiss(iri("r0"), iri("c1"), WrongType(iri("A1")))
-    assert str(AcceptNearMiss(near, Candidate(Profile(iri("c1"))))) == "let c1 play r0, although it is no A1"
+    assert str(AcceptNearMiss(near, Candidate(Profile(iri("c1"))))) == "let the role r0 take c1, although it is no A1"
 
 
 EYE, MIND = iri("eye"), iri("mind")
@@ -74,7 +74,7 @@ WORDED: list[tuple[Relaxation, str]] = [
     (LetRecruit(EYE, ()), "let the role eye recruit (sc:recruits true): no recruit would be needed"),
     (
         AcceptNearMiss(NearMiss(EYE, iri("cap"), WrongType(iri("Eye"))), Candidate(Profile(iri("cap")))),
-        "let cap play eye, although it is no Eye",
+        "let the role eye take cap, although it is no Eye",
     ),
 ]
 

@@ -75,7 +75,7 @@ def test_a_near_miss_that_would_do_is_offered_first() -> None:
     candidate = Candidate(component("tracker", outputs="p:Pose"))
     offered = with_relaxations(given_, refused, [(near, candidate)]).repairs[0]
     assert isinstance(offered, AcceptNearMiss)
-    assert str(offered) == "let tracker play position, although its support is Pippi, not Astrid"
+    assert str(offered) == "let the role position take tracker, although its support is Pippi, not Astrid"
 
 
 def test_a_near_miss_that_is_the_first_of_its_class_elsewhere_is_distinguished() -> None:

@@ -49,7 +49,7 @@ def test_what_would_mend_a_task_is_told_or_why_not(lab: Lab, board: Board, monke
     board.apply(EcologyChange(tasks={task: {"lost": {iri("astrid-drive"): {}}}, "old": {}}))
     told = mended(lab, board, task)
     assert [one["role"] for one in told["reasons"]] == [iri("drive")]
-    assert any("let pippi-drive play drive" in one["message"] for one in told["repairs"])
+    assert any("let the role drive take pippi-drive" in one["message"] for one in told["repairs"])
     assert mended(lab, board, "old") == {"detail": "its configurator has not told its task"}
     monkeypatch.setattr(mends, "MENDING", 0.01)
     assert mended(lab, board, task) == {"detail": "what would mend it was not found in 0.01 s"}

@@ -96,6 +96,16 @@ def test_what_looks_alike_is_told_apart() -> None:
     ]
 
 
+def test_a_role_may_take_what_no_change_of_its_statement_would_make_eligible() -> None:
+    on = "sh:property [ sh:path :place ; sh:in ( {} ) ]"
+    one, robot = on.format(":P1"), on.format(":robot")
+    text = f"{ROBOT} sh:nodeKind sh:IRI . :t sc:roles ( :a :b ) . :a a sc:Role ; sh:class :A ; {one} ; {robot} . "
+    text += f":b a sc:Role ; sh:class :B ; {robot} ."
+    ecology = ":a1 a sc:Component, :A ; :place :P0 .", ":b1 a sc:Component, :B ; :place :P0 ."
+    # In P1 it would be on another robot than b1.
+    assert repairs(text, *ecology) == ["let the role a take a1, although its place is P0, not P1"]
+
+
 def test_a_near_miss_brings_along_the_values_that_it_allows() -> None:
     power = "sh:property [ sh:path :power ; sh:minInclusive 5 ] ;"
     on = "sh:property [ sh:path :support ; sh:in ( :robot ) ]"
@@ -104,8 +114,10 @@ def test_a_near_miss_brings_along_the_values_that_it_allows() -> None:
     weak, other = ":a1 a sc:Component, :A ; :power 3 ; :support :X .", ":b1 a sc:Component, :B ; :support "
     assert near(text, weak) == [("a1", "its power is 3, not at least 5")]
     assert repairs(text, weak, f"{other} :Y .") == []
-    assert repairs(text, weak, f"{other} :X .") == ["let a1 play a, although its power is 3, not at least 5"]
-    assert repairs(text, weak, ":b1 a sc:Component, :B .") == ["let a1 play a, although its power is 3, not at least 5"]
+    assert repairs(text, weak, f"{other} :X .") == ["let the role a take a1, although its power is 3, not at least 5"]
+    assert repairs(text, weak, ":b1 a sc:Component, :B .") == [
+        "let the role a take a1, although its power is 3, not at least 5"
+    ]
     judged = text.replace(power, "sh:property [ sh:path [ sh:inversePath [ sh:inversePath :power ] ] ; sh:in ( 5 ) ] ;")
     assert repairs(judged, weak, f"{other} :Y .") == []
     assert len(repairs(judged, weak, f"{other} :X .")) == 1
