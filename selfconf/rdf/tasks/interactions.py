@@ -13,8 +13,16 @@ from selfconf.rdf.vocabulary import SC, TYPE
 
 
 def interactions_of(document: Document, roles: tuple[Role, ...]) -> tuple[Interaction, ...]:
-    """The interactions of a template with some roles, each once. Raises TemplateError."""
+    """The interactions of a template with some roles, each once, by these roles and then by the names of the ports.
+
+    Raises TemplateError.
+    """
     return _InteractionReader(document).interactions(roles)
+
+
+def _names(interaction: Interaction) -> tuple[str, str]:
+    """The names of the ports that an interaction names; empty where it names none."""
+    return interaction.output or "", interaction.input or ""
 
 
 class _InteractionReader(DocumentReader):
@@ -22,7 +30,10 @@ class _InteractionReader(DocumentReader):
 
     def interactions(self, roles: tuple[Role, ...]) -> tuple[Interaction, ...]:
         known = frozenset(role.iri for role in roles)
-        return tuple(dict.fromkeys((*self._short(roles, known), *self._long(known))))
+        found = {*self._short(roles, known), *self._long(known)}
+        number = {role.iri: position for position, role in enumerate(roles)}
+        # Which of several reasons or changes is told first depends on this order, and must not on that of the triples.
+        return tuple(sorted(found, key=lambda one: (number[one.source], number[one.sink], *_names(one))))
 
     def _short(self, roles: tuple[Role, ...], known: frozenset[IRI]) -> Iterator[Interaction]:
         for role in roles:

@@ -25,7 +25,7 @@ def test_roles_of_which_nothing_is_said_do_not_feed_each_other() -> None:
 
 
 def test_the_short_form_leaves_the_ports_open() -> None:
-    assert interactions(":eye sc:feeds :mind , :eye .") == (Interaction(EYE, MIND), Interaction(EYE, EYE))
+    assert interactions(":eye sc:feeds :mind , :eye .") == (Interaction(EYE, EYE), Interaction(EYE, MIND))
 
 
 def test_the_long_form_may_name_one_port_or_both() -> None:
@@ -40,6 +40,22 @@ def test_what_is_said_in_both_forms_is_one_interaction() -> None:
 def test_two_roles_may_be_connected_by_several_pairs_of_ports() -> None:
     found = interactions(f'{LONG} ; sc:output "left" . {LONG} ; sc:output "right" .')
     assert {interaction.output for interaction in found} == {"left", "right"}
+
+
+def test_interactions_are_in_the_order_of_the_roles_and_of_the_names_of_ports_wherever_they_stand() -> None:
+    said = [f'{LONG} ; sc:{port} "{name}" .' for port in ("output", "input") for name in "ab"]
+    said += [":eye sc:feeds :mind .", ":mind sc:feeds :eye , :mind ."]
+    found = interactions(" ".join(said))
+    assert found == interactions(" ".join(reversed(said)))
+    assert [(one.source, one.sink, one.output, one.input) for one in found] == [
+        (EYE, MIND, None, None),
+        (EYE, MIND, None, "a"),
+        (EYE, MIND, None, "b"),
+        (EYE, MIND, "a", None),
+        (EYE, MIND, "b", None),
+        (MIND, EYE, None, None),
+        (MIND, MIND, None, None),
+    ]
 
 
 def test_a_connection_of_a_configuration_is_no_interaction() -> None:
