@@ -64,7 +64,8 @@ def _is_operation(output: Output) -> bool:
 
 def _signal(output: Output) -> str:
     shape = " as the sc:accepts of its input asks" if output.conforms else ""
-    return f"{output}{shape}"
+    article = "" if output.signals or output.is_operation else "a "
+    return f"{article}{output}{shape}"
 
 
 @immutable

@@ -44,6 +44,10 @@ WORDED: list[tuple[Relaxation, str]] = [
         "add one more component for the role eye that issues Image and offers an operation -> Image",
     ),
     (
+        AddComponents((Addition(EYE, 1, (Output("c", ()),), frozenset("c")),)),
+        "add one more component for the role eye that issues a signal without a type by the output 'c'",
+    ),
+    (
         AddComponents((Addition(EYE, 1), Addition(MIND, 1)), ("robot",)),
         "add one more component for the role eye and one more component for the role mind, with one robot for both",
     ),
