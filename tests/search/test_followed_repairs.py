@@ -16,37 +16,70 @@ from tests.effort import examples
 PREFIXES = """\
 @prefix sc: <https://w3id.org/selfconf#> .
 @prefix sh: <http://www.w3.org/ns/shacl#> .
+@prefix unit: <http://qudt.org/vocab/unit/> .
 @prefix : <urn:t:> .
 """
 ADDED = re.compile(
     r"(one|\d+) more components? for the role (\w+)( to recruit)?(?: that issues? (.*?))?"
-    r"(?:, with robot (\w+)|, with no robot)?(?=$|(?:,| and) (?:one|\d+) more)"
+    r"(?:, with robot (\w+)|, with (no robot))?(?=$|(?:,| and) (?:one|\d+) more)"
 )
-ISSUED = re.compile(r"(\w+)(?: by the output '(\w+)')?")
+SHARED = re.compile(r", with one robot for (?:both|all)$")
+ISSUED = re.compile(r"(\w+)(?: in (\w+))?( as the sc:accepts of its input asks)?(?: by the output '(\w+)')?(?:, |$)")
+IN_METRES = "sc:accepts [ sh:property [ sh:path sc:unit ; sh:hasValue unit:M ] ]"
+ANY_ROBOT = ("A", "B", "D")
+"""Values that a component may state where a repair leaves the choice; A is the value of a parameter that is bound."""
+PARAMETER_AS = {
+    "may": "sh:in ( :robot )",
+    "must": "sh:in ( :robot ) ; sh:minCount 1",
+    "value": "sh:hasValue :robot",
+}
 
 
-def ecology(rng: random.Random) -> tuple[str, dict[str, str]]:
-    """A template, whose interactions name ports, and where a parameter may be free, and statements of its roles.
+class Roles:
+    """What a template says of its roles, and how its parameter stands in their shapes, if it has one."""
+
+    def __init__(self, rng: random.Random, number: int) -> None:
+        self.bound = rng.random() < 0.15
+        self.parameter = self.bound or rng.random() < 0.4
+        self.about: dict[str, str] = {}
+        self.on: dict[str, tuple[str, list[str]]] = {}
+        """How the parameter stands in the shape of a role, if it does, and which values the role lists besides."""
+        for role in [f"r{k}" for k in range(number)]:
+            count = rng.choice(["", "", "", " ; sc:minCount 2", " ; sc:minCount 0"])
+            recruits = rng.choice(["", "", "", " ; sc:recruits true", " ; sc:recruits [ sh:class :HELPER ]"])
+            where = self._where(rng, role) if self.parameter and rng.random() < 0.7 else ""
+            self.about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where}{recruits} ."
+
+    def _where(self, rng: random.Random, role: str) -> str:
+        kind, listed = rng.choice(["may", "may", "must", "value"]), rng.choice(["", "", "A", "A B", "B C"]).split()
+        self.on[role] = kind, listed
+        where = f" ; sh:property [ sh:path :on ; {PARAMETER_AS[kind]} ]"
+        if listed:
+            where += f" , [ sh:path :on ; sh:in ( {' '.join(f':{one}' for one in listed)} ) ]"
+        return where
+
+    def stated(self, rng: random.Random, role: str) -> str | None:
+        """What a component states that is made for a role by its shape alone: any value that the shape permits."""
+        kind, listed = self.on.get(role, ("may", []))
+        may = [one for one in (ANY_ROBOT[:1] if self.bound else listed or ANY_ROBOT) if not listed or one in listed]
+        return rng.choice([*may, *([None] if kind == "may" else [])] or [None])
+
+
+def ecology(rng: random.Random) -> tuple[str, Roles]:
+    """A template, whose interactions name ports, and where a parameter may be free, and its roles.
 
     Some of these recruit.
     """
-    roles = [f"r{k}" for k in range(rng.randint(2, 4))]
-    free = rng.random() < 0.3
-    about = {}
-    for role in roles:
-        count = rng.choice(["", "", "", " ; sc:minCount 2", " ; sc:minCount 0"])
-        recruits = rng.choice(["", "", "", " ; sc:recruits true", " ; sc:recruits [ sh:class :HELPER ]"])
-        where = " ; sh:property [ sh:path :on ; sh:in ( :robot ) ]" if free and rng.random() < 0.7 else ""
-        about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where}{recruits} ."
-    listed = " ".join(f":{role}" for role in roles)
-    lines = [f":t a sc:Template ; sc:roles ( {listed} ) {'; sc:parameter :robot' * free} ."]
-    lines += [':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .'] * free
-    for _ in range(rng.randint(1, 2 * len(roles))):
-        source, sink = rng.sample(roles, 2)
+    roles = Roles(rng, rng.randint(2, 4))
+    listed = " ".join(f":{role}" for role in roles.about)
+    lines = [f":t a sc:Template ; sc:roles ( {listed} ) {'; sc:parameter :robot' * roles.parameter} ."]
+    lines += [':robot a sc:Parameter ; sc:name "robot" ; sh:nodeKind sh:IRI .'] * roles.parameter
+    for _ in range(rng.randint(1, 2 * len(roles.about))):
+        source, sink = rng.sample(list(roles.about), 2)
         output = rng.choice(["", "", ' ; sc:output "p"', ' ; sc:output "q"'])
         wanted = rng.choice(["", "", ' ; sc:input "p"'])
         lines.append(f"[] a sc:Interaction ; sc:from :{source} ; sc:to :{sink}{output}{wanted} .")
-    return "\n".join(lines), about
+    return "\n".join(lines), roles
 
 
 def component(name: str, role: str, inputs: dict[str, str], outputs: dict[str, str], on: str | None = None) -> str:
@@ -57,31 +90,52 @@ def component(name: str, role: str, inputs: dict[str, str], outputs: dict[str, s
 
 
 def components(rng: random.Random, roles: list[str]) -> list[str]:
-    """Advertisements for the roles, one or two for each, sometimes none."""
+    """Advertisements for the roles, one or two for each, sometimes none; in some, ports ask for units or have them."""
     found = []
+    units = rng.random() < 0.4
     for role in roles:
         for number in range(rng.choice([0, 1, 1, 1, 2])):
             inputs, outputs = (
                 {port: rng.choice("XYZ") for port in rng.sample("pqs", rng.choice([0, 0, 1, 2]))} for _ in range(2)
             )
+            if units:
+                asked = ["", "", " ; sc:unit unit:CentiM", f" ; {IN_METRES}"]
+                inputs = {port: signal + rng.choice(asked) for port, signal in inputs.items()}
+                outputs = {port: signal + rng.choice(["", " ; sc:unit unit:M"]) for port, signal in outputs.items()}
             # A name is one port, be it an input or an output.
             outputs = {port: signal for port, signal in outputs.items() if port not in inputs}
             found.append(component(f"c{role}{number}", role, inputs, outputs, rng.choice([None, "A", "B"])))
     return found
 
 
-def followed(repair: Relaxation, template: str, about: dict[str, str]) -> tuple[str, dict[str, str], list[str]]:
+def issued(words: str) -> dict[str, str]:
+    """The outputs, by name, of a component that issues what some words say, each with its unit."""
+    outputs: dict[str, str] = {}
+    for signal, unit, accepted, name in ISSUED.findall(words.replace(" and ", ", ")):
+        stated = f" ; sc:unit unit:{unit}" if unit else " ; sc:unit unit:M" if accepted else ""
+        outputs[name or f"any{len(outputs)}"] = signal + stated
+    return outputs
+
+
+def added(rng: random.Random, said: str, roles: Roles) -> list[str]:
+    """The components that a sentence asks for; of what it leaves open they state what their roles permit."""
+    said, found = said.removeprefix("add "), []
+    shared = SHARED.search(said) is not None
+    for number, role, recruited, issues, robot, no_robot in ADDED.findall(SHARED.sub("", said)):
+        for k in range(1 if number == "one" else int(number)):
+            kind = "helper" if recruited else role
+            on = robot or (None if no_robot or recruited else "D" if shared else roles.stated(rng, role))
+            found.append(component(f"new{role}{len(found)}{k}", kind, {}, issued(issues) if issues else {}, on))
+    return found
+
+
+def followed(
+    rng: random.Random, repair: Relaxation, template: str, roles: Roles
+) -> tuple[str, dict[str, str], list[str]]:
     """What an author has who does what a repair says: the words are all that is looked at."""
-    said, about, new = str(repair), dict(about), []
+    said, about, new = str(repair), dict(roles.about), []
     if isinstance(repair, AddComponents):
-        parts, *shared = re.split(r", with one robot for (?:both|all)$", said.removeprefix("add "))
-        for number, role, recruited, issues, robot in ADDED.findall(parts):
-            outputs = {}
-            for signal, name in ISSUED.findall(issues.replace(" and ", ", ")) if issues else ():
-                outputs[name or f"any{len(outputs)}"] = signal
-            for k in range(1 if number == "one" else int(number)):
-                kind = "helper" if recruited else role
-                new.append(component(f"new{role}{len(new)}{k}", kind, {}, outputs, robot or ("C" if shared else None)))
+        new = added(rng, said, roles)
     elif isinstance(repair, AddInteraction):
         source, sink = re.findall(r"the role (\w+)", said)
         template += f"\n:{source} sc:feeds :{sink} ."
@@ -99,9 +153,9 @@ def test_a_repair_that_is_followed_as_it_is_worded_works(tmp_path: Path) -> None
     rng = random.Random(14)
     tried = refusals = 0
     for number in range(examples(300)):
-        template, about = ecology(rng)
-        ads = components(rng, list(about))
-        refused = configured(tmp_path, template, about, ads)
+        template, roles = ecology(rng)
+        ads = components(rng, list(roles.about))
+        refused = configured(tmp_path, template, roles.about, ads, roles.bound)
         if not isinstance(refused, Refusal):
             continue
         refusals += 1
@@ -109,16 +163,16 @@ def test_a_repair_that_is_followed_as_it_is_worded_works(tmp_path: Path) -> None
             if isinstance(repair, AcceptNearMiss):
                 continue
             tried += 1
-            changed, roles, new = followed(repair, template, about)
-            outcome = configured(tmp_path, changed, roles, [*ads, *new])
-            assert not isinstance(outcome, Refusal), (number, str(repair), changed, roles, ads, new, outcome)
+            changed, about, new = followed(rng, repair, template, roles)
+            outcome = configured(tmp_path, changed, about, [*ads, *new], roles.bound)
+            assert not isinstance(outcome, Refusal), (number, str(repair), changed, about, ads, new, outcome)
     assert refusals >= examples(100)  # at night 2,000 of them
     assert tried > refusals
 
 
-def configured(folder: Path, template: str, about: dict[str, str], ads: list[str]) -> object:
-    """The answer to a template and advertisements, as files."""
+def configured(folder: Path, template: str, about: dict[str, str], ads: list[str], bound: bool = False) -> object:
+    """The answer to a template and advertisements, as files; the parameter is free, or bound to A."""
     (folder / "t.ttl").write_text(PREFIXES + template + "\n" + "\n".join(about.values()))
     (folder / "ads.ttl").write_text(PREFIXES + "\n".join(ads))
-    answer = selfconf.configure(selfconf.template(folder / "t.ttl"), selfconf.read(folder / "ads.ttl"))
-    return answer
+    read = selfconf.template(folder / "t.ttl")
+    return selfconf.configure(read.bind(robot=":A") if bound else read, selfconf.read(folder / "ads.ttl"))
