@@ -53,7 +53,9 @@ class Account:
             self.refused = True
             reasons = "; ".join(reason["message"] for reason in fact["refusal"]["reasons"])
             return f"{fact['time'] - self.began:8.3f} s         no configuration: {reasons}"
-        return f"{fact['time'] - self.began:8.3f} s  {fact['message']}" if fact["message"] else None
+        # What is no act, and no loss, stands below what the acts say.
+        below = "" if fact["message"].startswith(("act ", "LOST ")) else " " * 7
+        return f"{fact['time'] - self.began:8.3f} s  {below}{fact['message']}" if fact["message"] else None
 
     def _event(self, fact: dict[str, Any]) -> str | None:
         time = f"{fact['real'] - self.began:8.3f} s"
