@@ -190,6 +190,7 @@ def test_what_is_printed_about_random_ecologies_keeps_to_the_schema(
                 validator("configure").validate(body)
 
 
+@pytest.mark.slow
 def test_all_answers_that_are_recorded_keep_to_the_schema() -> None:
     """A record has a mark in place of each sentence, and of the seconds only which parts were timed."""
     judges = {name: validator(name) for name in SCHEMAS}

@@ -108,6 +108,7 @@ def outcome(strategy: Strategy, problem: Problem, running: Configuration | None 
     return last
 
 
+@pytest.mark.slow
 @given(ecologies(), st.data())
 @agreement(1.0 if NIGHTLY else 500 / 75)  # 500 for every push
 def test_everything_at_once_is_answered_as_enumeration_does(problem: Problem, data: st.DataObject) -> None:

@@ -107,6 +107,7 @@ def test_a_link_that_is_missing_is_found() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(relaxations, "TRIAL_STEPS", 100)
     given_ = problem({f"r{number}": [component(f"c{other}") for other in range(59)] for number in range(60)})
