@@ -85,19 +85,19 @@ def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Compos
             options.get("strategy") or "first",
             options.get("reasoning") or "syntactic",
             paths,
-            _number(options, "steps", int),
-            _number(options, "seconds", int, float),
+            options.get("steps"),
+            options.get("seconds"),
         )
         document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI(record.wanted))
         task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
         return task, method, method.composer(task)
 
 
-def _number(options: Mapping[str, Any], name: str, *kinds: type[int | float]) -> Any:
-    """A number, or None, of the options that a record has from the network. Raises PeerError for anything else."""
-    value = options.get(name)
-    if value is not None and (isinstance(value, bool) or not isinstance(value, kinds) or not value >= 0):
-        raise PeerError(f"the option {name!r} is no number of that kind: {value!r}")
+def _upgrade(options: Mapping[str, Any]) -> float | None:
+    """The seconds before a change for the better, if there is to be one. Raises PeerError for what is no time."""
+    value = options.get("upgrade")
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int | float) or not value >= 0):
+        raise PeerError(f"the option 'upgrade' is no number of seconds: {value!r}")
     return value
 
 
@@ -119,7 +119,7 @@ def request_of(record: TaskRecord, aside: Aside, believed: Beliefs | None = None
         policy=option(Policy, "policy", options.get("policy") or "repair"),
         patient=True,
         priority=record.priority,
-        upgrade=_number(options, "upgrade", int, float),
+        upgrade=_upgrade(options),
         believed=believed,
         aside=aside,
         record=record,

@@ -136,9 +136,8 @@ class LivingEcology(Ecology):
         """
         discovery = self.discover()
         asked = self._view.keys.any_call("state")
-        replies = (
-            Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATES)
-        )  # nobody would hear it
+        # Nobody would hear the question of those who may look on only.
+        replies = Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATES)
         found = []
         silent: list[str] = []
         for one in component_states(discovery, self._view.keys, replies):

@@ -95,10 +95,10 @@ def _priority(text: str) -> int:
 
     try:
         return checked_priority(int(text))
-    except (ValueError, ProgrammerError):
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is no priority; it takes a whole number from -1000000 to 1000000"
-        ) from None
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number") from None
+    except ProgrammerError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def run(given: argparse.Namespace) -> int:

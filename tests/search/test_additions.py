@@ -8,7 +8,10 @@ from itertools import product
 import pytest
 from hypothesis import given
 
+from selfconf.composition import Strategy
+from selfconf.composition.searches import Searches
 from selfconf.model.refusal import Undecided
+from selfconf.search import additions
 from selfconf.search.additions import MOST_OF_A_ROLE, asking_for, with_additions
 from selfconf.search.problem import Problem
 from tests.search.oracle import World
@@ -78,6 +81,15 @@ def test_more_of_one_role_than_are_tried_is_not_decided() -> None:
     wanted = " ".join(f"i{k}:S{k}" for k in range(many))
     given_ = problem({"many": sources, "user": [component("user", wanted)]}, "many>user", counts={"many": (0, None)})
     assert isinstance(with_additions(given_), Undecided)
+
+
+def test_a_question_that_is_not_decided_in_its_steps_leaves_the_answer_undecided(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(additions, "solution", lambda *question: Undecided(1))
+    assert isinstance(with_additions(fan(1, 2)), Undecided)
+    *_, answer = Searches(Strategy.FIRST).answers(fan(1, 2))
+    assert isinstance(answer, Undecided)
 
 
 def test_of_equally_few_the_first_role_is_asked() -> None:
