@@ -92,13 +92,14 @@ def _priority(text: str) -> int:
     """A priority, as the option takes it."""
     from selfconf.api.arguments import checked_priority
     from selfconf.errors import ProgrammerError
+    from selfconf.model.template import MOST_PRIORITY
 
     try:
         return checked_priority(int(text))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number") from None
-    except ProgrammerError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    except (ValueError, ProgrammerError):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no priority; it takes a whole number from {-MOST_PRIORITY} to {MOST_PRIORITY}"
+        ) from None
 
 
 def run(given: argparse.Namespace) -> int:
