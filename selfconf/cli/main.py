@@ -12,8 +12,9 @@ import sys
 import traceback
 from collections.abc import Collection, Sequence
 from keyword import iskeyword
+from pathlib import Path
 from types import ModuleType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from selfconf.aside_writer import AsideHandler
 from selfconf.cli.settings import Settings, found_settings
@@ -51,6 +52,10 @@ FOR_PEOPLE = ("text", "table")
 
 class Parser(argparse.ArgumentParser):
     """Says in one sentence what is wrong with the arguments; the usage is a question of its own."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.register("type", Path, _path)
 
     def parse_known_args(  # type: ignore[override]  # of its overloads one is used here
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
@@ -162,6 +167,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         complain(f"selfconf {given.command}: interrupted")
         return INTERRUPTED
+
+
+def _path(word: str) -> Path:
+    """What an argument of type Path stands for; an empty one, as of a variable that is not set, is a mistake."""
+    if not word:
+        raise argparse.ArgumentTypeError("an empty text is no path; the current folder is '.'")
+    return Path(word)
 
 
 def _advice(unknown: Sequence[str]) -> str:

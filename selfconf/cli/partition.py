@@ -18,6 +18,7 @@ from selfconf.cli.options import (
     task_of,
 )
 from selfconf.cli.terminal import complain, display
+from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Inquiry
@@ -59,6 +60,8 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.api.partition_table import PartitionTable
     from selfconf.api.places import with_lines
 
+    if given.show and given.format != "text":
+        raise AuthorError(f"--show {given.show} writes what other tools read as it is; leave out --format")
     task = task_of(given)
     with closing(given_ecology(given)) as ecology:
         strategy = "best" if given.why else "first"

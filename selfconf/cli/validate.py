@@ -64,6 +64,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Validate, print the report, and return 0 (all conform), 1 (some do not) or 2 (some cannot be read)."""
     if arguments.explain is not None:
+        if arguments.format != "text":
+            raise AuthorError("--explain is for people and writes text; leave out --format")
         sys.stdout.write(explanation(arguments.explain))
         return 0
     paths = arguments.paths or _project_paths(arguments.project)

@@ -73,6 +73,8 @@ def test_a_command_that_there_is_not_is_misuse(capsys: pytest.CaptureFixture[str
         (["configure", "t.ttl", "--strategy", "worst"], "'worst'"),
         (["run", "t.ttl", "--priority", "9" * 23], "a whole number from -1000000 to 1000000"),
         (["run", "t.ttl", "--priority", "high"], "'high' is no priority"),
+        (["configure", ""], "TEMPLATE: an empty text is no path; the current folder is '.'"),
+        (["configure", "t.ttl", "--ads", ""], "--ads: an empty text is no path"),
     ],
 )
 def test_misuse_is_one_sentence_that_points_to_the_help(

@@ -15,7 +15,7 @@ from rdflib import Graph, URIRef
 from selfconf.cli.main import main
 from selfconf.rdf.advertisements import read_advertisements
 from selfconf.rdf.sparql.dataset import Dataset
-from tests.cli.command import each
+from tests.cli.command import each, run
 from tests.cli.endpoints import oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
@@ -165,6 +165,13 @@ def test_a_role_beyond_sparql_says_so(tmp_path: Path, capsys: pytest.CaptureFixt
     )
     assert main(["partition", str(tmp_path / "t.ttl"), "--ads", str(tmp_path / "t.ttl"), "--show", "sparql"]) == 2
     assert "see its shape by --show shape" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("what", ["shape", "sparql"])
+def test_what_a_role_stands_for_is_no_json(
+    what: str, home: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(capsys, "partition", *home, "--show", what, "--format", "json").is_one_sentence("leave out --format")
 
 
 @pytest.fixture(scope="module")

@@ -37,6 +37,7 @@ BAD = Path(__file__).parents[1] / "bad"
         ([], 2),
         (["--explain", "SC-A01"], 0),
         (["--explain", "SC-X99"], 2),
+        (["--explain", "SC-A01", "--format", "json"], 2),
         (["good.ttl", "--ontology", "nowhere.ttl"], 2),
         (["good.ttl", "--ontology", "broken.ttl"], 2),
         (["good.ttl", "--ontology", "strange.ttl"], 0),
