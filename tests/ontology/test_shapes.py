@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -11,12 +10,14 @@ from rdflib.term import Node
 
 from selfconf import library
 from selfconf.model.codes import BY_SHAPE
+from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.validation.shape_violations import reported_violations
 from selfconf.rdf.validation.well_formedness import shape_of_shapes
 from tests.bad_files import BAD, promised_codes
 
 SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
 ALL = sum((Graph().parse(path) for path in library.shapes()), Graph())
+READ = ReadShapes(ALL)
 
 COMPONENTS = {
     SH.minCount: SH.MinCountConstraintComponent,
@@ -51,39 +52,21 @@ def constraints() -> set[tuple[Node, Node]]:
     return found
 
 
-@cache
-def with_queries_of(codes: frozenset[str]) -> Graph:
-    """The shapes, of whose SPARQL constraints only those stay that report one of these codes."""
-    shapes = Graph()
-    for triple in ALL:
-        if triple[1] != SH.sparql or code_of(triple[0]) in codes:
-            shapes.add(triple)
-    return shapes
-
-
 def code_of(shape: Node) -> str:
     """The code under which the violations of a named shape are reported."""
     return BY_SHAPE[str(shape).removeprefix(SHAPES)].code
 
 
 def broken(path: Path) -> set[tuple[Node, Node]]:
-    """The constraints that a file breaks; of those in SPARQL, the ones whose code its first line promises.
-
-    pySHACL parses a query anew for each focus node: to ask all of them of all files would take eight times as long.
-    """
+    """The constraints that a file breaks."""
     graph = Graph()
     try:
         graph.parse(path)
     except SyntaxError:
         return set()
-    shapes = with_queries_of(promised_codes(path) & QUERIED)
     return {
-        (found.shape, found.constraint) for found in reported_violations(graph, shapes) if found.constraint is not None
+        (found.shape, found.constraint) for found in reported_violations(graph, READ) if found.constraint is not None
     }
-
-
-QUERIED = frozenset(map(code_of, ALL.subjects(SH.sparql)))
-"""The codes that a SPARQL constraint may report."""
 
 
 @pytest.mark.slow
@@ -112,7 +95,7 @@ def test_the_catalogue_and_the_shapes_name_each_other() -> None:
 
 @pytest.mark.slow
 def test_the_shapes_are_well_formed() -> None:
-    assert not list(reported_violations(ALL, shape_of_shapes()))
+    assert not list(reported_violations(ALL, ReadShapes(shape_of_shapes())))
 
 
 @pytest.mark.parametrize("path", library.shapes(), ids=lambda path: path.stem)
@@ -178,4 +161,4 @@ TEMPLATE = """\
 
 @pytest.mark.parametrize("text", [ADVERTISEMENTS, TEMPLATE, *(path.read_text() for path in library.ontologies())])
 def test_what_is_right_conforms(text: str) -> None:
-    assert not list(reported_violations(Graph().parse(data=text, format="turtle"), ALL))
+    assert not list(reported_violations(Graph().parse(data=text, format="turtle"), READ))

@@ -191,7 +191,8 @@ TEXTS = (
 def verdicts(text: str) -> tuple[set[str], set[str]]:
     """The components of a text that break the shape, and those in which the careful reader finds a problem."""
     graph, _ = parse_with_positions(text, "")
-    broken = {str(violation.focus) for violation in reported_violations(graph, SHAPES_NEEDED.needed(graph))}
+    found = reported_violations(graph, SHAPES_NEEDED.read, SHAPES_NEEDED.needed(graph))
+    broken = {str(violation.focus) for violation in found}
     return broken, {str(component) for component, _, problems in reader.profiles(parse(text, "")) if problems}
 
 

@@ -10,11 +10,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import field
 from functools import lru_cache
 from typing import Any
 
-import pyshacl
 from pyshacl.errors import ReportableRuntimeError, ValidationFailure
 from rdflib import RDF, RDFS, Graph, Literal, Namespace, URIRef
 from rdflib.plugins.sparql import prepareQuery
@@ -25,9 +23,9 @@ from rdflib.term import Node
 from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.model.immutable import immutable
-from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.permitted_fields import COMPONENT
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.validation.diagnostics import at
 
 _SC = Namespace("https://w3id.org/selfconf#")
@@ -77,22 +75,23 @@ _TARGETS = (_SH.targetClass, _SH.targetSubjectsOf, _SH.targetObjectsOf)
 class Shapes:
     """The shapes, and for each file as few of them as may find something.
 
-    pySHACL reads all shapes anew for each file, and looks for the targets of each; which shapes have no target in it is
-    known sooner. It also asks the query of a SPARQL constraint for each focus node, which takes longer than all else.
+    pySHACL looks for the targets of each shape; which shapes have no target in a file is known sooner. It also asks the
+    query of a SPARQL constraint for each focus node, which takes longer than all else.
     """
 
     all: Graph
+    read: ReadShapes
     targets: tuple[tuple[Node, Node, Node], ...]
     """Shape, kind of target, and the class or predicate."""
-    _parts: dict[frozenset[Node], Graph] = field(default_factory=dict)
 
     @classmethod
     def of(cls, shapes: Graph) -> Shapes:
-        """Find the targets of the shapes."""
-        return cls(shapes, tuple((s, kind, o) for kind in _TARGETS for s, o in shapes.subject_objects(kind)))
+        """Read the shapes, and find their targets."""
+        targets = tuple((s, kind, o) for kind in _TARGETS for s, o in shapes.subject_objects(kind))
+        return cls(shapes, ReadShapes(shapes), targets)
 
-    def needed(self, graph: Graph) -> Graph:
-        """The shapes that a file may violate."""
+    def needed(self, graph: Graph) -> frozenset[Node]:
+        """The shapes with targets that a file may violate."""
         predicates, types = set(graph.predicates()), set(graph.objects(None, RDF.type))
         below = RDFS.subClassOf in predicates  # then a node may be an instance of a class that it does not name
         aimed = {
@@ -101,22 +100,7 @@ class Shapes:
             if (value in types or below if kind == _SH.targetClass else value in predicates)
         }
         unneeded = () if _names_repeat(graph) or _lists_stray(graph) else (*_NAMING, *_LISTING)
-        chosen = frozenset(aimed.difference(unneeded))
-        if chosen not in self._parts:
-            self._parts[chosen] = self._with_all_below(chosen, set(unneeded))
-        return self._parts[chosen]
-
-    def _with_all_below(self, shapes: Iterable[Node], without: set[Node]) -> Graph:
-        """Some shapes with everything that they lead to."""
-        part, waiting, seen = Graph(), list(shapes), without
-        while waiting:
-            node = waiting.pop()
-            if node not in seen:
-                seen.add(node)
-                for triple in self.all.triples((node, None, None)):
-                    part.add(triple)
-                    waiting.append(triple[2])
-        return part
+        return frozenset(aimed.difference(unneeded))
 
 
 def _names_repeat(graph: Graph) -> bool:
@@ -152,47 +136,47 @@ class _PreparingGraph(Graph):
     """A graph that prepares each query once: pySHACL asks the query of a constraint anew for each focus node."""
 
     def query(self, query_object: str | Query, *given: Any, **options: Any) -> Result:
-        if isinstance(query_object, str):
-            prefixes = options.get("initNs") or dict(self.namespaces())
-            query_object = _prepared(query_object, tuple(sorted(prefixes.items())))
-        return super().query(query_object, *given, **options)
+        prepared = _prepared(query_object) if isinstance(query_object, str) else query_object
+        return super().query(prepared, *given, **options)
 
 
 @lru_cache(maxsize=64)
-def _prepared(text: str, prefixes: tuple[tuple[str, str], ...]) -> Query:
-    return prepareQuery(text, initNs=dict(prefixes))
+def _prepared(text: str) -> Query:
+    """A query of a constraint, which declares its prefixes itself (SHACL, 5.2.1): those of the file are not for it."""
+    return prepareQuery(text)
 
 
-def reported_violations(graph: Graph, shapes: Graph) -> Iterator[ReportedViolation]:
-    """What pySHACL finds in a graph."""
-    index_constraints()
+def reported_violations(
+    graph: Graph, shapes: ReadShapes, only: frozenset[Node] | None = None
+) -> Iterator[ReportedViolation]:
+    """What pySHACL finds in a graph, by all shapes with targets or by `only` some of them."""
     asked = _PreparingGraph(graph.store, graph.identifier, graph.namespace_manager)
-    _, report, text = pyshacl.validate(asked, shacl_graph=shapes, inference="none")
-    if isinstance(report, ValidationFailure) or not isinstance(report, Graph):
-        raise ReportableRuntimeError(f"pySHACL cannot judge this file: {text}")
-    for result in report.objects(predicate=_SH.result):
-        shape = report.value(result, _SH.sourceShape)
-        focus = report.value(result, _SH.focusNode)
-        path = report.value(result, _SH.resultPath)
-        if not isinstance(shape, URIRef) or focus is None:
+    try:
+        results = list(shapes.results(asked, only))
+    except ValidationFailure as error:
+        raise ReportableRuntimeError(f"pySHACL cannot judge this file: {error.message}") from error
+    for result in results:
+        shape, focus, path = result[_SH.sourceShape], result[_SH.focusNode], result.get(_SH.resultPath)
+        if not isinstance(shape, URIRef):
             continue
         if isinstance(focus, Literal) and path is not None:
             continue  # that it is a literal at all is the finding of another shape
         yield ReportedViolation(
             shape,
-            str(report.value(result, _SH.resultMessage)),
-            Severity.WARNING if report.value(result, _SH.resultSeverity) == _SH.Warning else Severity.ERROR,
+            str(result.get(_SH.resultMessage)),
+            Severity.WARNING if result.get(_SH.resultSeverity) == _SH.Warning else Severity.ERROR,
             focus,
             path,
-            report.value(result, _SH.value),
-            report.value(result, _SH.sourceConstraintComponent),
+            result.get(_SH.value),
+            result.get(_SH.sourceConstraintComponent),
         )
 
 
 def shape_violations(graph: Graph, positions: Positions, shapes: Shapes) -> list[Diagnostic]:
     """Every violation in one file, in no particular order."""
     places = _Places(graph, positions, shapes.all)
-    found = [(places.offset(violation), violation) for violation in reported_violations(graph, shapes.needed(graph))]
+    reported = reported_violations(graph, shapes.read, shapes.needed(graph))
+    found = [(places.offset(violation), violation) for violation in reported]
     return [
         at(
             positions,

@@ -17,7 +17,6 @@ from functools import cache
 from importlib.resources import files
 
 import pyoxigraph as ox
-import pyshacl
 from pyshacl.errors import ReportableRuntimeError, ValidationFailure
 from rdflib import RDF, SH, XSD, Graph, Literal, URIRef
 from rdflib.term import Node
@@ -26,6 +25,7 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.validation.diagnostics import at
@@ -107,15 +107,19 @@ def shape_of_shapes() -> Graph:
     return Graph().parse(data=(files("pyshacl") / "assets" / "shacl-shacl.ttl").read_text("utf-8"))
 
 
+@cache
+def read_shape_of_shapes() -> ReadShapes:
+    """The shape to which every shapes graph has to conform, read by pySHACL."""
+    return ReadShapes(shape_of_shapes())
+
+
 def _faults(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
-    _, report, _ = pyshacl.validate(shapes, shacl_graph=shape_of_shapes(), inference="none")
-    if not isinstance(report, Graph):
+    try:
+        results = list(read_shape_of_shapes().results(shapes))
+    except ValidationFailure:
         return
-    for result in report.objects(predicate=SH.result):
-        focus, path = report.value(result, SH.focusNode), report.value(result, SH.resultPath)
-        value = report.value(result, SH.value)
-        if focus is None:
-            continue
+    for result in results:
+        focus, path, value = result[SH.focusNode], result.get(SH.resultPath), result.get(SH.value)
         offsets = positions.triples.get((focus, path, value)) if path is not None and value is not None else None
         if offsets is not None and isinstance(path, URIRef):
             yield at(positions, offsets.object, "SC-T13", unfit(IRI(path)))
