@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
+from selfconf import files
 from selfconf.api.composites import Composites
 from selfconf.api.reading import described_in
 from selfconf.bus.memory import Faults, MemoryBus, Network
@@ -19,8 +21,9 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.advertisements import reader as advertisements
-from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.tasks import TaskDocument, bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.sdk.component import Component, Signal
 from selfconf.sdk.runtime import ComponentRuntime
@@ -132,6 +135,48 @@ class Recorder(Component):
         )
 
 
+class StillShelf(Shelf):
+    """The advertisements in files that stay as they are once they are written: nobody has to look at them again."""
+
+    _written: ClassVar[dict[Path, str]] = {}
+    """What lies in each file: histories by the hundred write the same."""
+
+    def __init__(self, texts: Mapping[Path, str]) -> None:
+        super().__init__([], lambda complaint: None)
+        self._texts = texts
+
+    def refresh(self) -> bool:
+        """Read the files, when that is asked for the first time; whether the advertisements are others now."""
+        if self.advertisements or not self._texts:
+            return False
+        for path, text in sorted(self._texts.items()):
+            if self._written.get(path) != text:
+                path.write_text(text)
+                self._written[path] = text
+            self.advertisements |= {one.component: one for one in _advertisements(path, text)}
+        return True
+
+
+@lru_cache(maxsize=256)
+def _advertisements(path: Path, text: str) -> tuple[Advertisement, ...]:
+    """What a file advertises that has that text."""
+    good, bad = files.advertisements(path)
+    assert not bad
+    return tuple(good)
+
+
+@lru_cache(maxsize=256)
+def _profile(text: str, name: str) -> Profile:
+    (advertisement,), _ = advertisements.read_document(turtle.parse(PREFIXES + text, name))
+    return advertisement.profile
+
+
+@lru_cache(maxsize=64)
+def task_of(template: str, bound: tuple[tuple[str, str], ...]) -> TaskDocument:
+    """A template whose parameters are bound."""
+    return bindings.complete(bindings.bind(templates.read_task(turtle.parse(template, "template.ttl")), bound))
+
+
 class Lab:
     """Two hosts and a configurator in simulated time; every component is a node of its own."""
 
@@ -141,7 +186,11 @@ class Lab:
         seed: int = 0,
         faults: Faults | None = None,
         advertised: Mapping[str, str] = ADVERTISEMENTS,
+        *,
+        still: bool = False,
     ) -> None:
+        """`still`: no file changes while the sites live, so that they read what is advertised once."""
+        self._still = still
         self.network = Network(seed, faults)
         self.advertised = advertised
         self.folder = folder
@@ -156,8 +205,8 @@ class Lab:
 
     def site(self, name: str, *names: str) -> Site:
         """A site with those advertisements, and with whatever else lies in its folder already."""
-        files = write_advertisements(self.folder / name, *names, advertisements=self.advertised)
-        shelf, node = Shelf([files], self.complaints.append), self.network.node()
+        shelf = self._shelf(self.folder / name, names)
+        node = self.network.node()
         composites = Composites(
             node, "lab", described_in, self.complaints.append, unable=lambda why: site.tell_unable(why)
         )
@@ -165,10 +214,15 @@ class Lab:
         self.composites[name] = composites
         return site
 
+    def _shelf(self, folder: Path, names: Sequence[str]) -> Shelf:
+        if not self._still:
+            return Shelf([write_advertisements(folder, *names, advertisements=self.advertised)], self.complaints.append)
+        folder.mkdir(parents=True, exist_ok=True)
+        return StillShelf({folder / f"{name}.ttl": PREFIXES + self.advertised[name] + "\n" for name in names})
+
     def profile(self, name: str) -> Profile:
         """The profile in one of the advertisements."""
-        (advertisement,), _ = advertisements.read_document(turtle.parse(PREFIXES + self.advertised[name], name))
-        return advertisement.profile
+        return _profile(self.advertised[name], name)
 
     def component(self, name: str, recorder: Recorder | None = None) -> Recorder:
         """A living component with one of the advertisements."""
@@ -198,8 +252,7 @@ class Lab:
 
         `wishes` are further fields of its `RunRequest`.
         """
-        document = templates.read_task(turtle.parse(template, "template.ttl"))
-        task = bindings.complete(bindings.bind(document, bound))
+        task = task_of(template, bound)
         composer = Composer(task)
         order = RunRequest(
             task=task.task,
@@ -261,7 +314,7 @@ class Lab:
 
     def let_pass(self, seconds: float) -> None:
         """Let simulated time pass."""
-        self.network.run(lambda: False, seconds)
+        self.network.let_pass(seconds)
 
     def active(self) -> set[str]:
         """The names of the components that act, crashed ones left out."""

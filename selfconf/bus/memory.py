@@ -91,12 +91,17 @@ class Network:
         """The one-way links that are cut: sender, receiver."""
         self._latest: dict[tuple[int, int], float] = {}
         """When the latest event from one node to another arrives, which no later one may overtake."""
+        self._serving: dict[str, list[tuple[MemoryBus, Callable[[_Request], None]]]] = {}
+        """Who serves each key that was asked, in order; forgotten when a node begins to serve a key, or ends."""
         self.nodes: list[MemoryBus] = []
+        self.shape = 0
+        """Counts what changes who reaches whom: nodes that come, go, are paused or go on, and links that are cut."""
 
     def node(self, clock: float = 0.0) -> MemoryBus:
         """A new node that reaches all others; its clock is ahead of the network's time by that many seconds."""
         bus = MemoryBus(self, len(self.nodes), clock)
         self.nodes.append(bus)
+        self.shape += 1
         return bus
 
     def cut(self, left: MemoryBus, right: MemoryBus) -> None:
@@ -108,11 +113,13 @@ class Network:
         """Nothing of one node reaches another from now on; the way back stays open."""
         if self.reaches(sender, receiver):
             self._cut.add((sender.number, receiver.number))
+            self.shape += 1
             receiver.unsee(sender)
             sender.match_all()
 
     def reconnect(self, left: MemoryBus, right: MemoryBus) -> None:
         """Two nodes reach each other again, and see each other's lives."""
+        self.shape += 1
         for sender, receiver in ((left, right), (right, left)):
             reached = self.reaches(sender, receiver)
             self._cut.discard((sender.number, receiver.number))
@@ -136,6 +143,7 @@ class Network:
         if node.paused or not node.open:
             return
         node.pauses += 1
+        self.shape += 1
         node.paused, number = True, node.pauses
 
         def expel() -> None:
@@ -149,6 +157,7 @@ class Network:
         if not node.paused:
             return
         node.paused = False
+        self.shape += 1
         node.catch_up()
         number = node.pauses
 
@@ -163,6 +172,7 @@ class Network:
         reached = [other for other in others if self.reaches(node, other)]
         heard = [other for other in others if self.reaches(other, node)]
         node.expelled = True
+        self.shape += 1
         for other in reached:
             other.unsee(node)
         for other in heard:
@@ -171,6 +181,7 @@ class Network:
 
     def _readmit(self, node: MemoryBus) -> None:
         node.expelled = False
+        self.shape += 1
         for other in self.nodes:
             if other is not node and other.open:
                 if self.reaches(node, other):
@@ -178,6 +189,22 @@ class Network:
                 if self.reaches(other, node):
                     node.see(other)
         node.match_all()
+
+    def serving(self, key: str) -> list[tuple[MemoryBus, Callable[[_Request], None]]]:
+        """The nodes that serve a key, in reach or not, each with what answers."""
+        found = self._serving.get(key)
+        if found is None:
+            found = self._serving[key] = [
+                (node, answer)
+                for node in self.nodes
+                for served, answer in node._queryables.values()
+                if intersects(key, served)
+            ]
+        return found
+
+    def forget_serving(self) -> None:
+        """Look anew who serves a key, when it is asked next."""
+        self._serving.clear()
 
     def loses(self) -> bool:
         """Whether the next message is lost."""
@@ -244,7 +271,8 @@ class Network:
         if not self._events:
             return False
         time, _, action = heapq.heappop(self._events)
-        self.time = max(self.time, time)
+        if time > self.time:
+            self.time = time
         action()
         self.stepped()
         return True
@@ -258,6 +286,13 @@ class Network:
                 return until()
             self.step()
         return True
+
+    def let_pass(self, seconds: float) -> None:
+        """Let that much simulated time pass, and happen what is due in it."""
+        deadline = self.time + seconds
+        while self._events and self._events[0][0] <= deadline:
+            self.step()
+        self.time = deadline
 
 
 class MemoryBus:
@@ -355,28 +390,34 @@ class MemoryBus:
     ) -> Callable[[], None]:
         """Receive every sample put on a key from now on; there is one thread, so `direct` makes no difference."""
         undo = self._declare(self._subscribers, (key, receive))
-        self.match_all()
+        self.match_all(key)
 
         def undone() -> None:
             undo()
-            self.match_all()
+            self.match_all(key)
 
         return undone
 
     def serve(self, key: str, answer: Callable[[_Request], None], *, complete: bool = False) -> Callable[[], None]:
         """Answer questions to a key; here everybody who does is asked."""
-        return self._declare(self._queryables, (key, answer))
+        undo = self._declare(self._queryables, (key, answer))
+        self.network.forget_serving()
+
+        def undone() -> None:
+            undo()
+            self.network.forget_serving()
+
+        return undone
 
     def ask(
         self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None], attachment: bytes = b""
     ) -> None:
         """Ask all queryables of a key; a question or a reply that is lost shows as a time-out."""
         question = _Question(self, done)
-        for node in self.network.nodes:
-            reached = bool(node._queryables) and self.network.reaches(self, node)
-            for served, answer in list(node._queryables.values()) if reached else ():
-                if intersects(key, served):
-                    question.asked(node, Sample(key, payload, attachment), answer)
+        said = Sample(key, payload, attachment)
+        for node, answer in self.network.serving(key):
+            if self.network.reaches(self, node):
+                question.asked(node, said, answer)
         question.sent(seconds)
 
     def announce(self, key: str) -> Callable[[], None]:
@@ -419,7 +460,7 @@ class MemoryBus:
 
     def poll(self, seconds: float = 0.0) -> None:
         """Let the network run for that much simulated time."""
-        self.network.run(lambda: False, seconds)
+        self.network.let_pass(seconds)
 
     def run_aside(self) -> bool:
         """There is one thread, in which simulated time passes."""
@@ -434,6 +475,7 @@ class MemoryBus:
         for key in list(self._tokens.values()):
             self._publish_life(key, False)
         self.open = False
+        self.network.shape += 1
         self._tokens.clear()
         self._late_timers, self._late_arrivals = [], []
         self.match_all()
@@ -468,11 +510,12 @@ class MemoryBus:
 
         return undo
 
-    def match_all(self) -> None:
-        """Let every publisher of the network notice whether there is a subscriber."""
+    def match_all(self, key: str | None = None) -> None:
+        """Let every publisher of the network, or those on a key, notice whether there is a subscriber."""
         for node in self.network.nodes:
             for declared in list(node._publishers.values()):
-                declared.match()
+                if key is None or intersects(key, declared.key):
+                    declared.match()
 
     def _send(self, sample: Sample, urgency: Urgency) -> None:
         for node in self.network.nodes:
@@ -532,13 +575,13 @@ class _Publisher:
     def __init__(
         self, bus: MemoryBus, number: int, key: str, urgency: Urgency, matched: Callable[[bool], None] | None
     ) -> None:
-        self._bus, self._number, self._key, self._urgency, self._matched = bus, number, key, urgency, matched
+        self._bus, self._number, self.key, self._urgency, self._matched = bus, number, key, urgency, matched
         self._matching = False
 
     def put(self, payload: bytes, attachment: bytes = b"") -> None:
         """Put a sample."""
         if self._bus.open:
-            self._bus._send(Sample(self._key, payload, attachment), self._urgency)
+            self._bus._send(Sample(self.key, payload, attachment), self._urgency)
 
     def undeclare(self) -> None:
         """Take the declaration back."""
@@ -548,7 +591,7 @@ class _Publisher:
         """Call `matched` if it has changed whether there is a subscriber."""
         network = self._bus.network
         matching = any(
-            intersects(key, self._key)
+            intersects(key, self.key)
             for node in network.nodes
             if node._subscribers and network.reaches(node, self._bus)
             for key, _ in node._subscribers.values()

@@ -83,7 +83,7 @@ class Contention:
     def __init__(self, seed: int, folder: Path, tasks: int, patient: bool, priorities: bool) -> None:
         self.chance = random.Random(seed)
         faults = Faults(most_delay=self.chance.choice((0.0005, 0.005, 0.02)))
-        self.lab = Lab(folder, seed, faults, advertisements())
+        self.lab = Lab(folder, seed, faults, advertisements(), still=True)
         self.network = self.lab.network
         self.shelf = self.lab.site("shared", *advertisements()).shelf
         self.agents: list[TaskRunner] = []

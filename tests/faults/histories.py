@@ -97,7 +97,7 @@ class History:
         advertised = {
             name: startable(text) if name in script.startable else text for name, text in ecology.advertisements.items()
         }
-        self.lab = Lab(folder, script.seed, script.faults, advertised)
+        self.lab = Lab(folder, script.seed, script.faults, advertised, still=True)
         self.network = self.lab.network
         self.told: list[str] = []
         self.processes: list[Life] = []

@@ -6,9 +6,9 @@ that may not last for longer than its bound; a bound of zero means never. What m
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from operator import attrgetter
 
 from selfconf.api.composites import InsideOfComposite
@@ -25,12 +25,16 @@ from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.supervision import GRACE
 from tests.faults.histories import ASKED, History, Life
+from tests.faults.simulated_code import SimulatedCodeThread
 
 CALLS = 2.0
 """Seconds after which a configurator looks again at a call that was not answered."""
+ROUNDING = 1e-6
+"""By how many seconds a sum of times may be wrong."""
 MOST_WAITING = 2_000
 """How many messages and timers may wait in the network."""
-_OF_LIFE = attrgetter("runtime.activation", "runtime.code.active")
+_STATE = attrgetter("state")
+_OF_RUNTIME = attrgetter("activation", "code.turn", "code._acting_turn")  # by the turns it is decided whether it acts
 LOOKS = 10.0
 """Seconds within which a configurator notices that a component does not act any more without having said so."""
 
@@ -394,7 +398,15 @@ class Watch:
         self._bounds = {invariant.name: invariant.bound(history) for invariant in STEPS}
         self._since: dict[tuple[str, str], float] = {}
         self._noted: set[tuple[str, str]] = set()
+        self._overdue = math.inf
+        """When the first of the conditions that are present has lasted for too long."""
         self._seen: list[object] = []
+        self._shape = (-1, 0)
+        """The shape of the network, and how many processes there have been, when it was noted which of them live."""
+        self._living: list[Life] = []
+        self._runtimes: list[ComponentRuntime] = []
+        self._said: list[list[tuple[object, ...]]] = []
+        self._threads: list[SimulatedCodeThread] = []
         self.broken: list[str] = []
         self.names: set[str] = set()
         """The names of the invariants that were broken."""
@@ -411,10 +423,18 @@ class Watch:
             self._note_composed()
             self._compare()
         now = self._history.network.time
+        if now < self._overdue:
+            return
         for (name, condition), since in self._since.items():
             if now - since > self._bounds[name] and (name, condition) not in self._noted:
                 self._noted.add((name, condition))
                 self.note(name, f"{condition}, since {since:.3f}")
+        self._await()
+
+    def _await(self) -> None:
+        """Note when to look again at the conditions that are present, a little early, as sums of times are rounded."""
+        lasting = (since + self._bounds[one[0]] for one, since in self._since.items() if one not in self._noted)
+        self._overdue = min(lasting, default=math.inf) - ROUNDING
 
     def all_decided(self) -> bool:
         """Whether every task is running or refused."""
@@ -478,6 +498,7 @@ class Watch:
                 self.longest[name] = max(lasted, self.longest.get(name, 0.0))
         for name, condition in present:
             self._since.setdefault((name, condition), now)
+        self._await()
 
     def note(self, name: str, what: str) -> None:
         """An invariant is broken."""
@@ -490,17 +511,22 @@ class Watch:
         A value that is the one of the last look is not looked into: to compare these lists costs little.
         """
         history, network = self._history, self._history.network
-        insides, living = list(history.insides()), [life for life in history.processes if life.node.open]
-        runners = [inside.runner for inside in insides if inside.runner is not None]
+        if (network.shape, len(history.processes)) != self._shape:
+            self._shape = network.shape, len(history.processes)
+            self._living = [life for life in history.processes if life.node.open]
+            self._runtimes = [life.runtime for life in self._living]
+            self._said = [life.recorder.said for life in self._living]
+            self._threads = [life.thread for life in self._living]
+            self._seen.clear()
+        insides = list(history.insides()) if history.script.ecology.composites else []
+        now = network.time
         seen: list[object] = [
-            [agent.state for agent in chain(history.agents, runners)],
-            list(map(_OF_LIFE, living)),
-            [len(life.recorder.said) for life in living],
-            [life.name for life in living if life.thread.limit_until < network.time and life.thread.hangs],
-            list(map(_OF_LIFE, insides)),
-            [4 * node.open + 2 * node.paused + node.expelled for node in network.nodes],
-            len(history.processes),
-            len(network._cut),
+            list(map(_STATE, history.agents)),
+            list(map(_OF_RUNTIME, self._runtimes)),
+            list(map(len, self._said)),
+            # Few threads have a limit that is over; of those it matters whether they hang.
+            [(thread, thread.hangs) for thread in self._threads if thread.limit_until < now],
+            [(_OF_RUNTIME(one.runtime), one.runner and one.runner.state) for one in insides],
             len(network._events) > MOST_WAITING,
         ]
         changed = seen != self._seen

@@ -15,6 +15,7 @@ import random
 import tempfile
 from collections.abc import Callable, Iterator
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 
 from selfconf.bus.memory import Faults, MemoryBus
@@ -25,10 +26,8 @@ from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.deployment.keeper import keeper_of
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
-from selfconf.rdf import turtle
-from selfconf.rdf.tasks import bind, complete, read_task
 from selfconf.sdk.supervision import GRACE
-from tests.lab import NAVIGATE, Lab
+from tests.lab import NAVIGATE, Lab, task_of
 
 KEEPING = ("a", "b", "c")
 """The sites that suffer; the two of the lab, which advertise the components, keep tasks as well, and are spared."""
@@ -42,10 +41,12 @@ LOOKED_AGAIN = 3.0
 TWO_RUN = 12.0
 """Seconds for which two sites may believe that they run one task: no component acts for both meanwhile."""
 
+_OF_RUNTIME = attrgetter("activation", "code.turn", "code._acting_turn")  # by the turns it is decided whether it acts
+
 
 def request_for(record: TaskRecord) -> RunRequest:
     """The paper's task, with the priority of the record."""
-    task = complete(bind(read_task(turtle.parse(NAVIGATE, "t")), (("robot", ":Astrid"), ("goal", "(AT BEDROOM)"))))
+    task = task_of(NAVIGATE, (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
     return RunRequest(task=task.task, compose=Composer(task).compose, patient=True, priority=record.priority)
 
 
@@ -57,7 +58,10 @@ class KeptHistory:
         slow, late = self._chance.choice([0.0005, 0.02]), self._chance.choice([0.0, 0.5])
         self._travel = 2 * (slow + late) + 0.2
         self.lab = Lab(
-            folder, seed, Faults(doubling=self._chance.choice([0.0, 0.3]), most_delay=slow, most_event_delay=late)
+            folder,
+            seed,
+            Faults(doubling=self._chance.choice([0.0, 0.3]), most_delay=slow, most_event_delay=late),
+            still=True,
         )
         self.network = self.lab.network
         self.lab.navigation()
@@ -67,6 +71,9 @@ class KeptHistory:
         self.told: list[str] = []
         self.broken: list[str] = []
         self._since: dict[str, float] = {}
+        self._present: dict[str, float] = {}
+        """What is not as it should be now, and for how many seconds each of it may last."""
+        self._seen: list[object] = []
         for name in ("living-room", "astrid", *KEEPING):
             self._begin(name)
         self._user = self.network.node()
@@ -177,11 +184,20 @@ class KeptHistory:
     def _look(self) -> None:
         """At every step: what may last for a moment only must be over in time."""
         now = self.network.time
-        conditions = dict(self._conditions())
-        self._since = {what: self._since.get(what, now) for what in conditions}
+        if self._is_changed():
+            self._present = dict(self._conditions())
+            self._since = {what: self._since.get(what, now) for what in self._present}
         for what, since in self._since.items():
-            if now - since > conditions[what] and not any(what in one for one in self.broken):
+            if now - since > self._present[what] and not any(what in one for one in self.broken):
                 self.broken.append(f"{now:8.3f}  {what}, since {since:.3f}")
+
+    def _is_changed(self) -> bool:
+        """Whether anything that the conditions depend on is another than at the last look."""
+        runners = [(one, one.state) for keeper in self.keepers.values() for one in keeper.runners.values()]
+        seen: list[object] = [self.network.shape, runners, list(map(_OF_RUNTIME, self.lab.runtimes.values()))]
+        changed = seen != self._seen
+        self._seen = seen
+        return changed
 
     def _conditions(self) -> Iterator[tuple[str, float]]:
         supervisors = {
