@@ -25,7 +25,7 @@ def plain(text: str) -> str:
 def one_line(text: str, most: int = LONGEST_REMARK) -> str:
     """A remark of a stranger as a part of one line: also the ends of lines and tabs spelt out, and cut to a length."""
     shown = text if len(text) <= most else f"{text[:most]}…"
-    return _STEERING_OR_BREAKING.sub(_spelt_out, shown)
+    return shown if _is_harmless(shown) else _STEERING_OR_BREAKING.sub(_spelt_out, shown)
 
 
 def sayable(said: object, most: int = LONGEST_REMARK) -> str:
@@ -35,7 +35,12 @@ def sayable(said: object, most: int = LONGEST_REMARK) -> str:
 
 def is_one_line(text: str) -> bool:
     """Whether a text can stand in a line as it is: it steers no terminal, and ends no line."""
-    return _STEERING_OR_BREAKING.search(text) is None
+    return _is_harmless(text) or _STEERING_OR_BREAKING.search(text) is None
+
+
+def _is_harmless(text: str) -> bool:
+    """Whether a text consists of printable characters of ASCII alone, as most do: to see that takes no time."""
+    return text.isascii() and text.isprintable()
 
 
 def _spelt_out(found: re.Match[str]) -> str:

@@ -156,6 +156,8 @@ def _text(value: object) -> str:
     """JSON can write half a surrogate pair, which no key and no file can hold: that is no text."""
     if not isinstance(value, str):
         raise PeerError("a text was expected")
+    if value.isascii():
+        return value
     try:
         value.encode()
     except UnicodeEncodeError:

@@ -15,7 +15,6 @@ import os
 import secrets
 import socket
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Request, Undo, Urgency
@@ -244,10 +243,7 @@ class ComponentRuntime:
     def _answer(self, call: str, payload: bytes, reply: Reply) -> None:
         """Obey a call, if the table says so, and reply when that is done. Raises PeerError for what is no call."""
         if call == "state":
-            state = self._verdict(Verdict.DONE, decode(payload, StateOf).task if payload else "")
-            reply(
-                replace(state, age=self.bus.now() - self._began, memory=resident_memory(), issued=self.outputs.issued)
-            )
+            reply(self._verdict(Verdict.DONE, decode(payload, StateOf).task if payload else "", measured=True))
             return
         if call not in _MESSAGES:
             raise PeerError(f"there is no call {call!r}")
@@ -347,8 +343,11 @@ class ComponentRuntime:
         for answer in waiting:
             answer(trouble)
 
-    def _verdict(self, verdict: Verdict, task: str, detail: str = "") -> CallAnswer:
-        """The answer with a verdict; it says how things are with the component for a task, else for who holds it."""
+    def _verdict(self, verdict: Verdict, task: str, detail: str = "", *, measured: bool = False) -> CallAnswer:
+        """The answer with a verdict; it says how things are with the component for a task, else for who holds it.
+
+        `measured`: also how old the component is, what memory it takes, and how much it has issued.
+        """
         hold = self.activation.hold(task) if verdict is not Verdict.BUSY else None
         hold = hold or self.activation.first
         claim: Claim = hold.claim if hold is not None else Claim(0, "")
@@ -365,6 +364,9 @@ class ComponentRuntime:
             claim.beginning,
             f"process {os.getpid()} on {socket.gethostname()}",
             self.inputs.dropped,
+            self.bus.now() - self._began if measured else 0.0,
+            resident_memory() if measured else 0,
+            self.outputs.issued if measured else {},
             outputs=self.inputs.issued,
             callers=self.inputs.callers,
             patience=self.inputs.patience,
