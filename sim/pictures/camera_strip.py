@@ -84,7 +84,7 @@ def _panel(panel: Element, sight: CameraImage, stage: str, high: int) -> None:
     colour = {"tracking": BLUE, "last sight": ORANGE, "lost": FAIL}[stage]
     packed = io.BytesIO()
     picture = Image.fromarray(np.ascontiguousarray(sight.image[:, :, :3]))
-    picture.resize((2 * FRAME, 2 * high), Image.Resampling.LANCZOS).save(packed, "PNG")
+    picture.resize((2 * FRAME, 2 * high), Image.Resampling.LANCZOS).save(packed, "PNG", compress_level=1)
     href = f"data:image/png;base64,{base64.b64encode(packed.getvalue()).decode()}"
     inside = add(panel, "g", clip_path="url(#rounded)")
     add(inside, "image", width=FRAME, height=high, href=href)

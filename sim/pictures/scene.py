@@ -2,7 +2,8 @@
 
 Mitsuba traces a few light paths for each pixel, with light that goes from wall to wall; Open Image Denoise makes of
 that what hundreds of paths would show. The ground outside is white paper: exposure is chosen so that it is exactly
-white where nothing keeps the light away. The robot is the only thing that moves; so it is a group of its own.
+white where nothing keeps the light away. The robot is the only thing that moves: it is a group of its own, and all else
+is another, so that nothing but where the groups stand is sorted anew when it does.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ from __future__ import annotations
 import math
 import tempfile
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -34,7 +36,24 @@ SUN_RADIUS = 0.035
 SUN, SKY = np.array([1.0, 0.93, 0.82]) * 0.76, np.array([0.90, 0.96, 1.04]) * 0.42
 """The share of the light on level ground that comes from the sun, and from the sky."""
 GROUND = 0.9
+Palettes = Mapping[float, tuple[str, ...]]
+"""Colours "#rrggbb" by the gloss of what has them."""
 _TILE = 512
+_PLY = b"""ply
+format binary_little_endian 1.0
+element vertex %d
+property float x
+property float y
+property float z
+property float nx
+property float ny
+property float nz
+property float u
+property float v
+element face %d
+property list uchar int vertex_indices
+end_header
+"""
 _GRAINS = {"wood": (34.0, 900.0, 0.075), "cloth": (900.0, 900.0, 0.05)}
 """For each grain, how many pixels of noise a metre has along it and across, and how strong the noise is."""
 
@@ -52,6 +71,7 @@ class Scene:
         disc = _transform().look_at(origin=(middle + 60.0 * towards).tolist(), target=middle, up=[0, 0, 1])
         radiance = SUN / (SUN_RADIUS**2 * towards[2])
         outside, inside = _transform().translate([*middle[:2], -SLAB]), _transform().translate([*middle[:2], 0.001])
+        palettes = _palettes([*solids, *robot])
         scene: dict[str, Any] = {
             "type": "scene",
             "sun": {
@@ -70,19 +90,18 @@ class Scene:
                 "to_world": inside.scale([(east - west) / 2, (north - south) / 2, 1.0]),
                 "bsdf": {"type": "diffuse", "reflectance": _bitmap(floor[::-1])},
             },
-            "group": {"type": "shapegroup", **_shapes(robot)},
-            "robot": {"type": "instance", "shapegroup": {"type": "ref", "id": "group"}},
+            "still": {"type": "shapegroup", **_shapes(solids, palettes)},
+            "house": {"type": "instance", "shapegroup": {"type": "ref", "id": "still"}},
+            "moving": {"type": "shapegroup", **_shapes(robot, palettes)},
+            "robot": {"type": "instance", "shapegroup": {"type": "ref", "id": "moving"}, "to_world": _standing(None)},
         }
-        self.scene = mitsuba.load_dict(scene | _shapes(solids))
+        self.scene = mitsuba.load_dict(scene)
         self.integrator = mitsuba.load_dict({"type": "path", "max_depth": 4})
         self.parameters = mitsuba.traverse(self.scene)
-        self.change(None)
 
     def change(self, at: Sample | None, floor: Array | None = None) -> None:
         """Put the robot somewhere, or (None) far below the ground; give the floor another picture of its size."""
-        place = [at.x, at.y, 0.0] if at else [0.0, 0.0, -9.0]
-        turn = _transform().rotate([0, 0, 1], math.degrees(at.theta) if at else 0.0)
-        self.parameters["robot.to_world"] = _transform().translate(place) @ turn
+        self.parameters["robot.to_world"] = _standing(at)
         if floor is not None:
             pixels = np.ascontiguousarray(floor[::-1], np.float32)
             self.parameters["floor.bsdf.reflectance.data"] = mitsuba.TensorXf(pixels)
@@ -120,6 +139,12 @@ class Scene:
         return _exposed(mitsuba_oidn.denoise(np.array(light, np.float32), hdr=True))
 
 
+def _standing(at: Sample | None) -> Any:
+    """Return how the robot is put somewhere, or far below the ground."""
+    turn = _transform().rotate([0, 0, 1], math.degrees(at.theta) if at else 0.0)
+    return _transform().translate([at.x, at.y, 0.0] if at else [0.0, 0.0, -9.0]) @ turn
+
+
 def _exposed(light: Array) -> Array:
     """Return intensities in which open ground is 1, with the brightest pressed together, as film does."""
     knee = 0.7
@@ -130,52 +155,66 @@ def _exposed(light: Array) -> Array:
     return np.asarray(shoulder(light) / shoulder(GROUND * (SUN + SKY)), np.float32)
 
 
-def _shapes(solids: Sequence[Solid]) -> dict[str, Any]:
-    """Return solids as shapes for Mitsuba, one for each material."""
-    groups: dict[Material, list[Solid]] = defaultdict(list)
+def _palettes(solids: Sequence[Solid]) -> Palettes:
+    """Return the colours of the solids that have no grain, by their gloss."""
+    colours: dict[float, set[str]] = defaultdict(set)
+    for material in (solid.material for solid in solids if not solid.material.grain):
+        colours[material.gloss].add(material.colour)
+    return {gloss: tuple(sorted(some)) for gloss, some in colours.items()}
+
+
+def _shapes(solids: Sequence[Solid], palettes: Palettes) -> dict[str, Any]:
+    """Return solids as shapes for Mitsuba, one for each surface."""
+    groups: dict[Any, list[Solid]] = defaultdict(list)
     for solid in solids:
-        groups[solid.material].append(solid)
-    return {f"shape{k}": _mesh(material, members) for k, (material, members) in enumerate(groups.items())}
+        material = solid.material
+        if material.grain:
+            groups[_grained(material)].append(solid)
+        else:
+            palette = palettes[material.gloss]
+            place = (palette.index(material.colour) + 0.5) / len(palette)
+            coloured = replace(solid, texture=np.full_like(solid.texture, (place, 0.5)))
+            groups[_plain(material.gloss, palette)].append(coloured)
+    return {f"shape{k}": _mesh(surface, members) for k, (surface, members) in enumerate(groups.items())}
 
 
-def _mesh(material: Material, solids: Sequence[Solid]) -> Any:
+def _mesh(surface: Any, solids: Sequence[Solid]) -> Any:
     starts = np.cumsum([0, *(len(solid.points) for solid in solids)])
-    faces = np.concatenate([solid.faces + start for solid, start in zip(solids, starts, strict=False)])
-    mesh = mitsuba.Mesh("solids", int(starts[-1]), len(faces), has_vertex_normals=True, has_vertex_texcoords=True)
-    parameters = mitsuba.traverse(mesh)
-    parameters["vertex_positions"] = np.concatenate([solid.points for solid in solids]).astype(np.float32).ravel()
-    parameters["vertex_normals"] = np.concatenate([solid.normals for solid in solids]).astype(np.float32).ravel()
-    parameters["vertex_texcoords"] = np.concatenate([solid.texture for solid in solids]).astype(np.float32).ravel()
-    parameters["faces"] = faces.astype(np.uint32).ravel()
-    parameters.update()
+    corners = np.concatenate([np.hstack([solid.points, solid.normals, solid.texture]) for solid in solids])
+    faces = np.empty(sum(len(solid.faces) for solid in solids), [("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"] = 3
+    faces["corners"] = np.concatenate([solid.faces + start for solid, start in zip(solids, starts, strict=False)])
     # A mesh that Python made calls back into Python for every ray; one that was read from a file does not.
     with tempfile.TemporaryDirectory() as folder:
-        path = str(Path(folder) / "mesh.ply")
-        mesh.write_ply(path)
-        return mitsuba.load_dict({"type": "ply", "filename": path, "bsdf": _surface(material)})
+        path = Path(folder) / "mesh.ply"
+        path.write_bytes(_PLY % (len(corners), len(faces)) + corners.astype("<f4").tobytes() + faces.tobytes())
+        return mitsuba.load_dict({"type": "ply", "filename": str(path), "bsdf": surface})
 
 
 @lru_cache(maxsize=256)
-def _surface(material: Material) -> Any:
-    """Return how a material scatters light; Mitsuba tabulates a glossy one for 30 ms, so scenes share it."""
-    return mitsuba.load_dict({"type": "twosided", "one": _bsdf(material)})
+def _grained(material: Material) -> Any:
+    """Return how a material with a grain scatters light."""
+    along, across, strength = _GRAINS[material.grain]
+    to_uv = _transform().scale([along / _TILE, across / _TILE, 1.0])
+    tones = _bitmap(linear(material.colour) * (1.0 + strength * tile()[..., None]))
+    return _surface(material.gloss, tones | {"to_uv": to_uv})
 
 
-def _bsdf(material: Material) -> dict[str, Any]:
-    colour = linear(material.colour)
-    texture = _rgb(colour)
-    if material.grain:
-        along, across, strength = _GRAINS[material.grain]
-        to_uv = _transform().scale([along / _TILE, across / _TILE, 1.0])
-        texture = _bitmap(colour * (1.0 + strength * tile()[..., None])) | {"to_uv": to_uv}
-    if not material.gloss:
-        return {"type": "diffuse", "reflectance": texture}
-    return {
-        "type": "roughplastic",
-        "diffuse_reflectance": texture,
-        "alpha": 0.42 - 0.35 * material.gloss,
-        "int_ior": 1.3,
-    }
+@lru_cache(maxsize=256)
+def _plain(gloss: float, palette: tuple[str, ...]) -> Any:
+    """Return how all materials of one gloss and no grain scatter light; their colours lie side by side in a texture.
+
+    Mitsuba tabulates a glossy surface for 50 ms, whatever its colour, so colours and scenes share it. What is of
+    another gloss has to stay out: the mean of the texture says how many paths look for a reflection.
+    """
+    return _surface(gloss, _bitmap(np.array([[linear(colour) for colour in palette]])) | {"filter_type": "nearest"})
+
+
+def _surface(gloss: float, texture: dict[str, Any]) -> Any:
+    bsdf: dict[str, Any] = {"type": "diffuse", "reflectance": texture}
+    if gloss:
+        bsdf = {"type": "roughplastic", "diffuse_reflectance": texture, "alpha": 0.42 - 0.35 * gloss, "int_ior": 1.3}
+    return mitsuba.load_dict({"type": "twosided", "one": bsdf})
 
 
 def _rgb(colour: Array) -> dict[str, Any]:
