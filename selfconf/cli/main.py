@@ -76,6 +76,14 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}; see `{self.prog} --help`\n")
 
 
+class Listed(Parser):
+    """Stands for the commands that are listed, but not loaded: to make a parser for each takes longer than to parse."""
+
+    def parse_known_args(self, *_: object, **__: object) -> NoReturn:
+        """End with exit code 2: only what is typed before a command keeps it from being loaded."""
+        self.error("the first word is the command, and options stand after it")
+
+
 class Version(argparse.Action):
     """`--version`, which looks the version up only when it is asked for: that takes as long as all other arguments."""
 
@@ -120,11 +128,13 @@ def parser(names: Collection[str] = tuple(COMMANDS), settings: Settings | None =
     )
     top.add_argument("--version", action=Version, nargs=0, help="show the version and exit")
     subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    listed = Listed(prog="selfconf")
     for name, does in COMMANDS.items():
         if name in names:
             command_parser(name, subparsers, settings)
         else:
-            subparsers.add_parser(name, help=does)
+            subparsers._choices_actions.append(subparsers._ChoicesPseudoAction(name, (), does))
+            subparsers._name_parser_map[name] = listed
     return top
 
 
