@@ -18,7 +18,10 @@ class Chance:
     """What a string of bytes decides, one choice after the other."""
 
     def __init__(self, decided: bytes) -> None:
-        self._decided = iter(decided)
+        self._all, self._decided = decided, iter(decided)
+
+    def __repr__(self) -> str:
+        return f"Chance({self._all!r})"
 
     def below(self, number: int) -> int:
         """One of so many numbers from 0 on, at most 256."""
@@ -50,3 +53,8 @@ class Chance:
 def by_chance(draw: st.DrawFn, make: Callable[[Chance], T], choices: int = 400) -> T:
     """Values that are made by so many choices at most; later ones fall on the first option."""
     return make(Chance(draw(st.binary(min_size=choices, max_size=choices))))
+
+
+def chances(choices: int = 20) -> st.SearchStrategy[Chance]:
+    """For what has to be chosen later, among what is not known before, by so many choices at most."""
+    return by_chance(lambda chance: chance, choices)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from itertools import islice
 from string import ascii_lowercase
@@ -22,9 +22,11 @@ from selfconf.model.profile import (
     Profile,
     SentRequest,
 )
+from selfconf.model.refusal import Refusal
 from selfconf.model.template import Interaction, Parameter, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
+from selfconf.search.reduction import LazyReduction
 from tests.effort import NIGHTLY, solved_examples
 from tests.search.chance import Chance, by_chance
 
@@ -39,6 +41,19 @@ def agreement(share: float = 1.0) -> settings:
         print_blob=True,  # a failure then says how to replay it
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
+
+
+def explained_once(refusal: Callable[[LazyReduction], Refusal]) -> Callable[[LazyReduction], Refusal]:
+    """An explanation that is found once, where a problem is solved again and again with more steps for the rest."""
+    explained: tuple[Problem, Refusal] | None = None
+
+    def explain(given: LazyReduction) -> Refusal:
+        nonlocal explained
+        if explained is None or explained[0] is not given.problem:
+            explained = given.problem, refusal(given)
+        return explained[1]
+
+    return explain
 
 
 def iri(name: str) -> IRI:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -15,12 +16,14 @@ from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
+from selfconf.search import explain
 from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
 from tests.effort import NIGHTLY
+from tests.search.chance import Chance, by_chance, chances
 from tests.search.oracle import Players, World
-from tests.search.worlds import agreement, component, iri, problem, problems
+from tests.search.worlds import a_problem, agreement, component, explained_once, iri, problem
 
 LATENCY, ERROR = iri("latency"), iri("error")
 
@@ -37,34 +40,39 @@ def stating(problem: Problem, *levels: tuple[CostTerm, ...]) -> Problem:
     return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
 
 
-@st.composite
-def priced_problems(draw: st.DrawFn, plain_ports: bool = False) -> Problem:
-    """Problems with a cost of one or two levels over properties that some components have."""
-    plain = draw(problems(plain=plain_ports))
-    names = sorted({c.profile.component for role in plain.candidates for c in role})
-    amounts = st.integers(-2, 3)
+def priced_problems(plain_ports: bool = False) -> st.SearchStrategy[Problem]:
+    """Problems as `_priced_problem` makes them."""
+    return by_chance(lambda chance: _priced_problem(chance, plain_ports), 440)
+
+
+def _priced_problem(chance: Chance, plain_ports: bool) -> Problem:
+    """A problem with a cost of up to two levels over properties that some components have."""
+    plain = a_problem(chance, plain=plain_ports)
     known = {
-        name: tuple(
-            (predicate, Literal(str(draw(amounts) / 2), IRI(XSD_NAMESPACE + "decimal")))
-            for predicate in (LATENCY, ERROR)
-            if draw(st.integers(0, 3))
-        )
-        for name in names
+        name: tuple((predicate, _amount(chance)) for predicate in (LATENCY, ERROR) if chance.below(4))
+        for name in sorted({c.profile.component for role in plain.candidates for c in role})
     }
     candidates = tuple(
         tuple(replace(c, profile=replace(c.profile, properties=known[c.profile.component])) for c in role)
         for role in plain.candidates
     )
-    terms = st.builds(
-        CostTerm,
-        st.sampled_from([LATENCY, ERROR]),
-        st.sampled_from([Fraction(1), Fraction(-1, 3), Fraction(2)]),
-        st.sampled_from([None, Fraction(1)]),
-        st.sampled_from([None, None, *(role.iri for role in plain.roles)]),
-    )
-    levels = draw(st.lists(st.lists(terms, min_size=1, max_size=2).map(tuple), max_size=2))
+    roles = [None, None, *(role.iri for role in plain.roles)]
+    levels = [tuple(_term(chance, roles) for _ in range(chance.number(1, 2))) for _ in range(chance.number(0, 2))]
     whole = Problem(plain.task, Partition(candidates, plain.variables), plain.hierarchy)
     return stating(whole, *levels)
+
+
+def _amount(chance: Chance) -> Literal:
+    return Literal(str(chance.number(-2, 3) / 2), IRI(XSD_NAMESPACE + "decimal"))
+
+
+def _term(chance: Chance, roles: Sequence[IRI | None]) -> CostTerm:
+    return CostTerm(
+        chance.one_of([LATENCY, ERROR]),
+        chance.one_of([Fraction(1), Fraction(-1, 3), Fraction(2)]),
+        chance.one_of([None, Fraction(1)]),
+        chance.one_of(roles),
+    )
 
 
 def _total(world: World, players: Players) -> tuple[Fraction, ...]:
@@ -92,13 +100,13 @@ def test_the_best_is_the_first_of_least_cost(problem: Problem) -> None:
     assert answer.configuration == world.configuration(least)
 
 
-@given(priced_problems(), st.data())
-@agreement(0.4)
-def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Problem, data: st.DataObject) -> None:
+@given(priced_problems(), chances())
+@agreement(0.75)
+def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Problem, chance: Chance) -> None:
     running = first.search(problem)
     if not isinstance(running, Configuration) or not running.components:
         return
-    lost = frozenset((data.draw(st.sampled_from(running.components)),))
+    lost = frozenset((chance.one_of(running.components),))
     left = Problem(problem.task, problem.partition.without(lost), problem.hierarchy)
     world = World(left.task, left.partition, left.hierarchy)
     played = {assignment.role: assignment.components for assignment in running.assignments}
@@ -136,6 +144,7 @@ def test_what_is_found_in_few_steps_has_a_true_bound(aided: bool, monkeypatch: p
         monkeypatch.setattr(best, "BRANCHING_STEPS", 1)
     else:
         monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+    monkeypatch.setattr(explain, "refusal", explained_once(explain.refusal))
     unproved: list[bool] = []
     """For each answer without a proof whether there is a better one."""
 
