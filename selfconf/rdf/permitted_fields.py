@@ -118,7 +118,10 @@ class Subject:
     """The class that it may, and a component has to, be declared as."""
 
     def __getitem__(self, predicate: IRI) -> Field:
-        return next(field for field in self.fields if field.predicate == predicate)
+        for field in self.fields:  # each port of each advertisement passes here
+            if field.predicate == predicate:
+                return field
+        raise KeyError(predicate)
 
     @property
     def predicates(self) -> frozenset[IRI]:

@@ -11,13 +11,14 @@ from selfconf.model.term import IRI
 class Namespace:
     """The start of a family of IRIs: attribute access and indexing give a member."""
 
-    __slots__ = ("base",)
+    __slots__ = ("__dict__", "base")
 
     def __init__(self, base: str) -> None:
         self.base = base
 
     def __getattr__(self, name: str) -> IRI:
-        return IRI(self.base + name)
+        member = self.__dict__[name] = IRI(self.base + name)  # found at once from then on
+        return member
 
     def __getitem__(self, name: str) -> IRI:
         return IRI(self.base + name)
