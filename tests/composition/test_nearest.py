@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import pytest
 
@@ -34,10 +35,14 @@ SEEDS = (101, 102)
 Form = Callable[[Service, bool], tuple[str, str]]
 
 
-def near(template: str, ads: str, *below: tuple[str, str]) -> list[NearMiss]:
+advertised = lru_cache(maxsize=8)(lambda ads: tuple(read([ads])))
+"""What a text advertises: many requests are made to one collection."""
+
+
+def near(template: str, ads: str, *below: tuple[str, str], others: str = "") -> list[NearMiss]:
     """The near misses of a refusal, where the ontologies say that some classes lie below others."""
     task = bindings.complete(templates.read_task(turtle.parse(template, "t.ttl")))
-    composer, ecology = Composer(task), {one.component: one for one in read([ads])}
+    composer, ecology = Composer(task), {one.component: one for one in (*advertised(ads), *read([others]))}
     refused = composer.compose(ecology, frozenset(), None)
     assert isinstance(refused, Refusal)
     return list(explained(composer, ecology, refused, known(*below), TimeLimit(None)).near_misses)
@@ -51,7 +56,7 @@ def precision(collection: Collection | TangledCollection, form: Form, described:
     rankings: dict[str, list[str]] = {}
     for request in collection.requests:
         template, others = form(request, described)
-        found = near(template, collection.advertisements(described) + others, *collection.below())
+        found = near(template, collection.advertisements(described), *collection.below(), others=others)
         rankings[request.name] = [miss.component.short for miss in found if miss.role.short == "r"]
     return mean_average_precision(rankings, {one.name: collection.relevant(one) for one in collection.requests})
 
