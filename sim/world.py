@@ -43,21 +43,22 @@ class World:
         self.bullet.add_urdf(ROBOT, astrid.URDF, (actual.x, actual.y, 0.0), upright(actual.theta))
 
     def _build(self) -> None:
-        rooms = self.apartment.rooms
-        west, east = min(r.x - r.width / 2 for r in rooms), max(r.x + r.width / 2 for r in rooms)
-        south, north = min(r.y - r.depth / 2 for r in rooms), max(r.y + r.depth / 2 for r in rooms)
-        size = east - west + 2.0, north - south + 2.0, 0.2
-        self.bullet.add(FLOOR, Box(size), ((west + east) / 2, (south + north) / 2, -0.1))
-        for room in rooms:
-            # A film of colour: thick enough to be drawn above the floor, and nothing to touch.
-            film = Box((room.width, room.depth, 0.002))
-            at = room.x, room.y, 0.001
-            self.bullet.add(f"{FLOOR}/{room.name}", film, at, colour=room.colour, solid=False)
+        # What lies lowest comes last: pictures are drawn in this order, and what is hidden is not painted.
         for wall in self.apartment.walls:
             for panel in wall.panels():
                 self.put(panel)
         for piece in self.apartment.furniture:
             self.put(piece)
+        rooms = self.apartment.rooms
+        west, east = min(r.x - r.width / 2 for r in rooms), max(r.x + r.width / 2 for r in rooms)
+        south, north = min(r.y - r.depth / 2 for r in rooms), max(r.y + r.depth / 2 for r in rooms)
+        for room in rooms:
+            # A film of colour: thick enough to be drawn above the floor, and nothing to touch.
+            film = Box((room.width, room.depth, 0.002))
+            at = room.x, room.y, 0.001
+            self.bullet.add(f"{FLOOR}/{room.name}", film, at, colour=room.colour, solid=False)
+        size = east - west + 2.0, north - south + 2.0, 0.2
+        self.bullet.add(FLOOR, Box(size), ((west + east) / 2, (south + north) / 2, -0.1))
 
     def put(self, block: Block) -> None:
         """Put a block into the world, such as an obstacle in her way; its name must be new."""

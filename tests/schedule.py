@@ -29,6 +29,8 @@ WHOLE = {
     "tests/query/test_endpoint.py",
     "tests/serve/test_page.py",
     "tests/sim/test_pictures.py",
+    "tests/sim/test_rehearsal.py",
+    "tests/test_ci_for_users.py",
     "tests/test_house.py",
 }
 """Modules whose tests share something that takes seconds to make: an ecology, an endpoint, an album, a survey."""

@@ -9,6 +9,8 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -33,18 +35,24 @@ GOOD = """\
 """
 WRONG = GOOD.replace(", rob:Tuner", "")
 STRANGE = GOOD.replace("rob:Tuner", "rob:Toaster")
+Validated = Callable[..., subprocess.CompletedProcess[str]]
 VOCABULARY = "<https://w3id.org/selfconf/robotics#Toaster> a <http://www.w3.org/2002/07/owl#Class> .\n"
+
+
+def runner(folder: Path) -> Path:
+    """A user's repository, and a runner beside it on which selfconf is installed."""
+    (folder / "repo" / "my robots").mkdir(parents=True)
+    program = folder / "runner" / "selfconf" / "bin" / "selfconf"
+    program.parent.mkdir(parents=True)
+    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m selfconf "$@"\n')
+    program.chmod(0o755)
+    return folder / "repo"
 
 
 @pytest.fixture
 def repository(tmp_path: Path) -> Path:
-    """A user's repository, and a runner on which selfconf is installed."""
-    (tmp_path / "repo" / "my robots").mkdir(parents=True)
-    program = tmp_path / "runner" / "selfconf" / "bin" / "selfconf"
-    program.parent.mkdir(parents=True)
-    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m selfconf "$@"\n')
-    program.chmod(0o755)
-    return tmp_path / "repo"
+    """A repository of this test alone."""
+    return runner(tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -75,9 +83,18 @@ def action_step(
     return on_runner(repository, step["run"], **filled, **environment)
 
 
-def validate_step(repository: Path, paths: str, ontology: str = "", **inputs: str) -> subprocess.CompletedProcess[str]:
-    """The last step of the action."""
-    return action_step(repository, -1, {"paths": paths, "ontology": ontology, **inputs})
+@pytest.fixture(scope="module")
+def validated(tmp_path_factory: pytest.TempPathFactory) -> Validated:
+    """The last step of the action, over a file with some text and beside a vocabulary; the same is asked once."""
+
+    @cache
+    def ask(text: str, ontology: str = "", strict: str = "false") -> subprocess.CompletedProcess[str]:
+        repository = runner(tmp_path_factory.mktemp("validated"))
+        (repository / "my robots" / "tuner.ttl").write_text(text)
+        (repository / "my words.ttl").write_text(VOCABULARY)
+        return action_step(repository, -1, {"paths": "my robots\n", "ontology": ontology, "strict": strict})
+
+    return ask
 
 
 def test_the_action_installs_the_checkout_it_lies_in(repository: Path, offline: dict[str, str]) -> None:
@@ -109,27 +126,22 @@ def test_the_three_lines_need_one_thing_filled_in(repository: Path, offline: dic
 
 
 @pytest.mark.parametrize(("text", "code"), [(GOOD, 0), (STRANGE, 0), (WRONG, 1), ("no Turtle", 2)])
-def test_the_action_ends_as_validate_ends(repository: Path, text: str, code: int) -> None:
-    (repository / "my robots" / "tuner.ttl").write_text(text)
-    assert validate_step(repository, "my robots\n").returncode == code
+def test_the_action_ends_as_validate_ends(validated: Validated, text: str, code: int) -> None:
+    assert validated(text).returncode == code
 
 
-def test_the_action_writes_workflow_commands(repository: Path) -> None:
-    (repository / "my robots" / "tuner.ttl").write_text(WRONG)
-    assert validate_step(repository, ".").stdout.startswith("::error file=my robots/tuner.ttl,line=4,")
+def test_the_action_writes_workflow_commands(validated: Validated) -> None:
+    assert validated(WRONG).stdout.startswith("::error file=my robots/tuner.ttl,line=4,")
 
 
-def test_the_action_knows_the_ontologies_it_is_given(repository: Path) -> None:
-    (repository / "my robots" / "tuner.ttl").write_text(STRANGE)
-    (repository / "my words.ttl").write_text(VOCABULARY)
-    assert "::warning" in validate_step(repository, "my robots").stdout
-    assert not validate_step(repository, "my robots", "my words.ttl\n").stdout
+def test_the_action_knows_the_ontologies_it_is_given(validated: Validated) -> None:
+    assert "::warning" in validated(STRANGE).stdout
+    assert not validated(STRANGE, ontology="my words.ttl\n").stdout
 
 
-def test_warnings_fail_the_action_where_it_is_strict(repository: Path) -> None:
-    (repository / "my robots" / "tuner.ttl").write_text(STRANGE)
-    assert validate_step(repository, "my robots").returncode == 0
-    assert validate_step(repository, "my robots", strict="true").returncode == 1
+def test_warnings_fail_the_action_where_it_is_strict(validated: Validated) -> None:
+    assert validated(STRANGE).returncode == 0
+    assert validated(STRANGE, strict="true").returncode == 1
 
 
 def test_the_action_is_a_composite_of_shell_steps() -> None:

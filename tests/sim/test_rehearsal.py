@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache, partial
 
 import pytest
 
@@ -18,6 +20,12 @@ pytestmark = [pytest.mark.sim, pytest.mark.slow]
 ORANGE = (1.0, 0.5, 0.0)
 
 
+@pytest.fixture(scope="module")
+def logs(apartment: Apartment) -> Callable[[int], Log]:
+    """The log of a seed, with a pause of two seconds; each seed is rehearsed once."""
+    return cache(partial(rehearse, apartment, pause=2.0))
+
+
 def bedroom_error(log: Log, apartment: Apartment) -> float:
     standing = apartment.place("bedroom").standing
     assert standing is not None
@@ -26,9 +34,9 @@ def bedroom_error(log: Log, apartment: Apartment) -> float:
 
 @pytest.mark.parametrize("seed", range(1, 11 if NIGHTLY else 2))
 def test_the_tracker_loses_her_before_the_door_and_odometry_brings_her_to_the_bedroom(
-    apartment: Apartment, seed: int
+    apartment: Apartment, logs: Callable[[int], Log], seed: int
 ) -> None:
-    log = rehearse(apartment, seed)
+    log = logs(seed)
     assert log.lost_at is not None
     assert 3.2 < log.poses[log.times.index(log.lost_at)].x < apartment.doors[0].x
     assert log.outcome is not None
@@ -38,8 +46,8 @@ def test_the_tracker_loses_her_before_the_door_and_odometry_brings_her_to_the_be
     assert list(dict.fromkeys(log.sources)) == ["tracker", "none", "odometry"]
 
 
-def test_she_stands_still_while_nobody_sends_poses(apartment: Apartment) -> None:
-    log = rehearse(apartment, seed=1, pause=2.0)
+def test_she_stands_still_while_nobody_sends_poses(logs: Callable[[int], Log]) -> None:
+    log = logs(1)
     waiting = [pose for pose, source in zip(log.poses, log.sources, strict=True) if source == "none"]
     assert waiting[-1].distance(waiting[-8]) < 0.005
 
