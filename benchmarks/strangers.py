@@ -181,13 +181,13 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="what strangers cost an honest task")
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--smoke", action="store_true", help="twenty strangers once, to see that it works")
+    parser.add_argument("--smoke", action="store_true", help="a stranger of each kind once, to see that it works")
     parser.add_argument("--act", nargs="+", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.act:
         act(Path(given.act[0]), given.act[1:])
         return
-    number, rounds = (20, 1) if given.smoke else (NUMBER, given.rounds)
+    number, rounds = (len(KINDS), 1) if given.smoke else (NUMBER, given.rounds)
     head = ["seconds", "without", f"beside {number:,} strangers", "more"]
     print(f"{table(head, [timed.row() for timed in measure(number, rounds)])}\n\n{described('eclipse-zenoh')}")
 

@@ -1,7 +1,7 @@
 """`selfconf validate` beside the pyshacl command line, over the same advertisements in one run.
 
 `python -m benchmarks.validate` writes a table in Markdown: 1,000 advertisements, one in ten of which breaks a shape;
-`--full` adds 10,000, `--smoke` does it with 20. pyshacl has every shape of selfconf in one file and is run once for
+`--full` adds 10,000, `--smoke` does it with 10. pyshacl has every shape of selfconf in one file and is run once for
 each of ten files, which is extrapolated to all of them, and once over one file with everything. Times are of processes,
 start included: the fastest of several for selfconf, one run for pyshacl, which takes minutes. Both must find the same
 files wrong, in the very runs that are timed. Memory is that of the largest process. A second table has odd files.
@@ -141,9 +141,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     parser = argparse.ArgumentParser(description="selfconf validate beside the pyshacl command line")
     parser.add_argument("--full", action="store_true", help="10,000 advertisements as well; minutes")
-    parser.add_argument("--smoke", action="store_true", help="20 advertisements, once, to see that it runs")
+    parser.add_argument("--smoke", action="store_true", help="10 advertisements, once, to see that it runs")
     given = parser.parse_args(arguments)
-    sizes = [20] if given.smoke else [1_000, 10_000] if given.full else [1_000]
+    sizes = [10] if given.smoke else [1_000, 10_000] if given.full else [1_000]
     with tempfile.TemporaryDirectory() as folder:
         rows = [row for size in sizes for row in measure(size, 1 if given.smoke else 3, Path(folder))]
         strange = odd(20 if given.smoke else 8_000, Path(folder))

@@ -13,7 +13,7 @@ from benchmarks import validate
 def test_the_short_run_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert validate.main(["--smoke"]) == 0
     printed = capsys.readouterr().out
-    assert printed.count("\n| 20 |") == 4
+    assert printed.count("\n| 10 |") == 4
     assert "20 SC-L02" in printed
     assert "| a literal of 17 MiB | 1 SC-S05 | 2 |" in printed
 

@@ -11,7 +11,7 @@ from tests.benchmark import short_run
 @pytest.mark.process
 def test_the_short_run_finds_the_same_answers() -> None:
     printed = short_run("benchmarks.strangers")
-    assert "| seconds | without | beside 20 strangers | more |" in printed
+    assert "| seconds | without | beside 10 strangers | more |" in printed
     assert printed.count("| living, ") == 3
 
 
