@@ -227,10 +227,26 @@ def _stores_with(types: TypesByName) -> tuple[tuple[Any, ...], dict[str, str]]:
         for each in found:
             store.fielddefs.pop(each, None)
             store.types.pop(each, None)
-        store.register(found)
+        known = {each: _made[each] for each in found if each in _made and _made[each].said == found[each]}
+        store.register({each: said for each, said in found.items() if each not in known})
+        for each, made in known.items():
+            store.fielddefs[each], store.types[each] = made.definition, made.of_messages
+        _made.update((each, _MadeType(found[each], store.fielddefs[each], store.types[each])) for each in found)
         stores.append(store)
         left_out = {name: why for name, why in missing.items() if not index or name in left_out}
     return tuple(stores), left_out
+
+
+class _MadeType(NamedTuple):
+    """What rosbags makes of what is said of a type; most of its time goes into the class of the messages."""
+
+    said: Any
+    definition: Any
+    of_messages: type
+
+
+_made: dict[str, _MadeType] = {}
+"""What was made of each type at last: the distributions share it, as it names the types of the fields, and no more."""
 
 
 def usual_type(name: str) -> MessageType | None:

@@ -31,6 +31,13 @@ def test_a_message_is_read_and_written_as_ros_does() -> None:
     assert ros_messages.message({"data": "hello"}, STRING) == HELLO
 
 
+def test_a_type_is_made_once_for_all_distributions() -> None:
+    first, *others = ros_messages._stores()  # made anew they would take as long for each distribution
+    for name in ("std_srvs/srv/Trigger_Request", "std_srvs/srv/Trigger_Response"):
+        assert all(store.types[name] is first.types[name] for store in others)
+        assert all(store.hash_rihs01(name) == first.hash_rihs01(name) for store in others)
+
+
 def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
     scan = usual("sensor_msgs/msg/LaserScan")
     fields = ros_messages.message_fields(
