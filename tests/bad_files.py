@@ -1,6 +1,6 @@
 """The files of `tests/bad`, each of which is wrong in the way that its first line promises.
 
-To validate all of them takes a quarter of a minute, so each is validated once in a process and the reports are shared.
+To validate all of them takes seconds, so each is validated once in a process and the reports are shared.
 Where tests run in several processes, `tests/schedule.py` gives all tests that do so to one of them.
 """
 
@@ -35,8 +35,10 @@ def source(path: Path) -> SourceText:
 @cache
 def checked(path: Path) -> Report:
     """The report of one bad file that is validated alone, with the shapes and ontologies that ship."""
-    return validate_texts([source(path)], _all(library.shapes()), _all(library.ontologies()))
+    return validate_texts([source(path)], *_shipped())
 
 
-def _all(paths: list[Path]) -> tuple[SourceText, ...]:
-    return tuple(map(source, paths))
+@cache
+def _shipped() -> tuple[tuple[SourceText, ...], tuple[SourceText, ...]]:
+    """The shapes and the ontologies that ship."""
+    return tuple(map(source, library.shapes())), tuple(map(source, library.ontologies()))

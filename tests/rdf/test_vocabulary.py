@@ -41,7 +41,8 @@ def used(namespace: str, *tops: str) -> Iterator[tuple[str, Path]]:
     """The members of a namespace that code names, with the file."""
     for top in tops:
         for path in sorted((ROOT / top).rglob("*.py")):
-            for node in ast.walk(ast.parse(path.read_text())):
+            text = path.read_text()
+            for node in ast.walk(ast.parse(text)) if namespace in text else ():
                 owner = getattr(node, "value", None)
                 if not isinstance(owner, ast.Name) or owner.id != namespace:
                     continue

@@ -20,6 +20,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +52,9 @@ def answers(group: str, here: Path) -> dict[str, Answer]:
     return found
 
 
+@cache
 def load(part: str) -> Record:
-    """What is recorded: of the structure (`answers`) or of the `sentences`."""
+    """What is recorded: of the structure (`answers`) or of the `sentences`, which are read once."""
     path = HERE / f"{part}.json.xz"
     record: Record = json.loads(lzma.decompress(path.read_bytes())) if path.exists() else {}
     return record
