@@ -188,13 +188,14 @@ class Exploration:
             yield f"{who} ends", new.freeze()
 
     def _second_looks(self, state: State, who: int) -> Iterator[tuple[str, State]]:
+        new = self.world(state)  # one that is looked at in vain is as it was
         for component in range(self.places):
-            new = self.world(state)
             if new.time_out(who, component):
                 yield f"{who} calls {component} again", new.freeze()
-            new = self.world(state)
+                new = self.world(state)
             if new.look(who, component):
                 yield f"{who} looks at {component}", new.freeze()
+                new = self.world(state)
 
     def explore(self) -> Findings:
         """Explore every interleaving, depth first, and say what is wrong, if anything is."""

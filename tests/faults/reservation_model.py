@@ -16,8 +16,9 @@ the tests can show that each of them is needed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 Mask = int
 """A set of components, as bits; the order of the components is the order of the bits."""
@@ -132,21 +133,45 @@ def bits(mask: Mask) -> list[int]:
     return [index for index in range(mask.bit_length()) if mask >> index & 1]
 
 
+Machine = TypeVar("Machine", Configurator, Place)
+Frozen = tuple[tuple[int, ...], ...]
+
+
+class Thawed(dict[int, Machine]):
+    """The machines of one kind in a state, by number; an action touches few, and only these are taken apart."""
+
+    __slots__ = ("_frozen", "_kind")
+
+    def __init__(self, kind: Callable[[tuple[int, ...]], Machine], frozen: Frozen) -> None:
+        self._kind, self._frozen = kind, frozen
+
+    def __missing__(self, number: int) -> Machine:
+        one = self[number] = self._kind(self._frozen[number])
+        return one
+
+    def freeze(self) -> Frozen:
+        """All of them as a value."""
+        frozen = list(self._frozen)
+        for number, one in self.items():
+            frozen[number] = one.freeze()
+        return tuple(frozen)
+
+
 class World:
     """One state, taken apart so that it can be changed."""
 
     def __init__(self, claims: Sequence[Claim], scheme: Scheme, places: int, state: State) -> None:
         self.claims, self.scheme, self.count = claims, scheme, places
         configurators, components, there, back, budget = state
-        self.configurators = [Configurator(one) for one in configurators]
-        self.places = [Place(one) for one in components]
+        self.configurators = Thawed(Configurator, configurators)
+        self.places = Thawed(Place, components)
         self.there, self.back, self.budget = list(there), list(back), list(budget)
 
     def freeze(self) -> State:
         """The state as a value."""
         return (
-            tuple(one.freeze() for one in self.configurators),
-            tuple(one.freeze() for one in self.places),
+            self.configurators.freeze(),
+            self.places.freeze(),
             tuple(self.there),
             tuple(self.back),
             (self.budget[0], self.budget[1], self.budget[2]),
