@@ -119,6 +119,8 @@ class Network:
 
     def reconnect(self, left: MemoryBus, right: MemoryBus) -> None:
         """Two nodes reach each other again, and see each other's lives."""
+        if self._cut.isdisjoint([(left.number, right.number), (right.number, left.number)]):
+            return
         self.shape += 1
         for sender, receiver in ((left, right), (right, left)):
             reached = self.reaches(sender, receiver)

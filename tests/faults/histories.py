@@ -19,6 +19,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -187,7 +188,7 @@ class History:
 
     def composites(self) -> Iterator[Life]:
         """The composites that live now: what they do themselves is nothing, and takes no time."""
-        for site, composites in self.lab.composites.items():
+        for site, composites in self.lab.composites.items() if self.script.ecology.composites else ():
             node = self.node(site) if composites.living else None
             for inside in composites.living.values() if node is not None else ():
                 assert node is not None
@@ -196,14 +197,14 @@ class History:
 
     def insides(self) -> Iterator[InsideOfComposite]:
         """The composites that live now, with what they are inside."""
-        for site, composites in self.lab.composites.items():
+        for site, composites in self.lab.composites.items() if self.script.ecology.composites else ():
             if composites.living and self.node(site) is not None:
                 yield from composites.living.values()
 
     def living(self) -> list[TaskRunner]:
         """The configurators that have not died, those inside of composites too."""
         runners = [inside.runner for inside in self.insides() if inside.runner is not None]
-        return [agent for agent in (*self.agents, *runners) if self.lab.is_open(agent)]
+        return [agent for agent in chain(self.agents, runners) if self.lab.is_open(agent)]
 
     def life(self, name: str) -> Life | None:
         """The latest life of a component, if it has not ended."""

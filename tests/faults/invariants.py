@@ -22,6 +22,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.blindness import TOLERATES
+from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.supervision import GRACE
 from tests.faults.histories import ASKED, History, Life
@@ -34,7 +35,8 @@ ROUNDING = 1e-6
 MOST_WAITING = 2_000
 """How many messages and timers may wait in the network."""
 _STATE = attrgetter("state")
-_OF_RUNTIME = attrgetter("activation", "code.turn", "code._acting_turn")  # by the turns it is decided whether it acts
+_ACTIVATION = attrgetter("activation")
+_TURNS = attrgetter("turn", "_acting_turn")  # by these it is decided whether code acts
 LOOKS = 10.0
 """Seconds within which a configurator notices that a component does not act any more without having said so."""
 
@@ -403,8 +405,8 @@ class Watch:
         self._seen: list[object] = []
         self._shape = (-1, 0)
         """The shape of the network, and how many processes there have been, when it was noted which of them live."""
-        self._living: list[Life] = []
         self._runtimes: list[ComponentRuntime] = []
+        self._codes: list[ComponentCode] = []
         self._said: list[list[tuple[object, ...]]] = []
         self._threads: list[SimulatedCodeThread] = []
         self.broken: list[str] = []
@@ -513,20 +515,22 @@ class Watch:
         history, network = self._history, self._history.network
         if (network.shape, len(history.processes)) != self._shape:
             self._shape = network.shape, len(history.processes)
-            self._living = [life for life in history.processes if life.node.open]
-            self._runtimes = [life.runtime for life in self._living]
-            self._said = [life.recorder.said for life in self._living]
-            self._threads = [life.thread for life in self._living]
+            living = [life for life in history.processes if life.node.open]
+            self._runtimes = [life.runtime for life in living]
+            self._codes = [life.runtime.code for life in living]
+            self._said = [life.recorder.said for life in living]
+            self._threads = [life.thread for life in living]
             self._seen.clear()
-        insides = list(history.insides()) if history.script.ecology.composites else []
+        insides = list(history.insides())
         now = network.time
         seen: list[object] = [
             list(map(_STATE, history.agents)),
-            list(map(_OF_RUNTIME, self._runtimes)),
+            list(map(_ACTIVATION, self._runtimes)),
+            list(map(_TURNS, self._codes)),
             list(map(len, self._said)),
             # Few threads have a limit that is over; of those it matters whether they hang.
             [(thread, thread.hangs) for thread in self._threads if thread.limit_until < now],
-            [(_OF_RUNTIME(one.runtime), one.runner and one.runner.state) for one in insides],
+            [(one.runtime.activation, _TURNS(one.runtime.code), one.runner and one.runner.state) for one in insides],
             len(network._events) > MOST_WAITING,
         ]
         changed = seen != self._seen
