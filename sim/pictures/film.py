@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -72,17 +73,21 @@ def shoot(
         column, row = view.project(np.array([[x, y, 0.0]]))[0]
         return float(column), float(row)
 
+    @lru_cache(maxsize=1)  # time stands still while a FAIL flashes
+    def shown(time: float) -> Image.Image:
+        at = run.at(time)
+        whole = np.where(trail(run, time, view.size, place, scale)[..., None], painted, empty)
+        left, top, right, bottom = window = _reach(view, at)
+        if right > left and bottom > top:
+            scene.change(at, floor.until(run, time))
+            drawn, part = scene.picture(view, samples, window), whole[top:bottom, left:right]
+            part += (drawn - part) * _feather(drawn.shape[:2])
+        return Image.fromarray(to_screen(whole))
+
     shots = moments(run, count)
     frames: list[Image.Image] = []
     for k, moment in enumerate(shots):
-        at = run.at(moment.time)
-        shown = np.where(trail(run, moment.time, view.size, place, scale)[..., None], painted, empty)
-        left, top, right, bottom = window = _reach(view, at)
-        if right > left and bottom > top:
-            scene.change(at, floor.until(run, moment.time))
-            drawn, part = scene.picture(view, samples, window), shown[top:bottom, left:right]
-            part += (drawn - part) * _feather(drawn.shape[:2])
-        frames.append(_captioned(Image.fromarray(to_screen(shown)), view, run, moment))
+        frames.append(_captioned(shown(moment.time), view, run, moment))
         progress((k + 1) / len(shots))
     return frames
 

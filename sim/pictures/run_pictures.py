@@ -61,7 +61,7 @@ def draw(
 
     These are `run-perspective.png`, `run-plan.png` and `run.webp`; `configuration-1.svg` and `.png` and so on for each
     wiring of the record; `tracker-view.png` if it has camera images. `quality` is a name in QUALITIES (KeyError) or a
-    Quality. "fine" takes somewhat over a minute of one core, "draft" a sixth of that; both use all cores.
+    Quality. "fine" takes somewhat over a minute of one core, "draft" a tenth of that; both use all cores.
     """
     care = QUALITIES[quality] if isinstance(quality, str) else quality
     out_dir.mkdir(parents=True, exist_ok=True)

@@ -46,7 +46,7 @@ from sim.pictures.view_area import view_area
 from sim.pictures.viewpoint import perspective, plan
 
 TINY = Quality((420, 300), samples=1, density=60, film_size=(220, 130), film_samples=1, film_density=60, frames=4)
-LEAST = Quality((320, 240), samples=1, density=20, film_size=(110, 65), film_samples=1, film_density=20, frames=2)
+LEAST = Quality((240, 200), samples=1, density=20, film_size=(110, 65), film_samples=1, film_density=20, frames=2)
 """For what is drawn to see that it can be."""
 GREY = Material("#808080")
 HOSTILE = "<script>&\"'\x00]]> ]\ud800 \u202e漢字\n" + "long " * 60

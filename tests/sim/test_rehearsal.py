@@ -54,7 +54,7 @@ def test_she_stands_still_while_nobody_sends_poses(logs: Callable[[int], Log]) -
 
 def test_an_obstacle_in_her_way_is_avoided(apartment: Apartment) -> None:
     crate = Block("crate", 2.2, 1.33, 0.0, 0.4, 0.3, 0.3, 0.6, ORANGE)
-    free, log = rehearse(apartment, seed=3, patience=8.0), rehearse(apartment, seed=3, obstacles=[crate])
+    free, log = rehearse(apartment, seed=3, patience=5.0), rehearse(apartment, seed=3, obstacles=[crate])
     assert min(crate.distance(pose.x, pose.y) for pose in free.poses) == 0.0
     assert min(crate.distance(pose.x, pose.y) for pose in log.poses) > 0.26
     assert log.touched == set()
