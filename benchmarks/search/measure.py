@@ -26,7 +26,7 @@ Engine = Callable[[Problem], First]
 
 WARMING = (
     f.navigation(3, 7001),
-    f.navigation(3, 7001, solvable=False),
+    f.navigation(2, 7001, solvable=False),
     f.satisfiability(50, 4.26, 7001),
     cover(60, 40, 9, 0.2, 500),
 )

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import pyoxigraph as ox
 import rdflib
+import rdflib.plugins.sparql  # here, as each process that is forked off would have to read its grammar
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.profile import Input, Output, Profile
