@@ -95,7 +95,10 @@ class Activation:
 
     def hold(self, task: str) -> Hold | None:
         """The hold of a task, if it has one."""
-        return next((hold for hold in self.holds if hold.claim.task == task), None)
+        for hold in self.holds:
+            if hold.claim.task == task:
+                return hold
+        return None
 
     @property
     def first(self) -> Hold | None:

@@ -91,6 +91,7 @@ class Contention:
         """When an actuator acted on a part of its configuration, or before what feeds it."""
         for name in advertisements():
             self.lab.component(name, Observed(name, self))
+        self._runtimes = {runtime.profile.component: runtime for runtime in self.lab.runtimes.values()}
         self.network.stepped = self._look
         for number in range(tasks):
             wanted = self.chance.sample(range(SENSORS), self.chance.randint(1, SENSORS))
@@ -144,14 +145,13 @@ class Contention:
             if configuration is None:
                 continue
             task = agent.identity.task
-            by_component = {runtime.profile.component: runtime for runtime in self.lab.runtimes.values()}
             for component in configuration.components:
-                runtime = by_component[component]
+                runtime = self._runtimes[component]
                 hold = runtime.activation.hold(task)
                 if runtime.profile.outputs or hold is None or not hold.active or not runtime.active:
                     continue
                 for part in configuration.components:
-                    if by_component[part].activation.hold(task) is None:
+                    if self._runtimes[part].activation.hold(task) is None:
                         self.wrong.append(
                             f"{self.network.time:.4f} {component.short} acts for {task} without {part.short}"
                         )

@@ -32,6 +32,7 @@ from selfconf.deployment import TaskRunner
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
+from selfconf.sdk import runtime as component_runtime
 from selfconf.sdk.component import Refused
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
@@ -87,6 +88,11 @@ class Life:
         return inputs.followed if isinstance(inputs, Inputs) else set()
 
 
+def nothing() -> int:
+    """No memory at all."""
+    return 0
+
+
 class History:
     """A script that is played; `broken` says what was not as it must be, and when."""
 
@@ -126,7 +132,11 @@ class History:
     def run(self) -> None:
         """Play the script, then let nothing go wrong any more; what breaks in a program is an invariant too."""
         try:
-            with mock.patch.object(discovery, "MANY_LIVES", 0 if self.script.large else discovery.MANY_LIVES):
+            with (
+                mock.patch.object(discovery, "MANY_LIVES", 0 if self.script.large else discovery.MANY_LIVES),
+                # All components are in this process: what memory it takes is news to nobody.
+                mock.patch.object(component_runtime, "resident_memory", nothing),
+            ):
                 self._play()
         except Exception:
             self.watch.note("nothing breaks", traceback.format_exc(limit=-4))
