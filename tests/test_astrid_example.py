@@ -5,14 +5,21 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-pytestmark = [pytest.mark.process, pytest.mark.slow]
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        find_spec("zenoh_ros2_sdk") is None,
+        reason="zenoh-ros2-sdk, whose node the example plays, is not installed",
+    ),
+]
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 pytest.importorskip("aiohttp", reason="the extra `wot` is not installed")
-pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk, whose node the example plays, is not installed")
 ROOT = Path(__file__).parent.parent
 
 

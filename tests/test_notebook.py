@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-nbclient = pytest.importorskip("nbclient", reason="nbclient, which runs notebooks, is not installed")
-nbformat = pytest.importorskip("nbformat")
-pytest.importorskip("ipykernel", reason="ipykernel, in which notebooks run, is not installed")
-
 TOUR = Path(__file__).resolve().parent.parent / "examples" / "notebook" / "tour.ipynb"
 PATIENCE = 120
 """Seconds that a cell may take on a busy machine."""
-pytestmark = pytest.mark.process
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(
+        None in map(find_spec, ("nbclient", "ipykernel")),
+        reason="nbclient, which runs notebooks, or a kernel is missing",
+    ),
+]
 
 
 def read() -> Any:
     """The notebook as it is in the tree."""
+    import nbformat  # here, as each process that runs tests would have to import it
+
     return nbformat.read(TOUR, as_version=4)
 
 
 @pytest.fixture(scope="module")
 def shown() -> dict[str, dict[str, str]]:
     """What each cell shows by media type, by the source of the cell; running it ends at the first error."""
+    import nbclient
+
     notebook = read()
     where = {"metadata": {"path": str(TOUR.parent)}}
     with pytest.MonkeyPatch.context() as patch:
@@ -55,6 +62,8 @@ def _last(source: str) -> str:
 
 
 def test_the_notebook_is_valid_and_is_kept_without_outputs() -> None:
+    import nbformat
+
     notebook = read()
     nbformat.validate(notebook)
     for cell in notebook.cells:
