@@ -105,7 +105,7 @@ class OutputShape:
         """For each path of the shape, or property that values are compared to, what the tests see in its place."""
         named = {subject: [*map(self._renamed, said)] for subject, said in self._document.statements.items()}
         self._paths = [(shape_text(self._document, path), self._document, path) for path in self._names]
-        self._tests = compile_role(Document("sc:accepts", named, {}), _SHAPE, (), {}, frozenset())
+        self._tests = compile_role(Document("sc:accepts", named, {}), _SHAPE, (), frozenset())
 
     def _renamed(self, statement: tuple[IRI, Term]) -> tuple[IRI, Term]:
         predicate, value = statement

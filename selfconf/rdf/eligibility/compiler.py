@@ -7,7 +7,7 @@
   `selfconf.rdf.shacl.value_tests` knows of single values (4.1.2, 4.1.3, 4.3, 4.4) and of pairs (4.5.3, 4.5.4);
 * `sh:qualifiedValueShape` over a node shape that asks such things of single values (4.7.3);
 * `sh:and`, `sh:or`, `sh:xone`, `sh:not` and `sh:node` over shapes of that kind (4.6, 4.7.1);
-* a parameter left unbound inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
+* a parameter inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
 
 A shape that says more is *incomplete* here: its tests are still necessary, so they are the prefilter, and pySHACL
 judges the survivors by the whole shape. That both ways give one partition is a property test. Left out on purpose:
@@ -35,9 +35,9 @@ from selfconf.rdf.eligibility.role_tests import (
 )
 from selfconf.rdf.permitted_fields import STRUCTURE
 from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
-from selfconf.rdf.tasks import ROLE_STRUCTURE
+from selfconf.rdf.tasks import ROLE_STRUCTURE, substituted
 from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE
+from selfconf.rdf.vocabulary import LABEL, RDFS, SC, SH, TYPE
 
 SHAPE_ANNOTATIONS = frozenset(
     (
@@ -76,14 +76,13 @@ def compile_role(
     document: Document,
     role: IRI,
     settings: tuple[IRI, ...],
-    bindings: Mapping[IRI, Term],
     free: frozenset[IRI],
 ) -> CompiledRole:
-    """Compile the shape of a role, with bound parameters replaced by their values; `settings` are the types it sets.
+    """Compile the shape of a role, in which parameters stand that are `free`; `settings` are the types that it sets.
 
     Raises TemplateError for shapes within shapes without end, or nearly so.
     """
-    compiler = _Compiler(document, bindings, free)
+    compiler = _Compiler(document, free)
     try:
         tests = (*compiler.shape(role), *map(ParameterTest, settings))
         return CompiledRole(role, tests, not compiler.rest, local(document, role))
@@ -91,15 +90,13 @@ def compile_role(
         raise TemplateError(f"the shape of the role {role!r} nests too deeply", file=document.source) from None
 
 
-def bound_shape(document: Document, bindings: Mapping[IRI, Term]) -> list[Triple]:
+def bound_shape(document: Document, values: Mapping[IRI, Term]) -> list[Triple]:
     """The triples of a template for pySHACL: parameters replaced, roles typed as node shapes without targets."""
     triples: list[Triple] = []
     roles = set(document.instances(SC.Role))
-    for subject, predicate, value in document.triples():
+    for subject, predicate, value in substituted(document, values).triples():
         if subject in roles and (predicate in TARGETS or (predicate in ROLE_STRUCTURE and predicate != TYPE)):
             continue
-        if predicate in SH or predicate == RDF.first:
-            value = bindings.get(value, value) if isinstance(value, IRI) else value
         triples.append((subject, predicate, value))
     triples.extend((role, TYPE, SH.NodeShape) for role in roles)
     return triples
@@ -167,8 +164,8 @@ class _PropertyParts:
 class _Compiler:
     """Compiles one shape; `rest` is raised as soon as something is met that only pySHACL can judge."""
 
-    def __init__(self, document: Document, bindings: Mapping[IRI, Term], free: frozenset[IRI]) -> None:
-        self.document, self.bindings, self.free = document, bindings, free
+    def __init__(self, document: Document, free: frozenset[IRI]) -> None:
+        self.document, self.free = document, free
         self.own = component_parameters(document)
         """The predicates by which shapes use constraint components of the document."""
         self.rest = False
@@ -190,19 +187,18 @@ class _Compiler:
             yield from self._constraint(predicate, raw)
         self._above.pop()
 
-    def _constraint(self, predicate: IRI, raw: Term) -> Iterator[RoleTest]:
+    def _constraint(self, predicate: IRI, value: Term) -> Iterator[RoleTest]:
         """One constraint of a node shape."""
-        value = self._bound(raw)
         if predicate == SH["class"] and isinstance(value, IRI) and value not in self.free:
             yield ClassTest(value)
         elif predicate == SH.hasValue and value not in self.free:
             yield SelfTest(frozenset((value,)))
-        elif predicate == SH["in"] and not self._mentions(raw):
-            yield SelfTest(frozenset(map(self._bound, self.document.items(raw))))
+        elif predicate == SH["in"] and not self._mentions(value):
+            yield SelfTest(frozenset(self.document.items(value)))
         elif predicate == SH.property:
-            yield from self._property(raw)
+            yield from self._property(value)
         elif predicate in _LOGIC:
-            yield from self._logic(predicate, raw)
+            yield from self._logic(predicate, value)
         elif predicate in self.own or (predicate in SH and predicate not in _SILENT):
             self.rest = True
 
@@ -292,11 +288,10 @@ class _Compiler:
         self.rest = self.rest or self._repeats(shape)
         return self._test(SH.value, parts)
 
-    def _constraint_of_values(self, predicate: IRI, raw: Term, parts: _PropertyParts) -> None:
+    def _constraint_of_values(self, predicate: IRI, value: Term, parts: _PropertyParts) -> None:
         """One constraint of a property shape."""
-        value = self._bound(raw)
         if predicate == SH["in"]:
-            self._among(raw, parts)
+            self._among(value, parts)
         elif predicate == SH.hasValue and value in self.free and isinstance(value, IRI):
             parts.free_required.append(value)
         elif predicate in _QUALIFIED:
@@ -306,14 +301,14 @@ class _Compiler:
         elif predicate in self.own:
             self.rest = True
         elif predicate in SH and predicate not in _SILENT and not parts.takes(predicate, value):
-            if self._mentions(raw):
+            if self._mentions(value):
                 self.rest = True
             else:
                 parts.others.setdefault(predicate, []).append(value)
 
     def _path(self, shape: Term) -> IRI | None:
         """The path of a property shape, if it is one property that a component states of itself."""
-        paths = [self._bound(path) for path in self.document.values(shape, SH.path)]
+        paths = self.document.values(shape, SH.path)
         return paths[0] if len(paths) == 1 and self._plain(paths[0]) else None
 
     def _plain(self, path: Term) -> TypeGuard[IRI]:
@@ -322,7 +317,7 @@ class _Compiler:
 
     def _among(self, head: Term, parts: _PropertyParts) -> None:
         """A list of values: all known, or all but one free parameter, which may be any other value."""
-        members = [self._bound(member) for member in self.document.items(head)]
+        members = self.document.items(head)
         variables = [m for m in dict.fromkeys(members) if isinstance(m, IRI) and m in self.free]
         constants = frozenset(m for m in members if m not in variables)
         if not variables:
@@ -336,9 +331,6 @@ class _Compiler:
         """Whether something is stated twice that a shape may state once; pySHACL then says so."""
         said = [predicate for predicate, _ in dict.fromkeys(self.document.about(shape))]
         return any(said.count(predicate) > 1 for predicate in (SH["in"], SH.minCount, SH.maxCount))
-
-    def _bound(self, value: Term) -> Term:
-        return self.bindings.get(value, value) if isinstance(value, IRI) else value
 
     def _true(self, subject: Term, predicate: IRI) -> bool:
         value = self.document.value(subject, predicate)

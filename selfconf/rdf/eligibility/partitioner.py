@@ -38,7 +38,7 @@ from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.statable_values import contradictory, mentions_of, stated_on_paths
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.wanted_signals import required_signals
-from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
+from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, TYPE
 
@@ -79,13 +79,15 @@ class Partitioner:
     """Partitions ecologies for one task; compile once, use for each new set of advertisements."""
 
     def __init__(self, given: TaskDocument, hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
-        self.task, self.document, self.hierarchy = given.task, with_named_suppliers(given.document), hierarchy
+        self.task, self.hierarchy = given.task, hierarchy
+        self.document = substituted(with_named_suppliers(given.document), given.task.bindings)
+        """The template, in the shapes of which only free parameters are left."""
         self.free = free_parameters(given.task.template, given.task.bindings)
         self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
         self.roles = tuple(map(self._compiled, given.task.template.roles))
         unbound = {iri: parameter.name for iri, parameter in self._parameters.items() if iri in self.free}
         self.suppliers = {
-            number: suppliers_of(self.document, role.iri, given.task.bindings, unbound)
+            number: suppliers_of(self.document, role.iri, unbound)
             for number, role in enumerate(given.task.template.roles)
             if role.recruits
         }
@@ -100,7 +102,7 @@ class Partitioner:
     def _compiled(self, role: Role) -> CompiledRole:
         """The tests of a role, by its shape as it stands in the document."""
         settings = tuple(setting.type for setting in role.settings)
-        return compile_role(self.document, role.iri, settings, self.task.bindings, self.free)
+        return compile_role(self.document, role.iri, settings, self.free)
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
@@ -219,7 +221,7 @@ class Partitioner:
 
         A property that lies below those of ports may lead to further ports: then pySHACL decides.
         """
-        asked = () if role.complete else required_signals(self.document, role.iri, self.task.bindings)
+        asked = () if role.complete else required_signals(self.document, role.iri)
         required = [(link, signal) for link, signal in asked if signal not in self.free]
         links = {link for link, _ in required}
 
@@ -336,7 +338,7 @@ class Partitioner:
         from selfconf.rdf.conformance import violations
         from selfconf.rdf.rdflib_terms import to_rdflib
 
-        shapes = to_rdflib(bound_shape(self.document, {**self.task.bindings, **values}))
+        shapes = to_rdflib(bound_shape(self.document, values))
         seen = self.subjects(role, focus, ecology) if subjects is None else subjects
         sizes = {advertisement.component: advertisement.breadth for advertisement in focus}
         return violations(seen, shapes, role.iri, list(sizes), self.document.source, sizes=sizes)

@@ -33,7 +33,7 @@ def with_named_suppliers(document: Document) -> Document:
     return replace(document, statements=statements)
 
 
-def suppliers_of(document: Document, role: IRI, bindings: Mapping[IRI, Term], free: Mapping[IRI, str]) -> CompiledRole:
+def suppliers_of(document: Document, role: IRI, free: Mapping[IRI, str]) -> CompiledRole:
     """The tests that a supplier has to pass; none where a role recruits anybody.
 
     `free` are the parameters without a value, with their names. Raises TemplateError where the shape mentions one, or
@@ -45,4 +45,4 @@ def suppliers_of(document: Document, role: IRI, bindings: Mapping[IRI, Term], fr
     for name in sorted(free[parameter] for parameter in mentions(document, shape, frozenset(free))):
         problem = f"the shape of what the role {role!r} recruits mentions {name}, which has no value; bind {name}"
         raise TemplateError(problem, file=document.source)
-    return compile_role(document, shape, (), bindings, frozenset())
+    return compile_role(document, shape, (), frozenset())

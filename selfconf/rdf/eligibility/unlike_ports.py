@@ -18,7 +18,7 @@ _SAID = (LABEL, RDFS.comment)
 
 def ports_asked(partitioner: Partitioner, role: IRI) -> WantedPorts | None:
     """What the shape of a role asks of ports; None if it asks nothing."""
-    return wanted_ports(partitioner.document, role, partitioner.task.bindings)
+    return wanted_ports(partitioner.document, role)
 
 
 def kept_out_by_ports(

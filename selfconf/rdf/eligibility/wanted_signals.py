@@ -8,7 +8,7 @@ is judged by the whole shape.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -31,12 +31,12 @@ class _Want(NamedTuple):
     types: Types
 
 
-def wanted_ports(document: Document, role: IRI, bindings: Mapping[IRI, Term]) -> WantedPorts | None:
-    """What the shape of a role asks of ports, parameters replaced by their values; None if it asks nothing."""
+def wanted_ports(document: Document, role: IRI) -> WantedPorts | None:
+    """What the shape of a role asks of ports; None if it asks nothing."""
     wants = [
         want
         for predicate, value in _statements_about_ports(document, role)
-        for want in _said(document, predicate, value, bindings, (), 0)
+        for want in _said(document, predicate, value, (), 0)
     ]
     if not wants:
         return None
@@ -45,7 +45,7 @@ def wanted_ports(document: Document, role: IRI, bindings: Mapping[IRI, Term]) ->
     return WantedPorts(issued or None, given or None)
 
 
-def required_signals(document: Document, role: IRI, bindings: Mapping[IRI, Term]) -> tuple[tuple[IRI, IRI], ...]:
+def required_signals(document: Document, role: IRI) -> tuple[tuple[IRI, IRI], ...]:
     """What a component needs at least: `sc:hasInput` or `sc:hasOutput`, and the type of a port of that kind.
 
     Only what a property shape of the role asks for by `sh:hasValue` behind the types of ports counts.
@@ -55,7 +55,7 @@ def required_signals(document: Document, role: IRI, bindings: Mapping[IRI, Term]
         path = _path(document, shape)
         if len(path) > 1 and path[0] in _PORTS and path[1] == SC.signalType and _upward(document, path[2:]):
             values = document.values(shape, SH.hasValue) if document.value(shape, SH.deactivated) is None else []
-            found += [(link, one) for link in path[:1] if isinstance(link, IRI) for one in _bound(bindings, values)]
+            found += [(link, one) for link in path[:1] if isinstance(link, IRI) for one in _classes(values)]
     return tuple(found)
 
 
@@ -107,35 +107,30 @@ def _path(document: Document, shape: Term) -> list[Term]:
     return list(document.items(path)) if isinstance(path, BlankNode) and document.value(path, RDF.first) else [path]
 
 
-def _wants(
-    document: Document, shape: Term, bindings: Mapping[IRI, Term], before: tuple[Term, ...], depth: int
-) -> Iterator[_Want]:
+def _wants(document: Document, shape: Term, before: tuple[Term, ...], depth: int) -> Iterator[_Want]:
     """The types that a shape names, where the path that leads to them goes through the type of a port."""
     path = (*before, *_path(document, shape))
     for predicate, value in document.about(shape) if depth < _DEEPEST else ():
-        yield from _said(document, predicate, value, bindings, path, depth)
+        yield from _said(document, predicate, value, path, depth)
 
 
-def _said(
-    document: Document, predicate: IRI, value: Term, bindings: Mapping[IRI, Term], path: tuple[Term, ...], depth: int
-) -> Iterator[_Want]:
+def _said(document: Document, predicate: IRI, value: Term, path: tuple[Term, ...], depth: int) -> Iterator[_Want]:
     """The types that one statement of a shape names, or the shapes that it leads to."""
     if predicate in LISTS_OF_SHAPES:
-        found = [want for one in document.items(value) for want in _wants(document, one, bindings, path, depth + 1)]
+        found = [want for one in document.items(value) for want in _wants(document, one, path, depth + 1)]
         yield from iter(found) if predicate == SH["and"] else _any_of(found)
     elif predicate in SHAPE_VALUED and predicate != SH["not"]:
-        yield from _wants(document, value, bindings, path, depth + 1)
+        yield from _wants(document, value, path, depth + 1)
     elif predicate in (SH.hasValue, SH["in"]) and SC.signalType in path and isinstance(path[0], IRI):
         named = [value] if predicate == SH.hasValue else document.items(value)
-        types = tuple(_bound(bindings, named))
+        types = tuple(_classes(named))
         if types:
             yield _Want(path[0], types)
 
 
-def _bound(bindings: Mapping[IRI, Term], named: Iterable[Term]) -> Iterator[IRI]:
-    """The classes that some terms are, a parameter being its value."""
-    terms = (bindings.get(one, one) if isinstance(one, IRI) else one for one in named)
-    return (one for one in terms if isinstance(one, IRI))
+def _classes(named: Iterable[Term]) -> Iterator[IRI]:
+    """Those of some terms that may be classes."""
+    return (one for one in named if isinstance(one, IRI))
 
 
 def _any_of(wants: list[_Want]) -> Iterator[_Want]:

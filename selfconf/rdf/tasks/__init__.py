@@ -3,14 +3,14 @@
 `TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one, `read_inside` the one that
 a composite is inside, and `placed` finds the line and column of an error that they raise. `bind`, `complete` and
 `read_term` give parameters their values, `suitable` and `misfits` tell which values a parameter can and cannot have,
-and `free_parameters` which ones are left. `mentions`, `shape_statements` and `ROLE_STRUCTURE` are for readers
-of the roles' shapes.
+and `free_parameters` which ones are left. `mentions`, `shape_statements`, `substituted` and
+`ROLE_STRUCTURE` are for readers of the roles' shapes.
 """
 
 from selfconf.rdf.tasks.bindings import bind, complete, free_parameters, read_term
 from selfconf.rdf.tasks.mistakes import placed
 from selfconf.rdf.tasks.parameter_values import misfits, suitable
-from selfconf.rdf.tasks.role_shapes import ROLE_STRUCTURE, mentions, shape_statements
+from selfconf.rdf.tasks.role_shapes import ROLE_STRUCTURE, mentions, shape_statements, substituted
 from selfconf.rdf.tasks.templates import TaskDocument, read_inside, read_task
 
 __all__ = [
@@ -26,5 +26,6 @@ __all__ = [
     "read_task",
     "read_term",
     "shape_statements",
+    "substituted",
     "suitable",
 ]

@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document, Node, Triple
-from selfconf.rdf.vocabulary import SC, TYPE
+from selfconf.rdf.vocabulary import FIRST, SC, SH, TYPE
 
 ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits))
 """What is said of a role besides its shape."""
+
+
+def substituted(document: Document, values: Mapping[IRI, Term]) -> Document:
+    """A template with parameters replaced by their values wherever they stand in shapes: in lists and paths too."""
+    if not values:
+        return document
+    statements = {
+        subject: [
+            (predicate, values[value])
+            if isinstance(value, IRI) and value in values and (predicate in SH or predicate == FIRST)
+            else (predicate, value)
+            for predicate, value in said
+        ]
+        for subject, said in document.statements.items()
+    }
+    return replace(document, statements=statements)
 
 
 def mentions(document: Document, role: IRI, parameters: frozenset[IRI]) -> set[IRI]:

@@ -27,6 +27,7 @@ CLASSES = ("rob:MotorDrive", "rob:Encoder", ":Other")
 PATHS = ("rob:support", "rob:place", "rdfs:label")
 VALUES = (":Astrid", ":Pippi", '"x"', '"xyz"', '"x"@en', "1", '"01"^^xsd:integer', "2.5", "true")
 PARAMETER = iri("par")
+ONE_PARAMETER = ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :par . :par a sc:Parameter ; sc:name 'par' ."
 
 
 def read(texts: Iterable[str]) -> list[Advertisement]:
@@ -284,6 +285,36 @@ def test_a_role_with_a_free_parameter_takes_the_components_that_pyshacl_takes_fo
         if mask == ANY_VALUE or (inside and mask >> domains[PARAMETER].index(term) & 1):
             taken.add(candidate.profile.component.short)
     assert taken == conforming(texts, role, value)
+
+
+@pytest.mark.parametrize(
+    ("shape", "value", "eligible"),
+    [
+        ("sh:property [ sh:path :par ; sh:uniqueLang true ; sh:minCount 1 ]", ":p", True),
+        ("sh:property [ sh:path :par ; sh:languageIn ( 'en' ) ]", ":p", False),
+        ("sh:property [ sh:path ( :y :par ) ; sh:minCount 1 ]", ":w", True),
+        ("sh:property [ sh:path ( :par :w ) ; sh:maxCount 0 ]", ":y", False),
+        ("sh:property [ sh:path [ sh:alternativePath ( :z :par ) ] ; sh:minCount 1 ]", ":p", True),
+        ("sh:property [ sh:path ( :y [ sh:inversePath :par ] ) ; sh:minCount 1 ]", ":y", True),
+        ("sh:property [ sh:path [ sh:zeroOrOnePath :par ] ; sh:maxCount 1 ]", ":p", False),
+    ],
+)
+def test_a_bound_parameter_stands_for_its_value_in_a_path(shape: str, value: str, eligible: bool) -> None:
+    ads = [":c0 a sc:Component, :X ; :p 1 ; :y [ :w 1 ] ."]
+    found = partitioner(f"{ONE_PARAMETER} :r a sc:Role ; {shape} .", bound=(("par", value),)).partition(read(ads))
+    assert bool(*names(found)) == bool(conforming(ads, shape, value)) == eligible
+
+
+@pytest.mark.parametrize(("value", "eligible"), [(":Labelled", False), (":Placed", True), (":Nested", False)])
+def test_a_bound_parameter_stands_for_a_shape(value: str, eligible: bool) -> None:
+    shapes = """
+        :Labelled sh:property [ sh:path :p ; sh:languageIn ( 'en' ) ] .
+        :Placed sh:property [ sh:path ( :y :w ) ; sh:minCount 1 ] .
+        :Nested sh:property [ sh:path ( :y :w ) ; sh:minCount 2 ] .
+    """
+    ads = [":c0 a sc:Component, :X ; :p 1 ; :y [ :w 1 ] ."]
+    text = f"{ONE_PARAMETER} {shapes} :r a sc:Role ; sh:node :par ."
+    assert bool(*names(partitioner(text, bound=(("par", value),)).partition(read(ads)))) == eligible
 
 
 @pytest.mark.parametrize("path", [":p", "[ sh:alternativePath ( :p :q ) ]"], ids=["compiled", "judged by pySHACL"])

@@ -22,7 +22,7 @@ def role(shape: str) -> Document:
 
 
 def wanted(shape: str) -> WantedPorts | None:
-    return wanted_ports(role(shape), ROLE, {})
+    return wanted_ports(role(shape), ROLE)
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def wanted(shape: str) -> WantedPorts | None:
 def test_an_output_is_asked_for_in_many_ways(shape: str) -> None:
     assert wanted(shape) == WantedPorts(((PRICE,),), None)
     rest = without_port_shapes(role(shape), ROLE)
-    assert wanted_ports(rest, ROLE, {}) is None
+    assert wanted_ports(rest, ROLE) is None
     assert rest.values(ROLE, SH["class"])
 
 
@@ -50,12 +50,6 @@ def test_inputs_and_outputs_are_told_apart_and_alternatives_are_one_want() -> No
         " [ sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue :Tax ] ] )"
     )
     assert found == WantedPorts(((PRICE, TAX),), ((CAR,),))
-
-
-def test_a_parameter_stands_for_its_value() -> None:
-    document = role("sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue :kind ]")
-    kind = IRI("https://example.org/peis-home#kind")
-    assert wanted_ports(document, ROLE, {kind: PRICE}) == WantedPorts(((PRICE,),), None)
 
 
 @pytest.mark.parametrize(
@@ -74,4 +68,4 @@ def test_other_shapes_ask_for_no_signal(shape: str) -> None:
 
 def test_a_shape_within_itself_ends() -> None:
     text = f"{PREFIXES} :r a sc:Role ; sh:node :s . :s sh:node :s ; sh:property [ sh:path sc:hasOutput ; sh:node :s ] ."
-    assert wanted_ports(turtle.parse(text, "t.ttl"), ROLE, {}) is None
+    assert wanted_ports(turtle.parse(text, "t.ttl"), ROLE) is None
