@@ -60,14 +60,19 @@ class Board:
             self.stream.put(CHANGE, {kind: new for kind, new in told.items() if new})
 
     def _advertise(self, component: IRI, found: FoundAdvertisement | None) -> None:
-        kind = THING_EVENTS[2] if found is None else THING_EVENTS[1 if component in self.advertised else 0]
+        """Note an advertisement, and tell of it, unless it is described as before: its site has advertised others."""
+        known = self.advertised.get(component)
         if found is None:
             self.advertised.pop(component, None)
         else:
             self.advertised[component] = found
-        if self.ready:
-            whole = {} if found is None else thing_description(found.advertisement.profile, self.keys)
-            self.stream.put(kind, {**whole, "id": str(component)})
+        before, now = self._described(known), self._described(found)
+        if self.ready and before != now:
+            kind = THING_EVENTS[2] if now is None else THING_EVENTS[0 if before is None else 1]
+            self.stream.put(kind, {**(now or {}), "id": str(component)})
+
+    def _described(self, found: FoundAdvertisement | None) -> Body | None:
+        return None if found is None else thing_description(found.advertisement.profile, self.keys)
 
     def knows(self, task: str) -> bool:
         """Whether there is a task of this identity, or was one lately."""

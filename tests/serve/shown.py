@@ -19,9 +19,9 @@ from tests.lab import ADVERTISEMENTS, PREFIXES
 from tests.serve.asgi import served
 
 
-def found(name: str) -> FoundAdvertisement:
-    """One of the advertisements of the lab, as a discovery finds it."""
-    good, _ = advertisements.read_advertisements((PREFIXES + ADVERTISEMENTS[name]).encode(), name)
+def found(name: str, more: str = "") -> FoundAdvertisement:
+    """One of the advertisements of the lab, and what more it says, as a discovery finds it."""
+    good, _ = advertisements.read_advertisements((PREFIXES + ADVERTISEMENTS[name] + more).encode(), name)
     return FoundAdvertisement(good[0], "astrid", f"{name}.ttl", startable=name == "control")
 
 

@@ -6,7 +6,7 @@ from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.metrics import Metrics
 from tests.lab import ADVERTISEMENTS, iri
-from tests.serve.shown import advertised
+from tests.serve.shown import advertised, found
 
 
 def test_the_state_is_all_changes_together(board: Board) -> None:
@@ -22,13 +22,20 @@ def test_the_state_is_all_changes_together(board: Board) -> None:
 def test_a_thing_is_created_updated_and_deleted(board: Board) -> None:
     gone = iri("pippi-drive")
     before = board.stream.last
-    board.apply(advertised("tracker"))
+    tracker = found("tracker", ":person-tracker rdfs:label 'the tracker' .")
+    board.apply(EcologyChange({tracker.advertisement.component: tracker}))
     board.apply(EcologyChange({gone: None}))
     board.apply(advertised("pippi"))
     missed = board.stream.missed(before) or []
     things = [event for event in missed if event.kind.startswith("thing")]
     assert [event.kind for event in things] == ["thing_updated", "thing_deleted", "thing_created"]
     assert things[1].data == {"id": gone}
+
+
+def test_a_thing_that_is_described_as_before_is_not_told_as_updated(board: Board) -> None:
+    before = board.stream.last
+    board.apply(advertised("tracker", "sonar"))
+    assert [event.kind for event in board.stream.missed(before) or []] == ["change"]
 
 
 def test_what_is_there_at_first_is_not_told_as_created() -> None:
