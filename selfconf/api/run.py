@@ -102,6 +102,7 @@ class Run:
                 upgrade=upgrade,
                 aside=self._work.work,
                 record=record,
+                abandon=self._work.abandon,
                 report=self._work.report,
                 ended=self._settle,
             ),

@@ -11,6 +11,7 @@ import secrets
 import socket
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -99,7 +100,7 @@ def serve(
         _refuse_taken(name, ecology, joining)
         life = f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}"
         work = WorkQueue()
-        ended = Termination(bus, told=work.wake_up)
+        ended = Termination(bus, told=work.abandon)
         records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
         environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
         log_path = _log_path(log, ecology, name).absolute()
@@ -229,7 +230,8 @@ def _request_of(work: WorkQueue, believed: Beliefs | None, record: TaskRecord) -
     """The request to run a task that the site keeps; what reads it is loaded with the first one."""
     from selfconf.api.detached import request_of
 
-    return request_of(record, work.work, believed)
+    request = request_of(record, partial(work.work, owner=record.task), believed)
+    return replace(request, abandon=partial(work.abandon, record.task))
 
 
 class _CompositesOnceThereAre:

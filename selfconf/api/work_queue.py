@@ -5,25 +5,46 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+
+from selfconf.rdf.deadline import Abandoned, abandonable
 
 if TYPE_CHECKING:
     from selfconf.model.run_event import RunEvent
+
+
+class _Work(NamedTuple):
+    """What takes long, and for whom it is done."""
+
+    do: Callable[[], None]
+    owner: str
 
 
 class WorkQueue:
     """What a run hands from the thread of its bus to the thread that reads its events: work first, then events."""
 
     def __init__(self) -> None:
-        self._works: deque[Callable[[], None]] = deque()
+        self._works: deque[_Work] = deque()
+        self._under_way: tuple[str, Callable[[], None]] | None = None
+        """For whom something is being done, and what ends it."""
         self._events: deque[RunEvent] = deque()
         self._more = threading.Condition()
         self._woken = False
 
-    def work(self, work: Callable[[], None]) -> None:
-        """Have something done that takes long."""
+    def work(self, work: Callable[[], None], owner: str = "") -> None:
+        """Have something done that takes long, for an owner where there are several."""
         with self._more:
-            self._works.append(work)
+            self._works.append(_Work(work, owner))
+            self._more.notify()
+
+    def abandon(self, owner: str = "") -> None:
+        """End and forget what is done for an owner, or for everybody if none is named; `next` returns soon."""
+        with self._more:
+            for work in [work for work in self._works if owner in ("", work.owner)]:
+                self._works.remove(work)
+            if self._under_way is not None and owner in ("", self._under_way[0]):
+                self._under_way[1]()
+            self._woken = True
             self._more.notify()
 
     def report(self, event: RunEvent) -> None:
@@ -46,6 +67,21 @@ class WorkQueue:
             self._woken = False
             waiting = len(self._works)
         for _ in range(waiting):
-            self._works.popleft()()  # one at a time: where one breaks, the others wait for the next call
+            self._do_first()  # one at a time: where one breaks, the others wait for the next call
         with self._more:
             return self._events.popleft() if self._events else None
+
+    def _do_first(self) -> None:
+        """Do what has waited for the longest, unless it is abandoned, or has been meanwhile."""
+        try:
+            with abandonable() as abandon:
+                with self._more:
+                    if not self._works:
+                        return
+                    work = self._works.popleft()
+                    self._under_way = work.owner, abandon
+                work.do()
+        except Abandoned:
+            pass
+        finally:
+            self._under_way = None

@@ -67,6 +67,8 @@ class RunRequest:
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
     record: TaskRecord | None = None
     """The task as sites keep it, for those who ask which one it is; None: nobody is told."""
+    abandon: Callable[[], None] = lambda: None
+    """Called once when the task has ended: what still runs aside for it may end, as nobody waits for it."""
     report: EventListener = lambda event: None
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None

@@ -402,6 +402,7 @@ class TaskRunner:
             self._record.close()
             self._notices.close()
             self.ecology.unfollow()
+            self.request.abandon()
             self.request.ended(effect.refusal)
 
     def _discover(self) -> None:

@@ -6,6 +6,8 @@ every program of selfconf does its work; elsewhere there is no limit. What is ra
 of the garbage collector is lost, so the alarm goes on ringing until the block is left, and Python's report of lost
 exceptions (`sys.unraisablehook`) leaves it out.
 
+What nobody waits for any more is ended in the same way, by another thread (`abandonable`).
+
 A verdict must not depend on what else the machine is doing. So what decides about files and shapes is limited in
 processor time (`processor_limit`); the time of the clock (`deadline`) is for what a user waits for.
 """
@@ -35,6 +37,10 @@ class TimeUp(BaseException):
 
 class ProcessorTimeUp(TimeUp):
     """The processor time is up, whatever the clock says."""
+
+
+class Abandoned(BaseException):
+    """Nobody waits any more for what is being done; no `TimeUp`, after which something else may be tried."""
 
 
 class _Timer(NamedTuple):
@@ -96,7 +102,44 @@ def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
             signal.setitimer(timer.number, max(outside - (timer.clock() - began), 1e-6), RINGING)
 
 
+@contextmanager
+def abandonable() -> Iterator[Callable[[], None]]:
+    """Give a function by which any thread ends the block, which then raises Abandoned; later it does nothing.
+
+    Its alarm is a timer of the processor time in Python and libraries (ITIMER_VIRTUAL), which is nobody else's here,
+    and passes while there is something to end. In another thread than the main one the block goes on to its end.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: None
+        return
+    entered, left, report = True, False, sys.unraisablehook
+    lock = threading.RLock()  # the thread that is ended may be the one that calls, in a handler of a signal
+
+    def ring(number: int, frame: FrameType | None) -> None:
+        if entered:
+            raise Abandoned
+
+    def abandon() -> None:
+        with lock:
+            if not left:
+                signal.setitimer(signal.ITIMER_VIRTUAL, 1e-6, RINGING)
+
+    handler = signal.signal(signal.SIGVTALRM, ring)
+    try:
+        sys.unraisablehook = partial(_report_unless_ringing, report)
+        try:
+            yield abandon
+        finally:
+            entered = False
+    finally:
+        with lock:
+            left = True
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, handler)
+        sys.unraisablehook = report
+
+
 def _report_unless_ringing(report: Callable[[sys.UnraisableHookArgs], object], lost: sys.UnraisableHookArgs) -> None:
     """Report a lost exception, unless it is an alarm, which rings again."""
-    if not isinstance(lost.exc_value, TimeUp):
+    if not isinstance(lost.exc_value, TimeUp | Abandoned):
         report(lost)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 
 from selfconf.api.work_queue import WorkQueue
@@ -31,4 +33,55 @@ def test_what_breaks_takes_nothing_with_it_that_waits() -> None:
     with pytest.raises(KeyError):
         queue.next(0.0)
     queue.next(0.0)
+    assert done == ["searched"]
+
+
+def _forever(begun: threading.Event) -> None:
+    begun.set()
+    while True:
+        pass
+
+
+@pytest.mark.parametrize("owner", ["", "patrol"])
+def test_what_is_abandoned_ends_while_it_is_done(owner: str) -> None:
+    queue, begun, done = WorkQueue(), threading.Event(), list[str]()
+
+    def give_up() -> None:
+        begun.wait()
+        queue.abandon(owner)
+
+    queue.work(lambda: _forever(begun), "patrol")
+    queue.work(lambda: done.append("patrol"), "patrol")
+    queue.work(lambda: done.append("watch"), "watch")
+    other = threading.Thread(target=give_up)
+    other.start()
+    assert queue.next(0.0) is None
+    other.join()
+    assert done == (["watch"] if owner else [])
+    queue.work(lambda: done.append("again"), "patrol")
+    queue.next(0.0)
+    assert done[-1] == "again"
+
+
+def test_what_is_done_for_another_goes_on() -> None:
+    queue, done = WorkQueue(), list[str]()
+
+    def work() -> None:
+        queue.abandon("watch")
+        done.append("patrol")
+
+    queue.work(work, "patrol")
+    queue.next(0.0)
+    assert done == ["patrol"]
+
+
+def test_to_abandon_what_is_over_or_not_begun_harms_nothing() -> None:
+    queue, done = WorkQueue(), list[str]()
+    queue.abandon()
+    queue.work(lambda: done.append("searched"))
+    queue.next(0.0)
+    queue.abandon()
+    queue.work(lambda: done.append("waits"))
+    queue.abandon()
+    assert queue.next(60.0) is None
     assert done == ["searched"]

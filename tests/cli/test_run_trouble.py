@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from pathlib import Path
 
 import pytest
 
@@ -115,3 +116,36 @@ def test_a_component_that_cannot_begin_is_asked_for_a_few_times_told_of_once_and
     assert "LOST   :lamp: refused\n" in said
     assert "was lost" not in said
     assert "out of control" not in said
+
+
+LONG = """
+:t a sc:Template ; sc:roles ( :r ) .
+:r a sc:Role ; sh:class sc:Component ; sh:sparql [ sh:select \"\"\"SELECT $this WHERE {
+  ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l . ?m ?n ?o . FILTER(?a = ?l && ?c = ?d && ?b = ?k && ?i = ?m && ?a = $this)
+}\"\"\" ] .
+"""
+"""A role that takes minutes to judge."""
+
+
+@pytest.mark.parametrize("how", ["a signal", "stop", "a site that ends"])
+def test_a_search_of_minutes_ends_with_whom_it_is_for(how: str, home: Home) -> None:
+    (home.folder / "long.ttl").write_text(PREFIXES + LONG)
+    site = home.site("peis-home", "ads")
+    if how == "a site that ends":
+        assert home.selfconf("run", "long.ttl", "--ecology", home.ecology, "--detach").ended() == 0
+        assert home.until(lambda: _processor_seconds(site.number) > 2.0)
+        assert site.end(signal.SIGTERM) == 0
+        return
+    run = home.selfconf("run", "long.ttl", "--ecology", home.ecology, "--format", "json")
+    assert home.until(lambda: _processor_seconds(run.number) > 1.5)
+    if how == "stop":
+        assert home.selfconf("stop", "--ecology", home.ecology).ended() == 0
+        assert run.ended() == 0
+    else:
+        assert run.end(signal.SIGINT) == 0
+
+
+def _processor_seconds(process: int) -> float:
+    """The processor time that a process has used (proc_pid_stat(5), fields 14 and 15)."""
+    fields = Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()
+    return sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import signal
 import subprocess
 import sys
 import threading
@@ -11,7 +12,7 @@ from contextlib import AbstractContextManager
 
 import pytest
 
-from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, deadline, processor_limit
+from selfconf.rdf.deadline import Abandoned, ProcessorTimeUp, TimeUp, abandonable, deadline, processor_limit
 
 Limit = Callable[[float], AbstractContextManager[None]]
 LIMITS = pytest.mark.parametrize("limit", [deadline, processor_limit])
@@ -143,3 +144,57 @@ def test_processor_time_and_the_time_of_the_clock_are_told_apart() -> None:
 def _spin() -> None:
     while True:
         pass
+
+
+def test_what_is_abandoned_is_not_taken_for_late_by_a_limit_within() -> None:
+    late: list[BaseException] = []
+
+    def work() -> None:
+        try:
+            with deadline(30), processor_limit(30):
+                endless()
+        except TimeUp as error:
+            late.append(error)
+
+    def abandoned() -> None:
+        with abandonable() as abandon:
+            threading.Timer(0.05, abandon).start()
+            work()
+
+    with pytest.raises(Abandoned):
+        abandoned()
+    assert not late
+
+
+def test_a_handler_of_a_signal_may_abandon_what_it_interrupts() -> None:
+    def abandoned() -> None:
+        with abandonable() as abandon:
+            signal.signal(signal.SIGUSR1, lambda *_: abandon())
+            signal.raise_signal(signal.SIGUSR1)
+            endless()
+
+    before = signal.getsignal(signal.SIGUSR1)
+    with pytest.raises(Abandoned):
+        abandoned()
+    signal.signal(signal.SIGUSR1, before)
+
+
+def test_what_is_over_cannot_be_abandoned() -> None:
+    with abandonable() as abandon:
+        pass
+    abandon()
+    assert signal.getitimer(signal.ITIMER_VIRTUAL) == (0.0, 0.0)
+
+
+def test_outside_of_the_main_thread_what_is_abandoned_goes_on_to_its_end() -> None:
+    done: list[int] = []
+
+    def work() -> None:
+        with abandonable() as abandon:
+            abandon()
+            done.append(sum(range(100_000)))
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert done
