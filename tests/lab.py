@@ -259,6 +259,7 @@ class Lab:
             compose=composer.compose,
             standby=composer.standby,
             not_judged=composer.not_judged,
+            usable=composer.usable,
             passed_over=composer.passed_over,
             policy=policy,
             patient=patient,

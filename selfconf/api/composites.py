@@ -303,6 +303,7 @@ class Composites:
             compose=compose,
             standby=composer.standby,
             not_judged=composer.not_judged,
+            usable=composer.usable,
             passed_over=composer.passed_over,
             name=safe_name(component.short),
             believed=self._believed,

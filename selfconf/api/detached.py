@@ -115,6 +115,7 @@ def request_of(record: TaskRecord, aside: Aside, believed: Beliefs | None = None
         compose=compose,
         standby=composer.standby,
         not_judged=composer.not_judged,
+        usable=composer.usable,
         passed_over=composer.passed_over,
         policy=option(Policy, "policy", options.get("policy") or "repair"),
         patient=True,

@@ -111,6 +111,23 @@ class Composer:
         problem = self._problem(self.partition(ecology), frozenset(), None)
         return {problem.supply.recruits[number].component for number in recruits_that_matter(problem)}
 
+    def usable(self, components: Set[IRI]) -> dict[IRI, tuple[IRI, ...]]:
+        """Those of some components that the task can use, as of the ecology that was partitioned last.
+
+        Each with the roles that it may play, in their order: none for one that may only be recruited.
+        """
+        roles: dict[IRI, tuple[IRI, ...]] = {}
+        for role, candidates in zip(self._task.template.roles, self._partition.candidates, strict=True):
+            for candidate in candidates:
+                if (one := candidate.profile.component) in components:
+                    roles[one] = (*roles.get(one, ()), role.iri)
+        if any(recruit.component in components for recruit in self._partition.recruits):
+            problem = self._problem(self._partition, frozenset(), None)
+            for number in recruits_that_matter(problem):
+                if (one := problem.supply.recruits[number].component) in components:
+                    roles.setdefault(one, ())
+        return roles
+
     def compose(
         self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
     ) -> Outcome:

@@ -57,6 +57,8 @@ class Composed:
 
     attempt: int
     outcome: Outcome
+    usable: frozenset[IRI] = frozenset()
+    """The components held by other tasks that may play a role, or be recruited, where there is no configuration."""
 
 
 @immutable

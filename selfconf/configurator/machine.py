@@ -17,8 +17,9 @@ it is asked again. Nor does it count before the lost components whose sites can 
 are woken as dormant ones are, and how often that is done in vain is limited by their sites.
 
 Other tasks. Components that a task of the same or a higher priority holds do not count for the search. If it fails for
-that reason, it is found out which of them would be needed: these are named, and a patient task waits for them. A task
-of higher priority that asks for a component of this one makes it let go: everything comes to rest, sinks first, and is
+that reason, those of them that are eligible are named, and a patient task waits at each: whichever is free first may be
+what it takes, and those that wait for one are served in their order only if they all wait there. A task of higher
+priority that asks for a component of this one makes it let go: everything comes to rest, sinks first, and is
 configured again without that component.
 
 A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
@@ -176,13 +177,14 @@ def _composed(state: State, event: Composed) -> Reaction:
 
 
 def _coveted(state: State, event: Composed) -> State:
-    """Count the components of other tasks as lost without which there is no configuration."""
+    """Count the components of other tasks as lost with which there may be a configuration, if there is one at all."""
     if not isinstance(event.outcome, Configuration):
         return state
+    wanted = event.usable.union(event.outcome.components)
     busy = {
         component: Loss(Cause.REFUSED, str(holder), "", True)
         for component, holder in state.taken.items()
-        if component in event.outcome.components
+        if component in wanted
     }
     return replace(state, lost={**state.lost, **busy})
 

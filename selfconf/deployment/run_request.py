@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from selfconf.configurator import Policy
@@ -46,6 +46,8 @@ class RunRequest:
     compose: ComposeFunction
     not_judged: Callable[[], Mapping[IRI, NotJudged]] = dict
     """The components that the last `compose` left out because they cannot be judged; called where that was."""
+    usable: Callable[[Set[IRI]], Mapping[IRI, tuple[IRI, ...]]] = lambda components: {}
+    """Those of some components that the last `compose` could have used, each with the roles that it may play."""
     policy: Policy = Policy.REPAIR
     name: str = ""
     """The name of the task in the ecology; by default that of its template."""
@@ -65,10 +67,10 @@ class RunRequest:
     """For each role of a configuration, the candidates that came before the chosen ones."""
     aside: Callable[[Callable[[], None]], None] = lambda work: work()
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
-    record: TaskRecord | None = None
-    """The task as sites keep it, for those who ask which one it is; None: nobody is told."""
     abandon: Callable[[], None] = lambda: None
     """Called once when the task has ended: what still runs aside for it may end, as nobody waits for it."""
+    record: TaskRecord | None = None
+    """The task as sites keep it, for those who ask which one it is; None: nobody is told."""
     report: EventListener = lambda event: None
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None

@@ -60,7 +60,7 @@ from selfconf.errors import PeerError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.obstacle import NotJudged
-from selfconf.model.refusal import Outcome, Refusal
+from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import (
     AnswerRejected,
     ComponentLeftOut,
@@ -455,12 +455,14 @@ class TaskRunner:
     def _compose(self, effect: Compose) -> None:
         """Search elsewhere, so that a search keeps this configurator from nothing."""
         found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
+        taken, despite = self.state.taken.keys(), self.state.despite
 
         def work() -> None:
             began = time.monotonic()
             try:
                 outcome = self.request.compose(found, effect.lost, effect.running)
                 not_judged = dict(self.request.not_judged())
+                usable = self.request.usable(taken) if despite else {}
             except SelfconfError as error:
                 trouble = error
                 self.bus.wake_up(lambda: self._give_up(trouble))
@@ -471,7 +473,8 @@ class TaskRunner:
                 self.bus.wake_up(lambda: self._give_up(broken))
                 return
             seconds = time.monotonic() - began
-            self.bus.wake_up(lambda: self._composed(effect, outcome, seconds, not_judged))
+            composed = Composed(effect.attempt, outcome, frozenset(usable))
+            self.bus.wake_up(lambda: self._composed(composed, seconds, not_judged))
 
         self.request.aside(work)
 
@@ -479,16 +482,18 @@ class TaskRunner:
         self.trouble = trouble
         self._step(Stopped())
 
-    def _composed(self, effect: Compose, outcome: Outcome, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
+    def _composed(self, composed: Composed, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
         for component in sorted(not_judged.keys() - self._left_out):
             self._report(ComponentLeftOut(component, not_judged[component].reason))
         self._left_out |= not_judged.keys()
+        outcome = composed.outcome
         if isinstance(outcome, Refusal):
             outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
-        counts = effect.attempt == self.state.attempt and not self.state.despite and self.state.phase is Phase.COMPOSING
+            composed = replace(composed, outcome=outcome)
+        current = composed.attempt == self.state.attempt
+        counts = current and not self.state.despite and self.state.phase is Phase.COMPOSING
         if counts and (isinstance(outcome, Configuration) or not self.state.searches_again):
             self._report(SearchEnded(outcome, seconds))
-        composed = Composed(effect.attempt, outcome)
         wanted = outcome.components if isinstance(outcome, Configuration) else ()
         self._liveness.select(wanted, lambda: self._step(composed))
 

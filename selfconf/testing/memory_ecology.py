@@ -69,6 +69,7 @@ class MemoryRun:
             compose=composer.compose,
             standby=composer.standby,
             not_judged=composer.not_judged,
+            usable=composer.usable,
             passed_over=composer.passed_over,
             policy=policy,
             patient=wait,

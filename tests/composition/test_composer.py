@@ -213,6 +213,20 @@ def test_components_that_were_passed_over_are_those_before_the_last_choice() -> 
     assert composer.passed_over(configured(composer, given)) == {iri("position"): [iri("gps")], iri("control"): []}
 
 
+def test_what_a_task_could_use_is_told_with_the_roles_that_it_may_play() -> None:
+    composer = Composer(task(PLAIN))
+    composer.partition(ecology(locator("gps"), locator("beacon"), controller("cap"), ":lamp a sc:Component, :Lamp ."))
+    asked = {iri("gps"), iri("cap"), iri("lamp"), iri("unheard-of")}
+    assert composer.usable(asked) == {iri("gps"): (iri("position"),), iri("cap"): (iri("control"),)}
+
+
+def test_what_a_task_could_recruit_is_told_without_a_role() -> None:
+    recruiting = ":navigate a sc:Template ; sc:roles ( :control ) . :control a sc:Role ; sh:class :Controller"
+    composer = Composer(task(f"{recruiting} ; sc:recruits true ."))
+    composer.partition(ecology(locator("gps"), locator("ear", "Echo"), controller("cap")))
+    assert composer.usable({iri("gps"), iri("ear")}) == {iri("gps"): ()}
+
+
 def test_what_strangers_say_keeps_them_out_and_no_one_else() -> None:
     given = templates.read_task(turtle.parse(hostile_words.TEMPLATE, "template.ttl"))
     strangers = [hostile_words.stranger(kind, 1) for kind in hostile_words.KINDS]

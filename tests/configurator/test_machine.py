@@ -396,6 +396,24 @@ def test_a_patient_task_waits_for_what_another_holds_and_begins_when_it_is_free(
     assert kinds(history.all_answer()) == [Running]
 
 
+def test_a_patient_task_waits_for_all_that_others_hold_and_it_could_use() -> None:
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS, ODOMETRY: OTHERS, DRIVE: OTHERS}))
+    history.composed(REFUSAL)
+    found = Composed(history.state.attempt, navigation(), frozenset({TRACKER, ODOMETRY}))
+    assert history.hear(found) == [QueueFor(one, history.state.epoch) for one in sorted((TRACKER, ODOMETRY, DRIVE))]
+    assert not history.state.held
+    assert history.hear(Freed(ODOMETRY)) == [Discover()]
+
+
+def test_a_patient_task_waits_for_nothing_where_all_that_others_hold_would_not_do() -> None:
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS}))
+    history.composed(REFUSAL)
+    assert history.hear(Composed(history.state.attempt, REFUSAL, frozenset({TRACKER}))) == []
+    assert not history.state.queued
+
+
 def test_a_component_that_says_that_it_is_free_is_believed_more_than_its_last_holder() -> None:
     history = waiting()
     history.hear(Freed(TRACKER))

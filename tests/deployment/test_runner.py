@@ -12,7 +12,7 @@ from selfconf.bus.port import Replies, Urgency
 from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.liveness import AUDIT
-from selfconf.deployment.runner import LONGEST_PAUSE, TRY_AGAIN
+from selfconf.deployment.runner import LONGEST_PAUSE, TRY_AGAIN, TaskRunner
 from selfconf.errors import TemplateError
 from selfconf.model.refusal import Outcome, TooFewEligible
 from selfconf.protocol.codec import decode, encode
@@ -314,6 +314,41 @@ def test_patience_goes_on_when_a_component_that_another_configurator_held_is_fre
     hold = lab.runtimes["drive"].activation.first
     assert hold is not None
     assert hold.claim.supervisor == second.supervisor
+
+
+SPARE = {
+    name: f":{name} a sc:Component, :Drive ; sc:preference {preference} ; sc:shareable false ."
+    for name, preference in (("left", 2), ("right", 1))
+}
+"""Two components that are eligible for one role, and that no tasks share."""
+DRIVEN = PREFIXES + ":go a sc:Template ; sc:roles ( :drive ) . :drive a sc:Role ; sh:class :Drive ."
+
+
+def contended(folder: Path) -> tuple[Lab, list[TaskRunner]]:
+    """An ecology in which two components could play the role of a task, and the tasks that hold one each."""
+    lab, agents = Lab(folder, advertised=SPARE), list[TaskRunner]()
+    lab.site("shared", *SPARE)
+    for name in SPARE:
+        lab.component(name)
+    for name in SPARE:
+        agents.append(lab.agent(DRIVEN, (), name=f"holds-{name}"))
+        assert lab.running(agents[-1])
+    return lab, agents
+
+
+def test_who_has_waited_longer_gets_whichever_candidate_is_free_first(tmp_path: Path) -> None:
+    lab, holding = contended(tmp_path)
+    early = lab.agent(DRIVEN, (), patient=True, name="early")
+    lab.let_pass(TRY_AGAIN / 2)
+    late = lab.agent(DRIVEN, (), patient=True, name="late")
+    lab.let_pass(TRY_AGAIN / 4)
+    holding[1].stop()
+    lab.let_pass(TRY_AGAIN / 20)
+    assert (early.state.phase, late.state.phase) == (Phase.RUNNING, Phase.REFUSED)
+    assert set(early.state.held) == {iri("right")}
+    early.stop()
+    lab.let_pass(TRY_AGAIN / 20)
+    assert set(late.state.held) == {iri("right")}
 
 
 def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:

@@ -47,7 +47,10 @@ _OF_RUNTIME = attrgetter("activation", "code.turn", "code._acting_turn")  # by t
 def request_for(record: TaskRecord) -> RunRequest:
     """The paper's task, with the priority of the record."""
     task = task_of(NAVIGATE, (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
-    return RunRequest(task=task.task, compose=Composer(task).compose, patient=True, priority=record.priority)
+    composer = Composer(task)
+    return RunRequest(
+        task=task.task, compose=composer.compose, usable=composer.usable, patient=True, priority=record.priority
+    )
 
 
 class KeptHistory:
