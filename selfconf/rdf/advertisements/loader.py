@@ -266,6 +266,7 @@ def read_advertisements(
     origin = Origin(source)
     found: list[Advertisement | tuple[str, list[Statement]]] = []
     suspects, slot, component_type = segments.suspects, attrgetter("slot"), SC.Component
+    blank = f"<{SKOLEM}"
     unusual = False
     for subject, said in subjects.items():
         unlike = len(set(map(slot, said))) == len(said)
@@ -273,7 +274,13 @@ def read_advertisements(
             segments.typed(said)
             unlike = len(set(map(slot, said))) == len(said)
         types = said[0].types or next((statement.types for statement in said if statement.types), _NONE)
-        if component_type in types and len(types) > 1 and unlike and (not suspects or suspects.isdisjoint(said)):
+        if (
+            component_type in types
+            and len(types) > 1
+            and unlike
+            and (not suspects or suspects.isdisjoint(said))
+            and not subject.startswith(blank)
+        ):
             found.append(LoadedAdvertisement(IRI(subject[1:-1]), types, tuple(said), origin))
             said.clear()
         elif types and any(component_type in statement.types for statement in said):

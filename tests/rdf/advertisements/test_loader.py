@@ -119,6 +119,7 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
 @example(PREFIXES + f":c1 {GOOD} ; :near [] , [] .")
 @example(PREFIXES + f":c1 {GOOD} ; :size [ :of [ :unit 'm' ] ; :by 'hand' ] , [] , [ :by 'eye' ] .")
 @example(PREFIXES + f":c1 {GOOD} . [] {GOOD} . :c1 rob:support :c2 . :c2 {GOOD} ; sc:hasInput :shared-port .")
+@example(PREFIXES + f":c1 {GOOD} . _:b {GOOD} .")
 @example(PREFIXES + f":c1 {GOOD} ; :place :kitchen . :c2 {GOOD} ; :place :kitchen . :kitchen :size [ :value 3 ] .")
 def test_the_fast_loader_reads_what_the_careful_reader_reads(text: str) -> None:
     careful = advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl"))
@@ -184,6 +185,13 @@ def test_blank_nodes_with_labels_are_the_same_in_one_document_and_others_in_anot
     again, _ = loader.read_advertisements(text.encode(), "a.ttl")[0]
     assert one.profile.values(iri("near")) == other.profile.values(iri("near")) != again.profile.values(iri("near"))
     assert one.profile.values(iri("near"))[0] in {subject for subject, _, _ in one.triples}
+
+
+def test_a_component_that_is_a_blank_node_is_left_out_with_a_label_and_without() -> None:
+    for subject in ("[]", "_:b"):
+        good, bad = loader.read_advertisements(f"{PREFIXES} :c1 {GOOD} . {subject} {GOOD} .".encode(), "a.ttl")
+        assert [one.component for one in good] == [iri("c1")]
+        assert [one.problems for one in bad] == [("a component needs an IRI, so that others can speak of it",)]
 
 
 def test_oxigraph_writes_a_subject_as_the_fast_loader_expects_it() -> None:
