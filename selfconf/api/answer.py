@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -26,7 +26,7 @@ from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Place
-from selfconf.model.refusal import Reason, Refusal, TooFewEligible, Undecided
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.model.wording import plain
 from selfconf.rdf.advertisements import Advertisement
@@ -227,10 +227,6 @@ class Inquiry:
             for role, candidates in zip(self.task.roles, partition.candidates, strict=True)
         }
         """How many components are eligible for each role."""
-        self._held_eligible = {
-            role.iri: sum(candidate.profile.component in self.holders for candidate in candidates)
-            for role, candidates in zip(self.task.roles, partition.candidates, strict=True)
-        }
         self.left_out = tuple(
             LeftOut(self._place(component), component, why.reason)
             for component, why in sorted(self.composer.not_judged().items())
@@ -261,7 +257,8 @@ class Inquiry:
             return found
         if isinstance(found, Refusal):
             free = {c: one for c, one in self.ecology.items() if c not in self.holders}
-            found = replace(found, held=self._held(limit), reasons=tuple(map(self._told_of_held, found.reasons)))
+            usable = self.composer.usable(self.holders.keys())
+            found = replace(found.told_of_held(usable), held=self._held(usable, limit))
             return refusal_with_places(self.composer, free if self.holders else self.ecology, found, self.method, limit)
         optimum = found if isinstance(found, Optimum) else None
         plain = found.configuration if isinstance(found, Optimum) else found
@@ -279,21 +276,15 @@ class Inquiry:
             what_if=None if consequences is None else tuple(consequences),
         )
 
-    def _told_of_held(self, reason: Reason) -> Reason:
-        """A reason that counts eligible components, with how many more there are that other tasks hold."""
-        if not isinstance(reason, TooFewEligible):
-            return reason
-        return replace(reason, held=self._held_eligible[reason.role])
-
-    def _held(self, limit: TimeLimit) -> tuple[tuple[IRI, Holder], ...]:
-        """The components of other tasks that there would be a configuration with."""
+    def _held(self, usable: Collection[IRI], limit: TimeLimit) -> tuple[tuple[IRI, Holder], ...]:
+        """The usable components of other tasks, if there would be a configuration with them."""
         if not self.holders:
             return ()
         found = composed(self.composer, self.ecology, frozenset(), None, limit)
         wanted = found.configuration if isinstance(found, Optimum) else found
         if not isinstance(wanted, Configuration):
             return ()
-        return tuple((c, self.holders[c]) for c in wanted.components if c in self.holders)
+        return tuple((component, self.holders[component]) for component in sorted(usable))
 
     def _unknown(self, optimum: Optimum) -> tuple[IRI, ...]:
         """The properties of unknown terms that no component in the ecology has a number for."""

@@ -69,6 +69,7 @@ from selfconf.configurator.events import (
 from selfconf.configurator.order import parameter_values, resting_next, wiring
 from selfconf.configurator.state import Held, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 
@@ -186,7 +187,10 @@ def _coveted(state: State, event: Composed) -> State:
         for component, holder in state.taken.items()
         if component in wanted
     }
-    return replace(state, lost={**state.lost, **busy})
+    refusal = state.refusal
+    if isinstance(refusal, Refusal):
+        refusal = replace(refusal, held=tuple((component, state.taken[component]) for component in sorted(busy)))
+    return replace(state, lost={**state.lost, **busy}, refusal=refusal)
 
 
 def _refuse(state: State) -> Reaction:

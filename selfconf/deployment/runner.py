@@ -462,7 +462,7 @@ class TaskRunner:
             try:
                 outcome = self.request.compose(found, effect.lost, effect.running)
                 not_judged = dict(self.request.not_judged())
-                usable = self.request.usable(taken) if despite else {}
+                usable = self.request.usable(taken) if despite or isinstance(outcome, Refusal) else {}
             except SelfconfError as error:
                 trouble = error
                 self.bus.wake_up(lambda: self._give_up(trouble))
@@ -472,6 +472,8 @@ class TaskRunner:
                 broken = ProgrammerError(f"the search broke: {type(error).__name__}: {error}")
                 self.bus.wake_up(lambda: self._give_up(broken))
                 return
+            if isinstance(outcome, Refusal):
+                outcome = outcome.told_of_held(usable)
             seconds = time.monotonic() - began
             composed = Composed(effect.attempt, outcome, frozenset(usable))
             self.bus.wake_up(lambda: self._composed(composed, seconds, not_judged))

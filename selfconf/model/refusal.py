@@ -6,7 +6,9 @@ The search records facts; each fact words itself in one sentence for people. `co
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from selfconf.model.configuration import Configuration
@@ -245,7 +247,8 @@ class Refusal:
     missing_sites: tuple[str, ...] = field(default=())
     repairs: tuple[Relaxation, ...] = ()
     held: tuple[tuple[IRI, Holder], ...] = ()
-    """The components without which there is no configuration, and which other tasks hold."""
+    """The components that the task could use, and which other tasks hold, where there would be a configuration with
+    these; sorted."""
     irreducible: bool = True
     """Whether each reason was proved to need all of its requirements; not when the steps for that were used up."""
     smallest: bool = True
@@ -255,6 +258,18 @@ class Refusal:
     def minimality(self) -> str:
         """What is proved of the reasons: they are `smallest`, at least `irreducible`, or `unproved`."""
         return "smallest" if self.smallest else "irreducible" if self.irreducible else "unproved"
+
+    def told_of_held(self, usable: Mapping[IRI, tuple[IRI, ...]]) -> Refusal:
+        """The refusal whose reasons count, beside the eligible components, those that other tasks hold.
+
+        `usable` are these, each with the roles that it may play.
+        """
+        held = Counter(role for roles in usable.values() for role in roles)
+        reasons = (
+            replace(reason, held=held[reason.role]) if isinstance(reason, TooFewEligible) else reason
+            for reason in self.reasons
+        )
+        return replace(self, reasons=tuple(reasons))
 
     def __bool__(self) -> bool:
         return False

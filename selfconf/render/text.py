@@ -144,7 +144,9 @@ def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
         lines += [_placed(f"  {_near_miss(miss, name)}", miss) for miss in refusal.near_misses[:most]]
         if len(refusal.near_misses) > most:
             lines.append(f"  and {len(refusal.near_misses) - most} more")
-    lines += [f"held by another task: {name(component)}: {holder_text(holder)}" for component, holder in refusal.held]
+    lines += [f"held by another task: {name(one)}: {holder_text(holder)}" for one, holder in refusal.held[:most]]
+    if len(refusal.held) > most:
+        lines.append(f"  and {len(refusal.held) - most} more that are held")
     if refusal.repairs or refusal.hint:
         lines.append("what would mend it")
         lines += [_placed(f"  {repair}", repair) for repair in refusal.repairs]

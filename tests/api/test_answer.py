@@ -127,8 +127,23 @@ def test_a_component_that_another_task_holds_is_told_apart_from_one_that_is_not_
     refusal = inquiry.answer()
     assert isinstance(refusal, Refusal)
     assert [str(reason) for reason in refusal.reasons] == ["no component that is free is eligible for the role screen"]
-    assert [component for component, _ in refusal.held] == [screen]
+    assert refusal.held == ((screen, Holder("watch~1")),)
     assert inquiry.eligible["https://example.org/my-home#screen"] == 1
+
+
+def test_a_refusal_names_each_component_that_is_eligible_and_held(
+    clock: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = Path("examples/clock/display.ttl").read_text()
+    ecology = sc.read("examples/clock", text.replace(":display ", ":spare "))
+    holders = {sc.IRI(f"https://example.org/my-home#{one}"): Holder(f"{one}~1") for one in ("display", "spare", "lamp")}
+    monkeypatch.setattr(sc.Ecology, "holders", lambda _: holders)
+    refusal = sc.configure(clock, ecology)
+    assert isinstance(refusal, Refusal)
+    assert [(component.short, holder.name) for component, holder in refusal.held] == [
+        ("display", "display"),
+        ("spare", "spare"),
+    ]
 
 
 def test_a_refusal_of_what_has_no_file_has_no_places(clock: sc.TaskSpecification) -> None:

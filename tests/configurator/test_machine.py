@@ -364,7 +364,7 @@ def test_a_refusal_for_lack_of_what_others_hold_names_it() -> None:
     history = History(TASK)
     history.hear(Accepted(100), Discovered({TRACKER: OTHERS, ODOMETRY: OTHERS}))
     assert history.composed(REFUSAL) == [Compose(2, frozenset(), None)]
-    assert history.composed(navigation()) == [Finish(REFUSAL)]
+    assert history.composed(navigation()) == [Finish(replace(REFUSAL, held=((TRACKER, OTHERS),)))]
     assert history.state.lost.keys() == {TRACKER}
     assert history.state.lost[TRACKER].busy
     assert history.state.lost[TRACKER].detail == str(OTHERS)
@@ -402,6 +402,8 @@ def test_a_patient_task_waits_for_all_that_others_hold_and_it_could_use() -> Non
     history.composed(REFUSAL)
     found = Composed(history.state.attempt, navigation(), frozenset({TRACKER, ODOMETRY}))
     assert history.hear(found) == [QueueFor(one, history.state.epoch) for one in sorted((TRACKER, ODOMETRY, DRIVE))]
+    held = tuple((one, OTHERS) for one in sorted((TRACKER, ODOMETRY, DRIVE)))
+    assert history.state.refusal == replace(REFUSAL, held=held)
     assert not history.state.held
     assert history.hear(Freed(ODOMETRY)) == [Discover()]
 

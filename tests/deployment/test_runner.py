@@ -351,6 +351,22 @@ def test_who_has_waited_longer_gets_whichever_candidate_is_free_first(tmp_path: 
     assert set(late.state.held) == {iri("right")}
 
 
+@pytest.mark.parametrize(("patient", "act"), [(False, "refused"), (True, "waiting")])
+def test_a_refusal_says_of_all_that_is_held_by_whom_and_since_when(tmp_path: Path, patient: bool, act: str) -> None:
+    lab, holding = contended(tmp_path)
+    lab.agent(DRIVEN, (), patient=patient, name="third")
+    lab.let_pass(1.0)
+    (event,) = lab.acts(act)
+    assert [str(reason) for reason in event.refusal.reasons] == [
+        "no component that is free is eligible for the role drive"
+    ]
+    held = {component: (holder.name, holder.beginning) for component, holder in event.refusal.held}
+    assert held == {
+        iri(name): (f"holds-{name}", one.identity.beginning) for name, one in zip(SPARE, holding, strict=True)
+    }
+    assert [one["task"] for one in event_body(event)["refusal"]["held"]] == ["holds-left", "holds-right"]
+
+
 def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
     first = lab.agent()
     lab.running(first)

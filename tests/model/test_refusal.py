@@ -146,3 +146,10 @@ def test_no_answer_is_true() -> None:
 )
 def test_what_is_not_decided_says_what_to_allow(undecided: Undecided, said: str) -> None:
     assert str(undecided) == said
+
+
+def test_a_reason_counts_the_components_that_other_tasks_hold() -> None:
+    refusal = Refusal(CAP, (TooFewEligible(EYE, 1, 0), TooFewEligible(MIND, 1, 0), UNFED))
+    told = refusal.told_of_held({CAP: (EYE,), IMAGE: (EYE, CAP), MIND: ()})
+    assert [reason.held for reason in told.reasons if isinstance(reason, TooFewEligible)] == [2, 0]
+    assert told.reasons[2] is UNFED

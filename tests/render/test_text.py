@@ -9,6 +9,7 @@ import pytest
 
 from selfconf.model.alternative import Alternative
 from selfconf.model.configuration import Connection, ParameterSetting
+from selfconf.model.holder import Holder
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Refusal, TooFewEligible, Undecided
 from selfconf.model.term import Literal
@@ -124,10 +125,12 @@ def test_a_refusal_has_every_reason_near_miss_and_repair_with_its_place() -> Non
 def test_a_refusal_fits_on_a_screen_however_many_reasons_it_has() -> None:
     reasons = tuple(TooFewEligible(term(f"r{number}"), 1, 0) for number in range(100))
     misses = tuple(NearMiss(SOURCE, term(f"c{number}"), MISS.obstacle) for number in range(100))
-    lines = refusal_text(Refusal(TEMPLATE, reasons, misses), NAMES).splitlines()
+    held = tuple((term(f"c{number}"), Holder("go~1")) for number in range(100))
+    lines = refusal_text(Refusal(TEMPLATE, reasons, misses, held=held), NAMES).splitlines()
+    assert f"  and {100 - MOST_LINES} more that are held" in lines
     assert f"  and {100 - MOST_LINES} more reasons" in lines
     assert f"  and {100 - MOST_LINES} more" in lines
-    assert len(lines) < 24
+    assert len(lines) < 4 * MOST_LINES
 
 
 def test_a_refusal_without_reasons_says_that_there_was_no_time() -> None:
