@@ -110,7 +110,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-A02", "What has ports or parameters is a sc:Component.",
-        "Discovery looks for sc:Component; without the type the advertisement would be overlooked in silence.",
+        "Discovery looks for sc:Component; without the type the advertisement is left out.",
         ':tuner a rob:Tuner ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         ("ComponentTyped", "PortsTyped"),

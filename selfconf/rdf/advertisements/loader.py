@@ -36,9 +36,10 @@ from selfconf.rdf.turtle import SKOLEM, Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
 
 Keyed = tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]
-_NAME = attrgetter("name")
+_NAME, _PREDICATE = attrgetter("name"), attrgetter("predicate")
 _SETTINGS = {f"<{predicate}>": member for predicate, member in SETTINGS.items()}
 _LINKS = LINKS | SHAPE_LINKS
+_FIELDS = {f"<{predicate}>" for predicate in advertisements.FIELDS}
 _NONE: frozenset[IRI] = frozenset()
 
 
@@ -265,6 +266,7 @@ def read_advertisements(
     del text  # as large as what is made of it
     origin = Origin(source)
     found: list[Advertisement | tuple[str, list[Statement]]] = []
+    undeclared: list[MalformedAdvertisement] = []
     suspects, slot, component_type = segments.suspects, attrgetter("slot"), SC.Component
     blank = f"<{SKOLEM}"
     unusual = False
@@ -288,9 +290,13 @@ def read_advertisements(
             unusual = True
         else:
             origin.things[subject] = said
+            if not _FIELDS.isdisjoint(map(_PREDICATE, said)) and not any(SC.Template in one.types for one in said):
+                node = turtle.resource(subject[1:-1])
+                undeclared.append(MalformedAdvertisement(node, origin.place, advertisements.UNDECLARED))
     if not unusual:
-        return [one for one in found if isinstance(one, Advertisement)], []
-    return _judged(found, origin, segments)
+        return [one for one in found if isinstance(one, Advertisement)], undeclared
+    good, bad = _judged(found, origin, segments)
+    return good, bad + undeclared
 
 
 def _judged(

@@ -23,7 +23,7 @@ from selfconf.model.profile import (
     offered_operation,
     shared_ports,
 )
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.advertisements.accepted_shapes import ShapeNotAccepted, accepted_shape
 from selfconf.rdf.advertisements.advertisement import (
     Advertisement,
@@ -57,10 +57,17 @@ _COUNTERPARTS = {
     SC.needsOperation: ("an operation that is needed", "one that is offered"),
 }
 """What a link leads to, and what says what it may not say."""
+FIELDS = COMPONENT.predicates - {TYPE}
+"""What only a component says of itself, and of its ports a template."""
+UNDECLARED = ("it has ports, parameters, a preference or a grounding, and is not declared a sc:Component",)
+"""What is wrong with what says such things and is no component."""
 
 
 def read_document(document: Document) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
-    """Every advertisement of a document, in the order of the text, and those that do not conform."""
+    """Every advertisement of a document, in the order of the text, and those that do not conform.
+
+    The last of these are of what speaks as a component does, and is not declared one.
+    """
     good: list[Advertisement] = []
     bad: list[MalformedAdvertisement] = []
     others = frozenset(document.instances(SC.Component))
@@ -69,7 +76,16 @@ def read_document(document: Document) -> tuple[list[Advertisement], list[Malform
             bad.append(MalformedAdvertisement(component, Place(document.source), problems))
         else:
             good.append(ParsedAdvertisement(profile, tuple(about(document, component, others))))
+    bad += [MalformedAdvertisement(subject, Place(document.source), UNDECLARED) for subject in _undeclared(document)]
     return good, bad
+
+
+def _undeclared(document: Document) -> Iterator[Node]:
+    """What speaks as a component does, and is declared neither that nor a template; no part of something else."""
+    found = [subject for subject, said in document.statements.items() if any(one in FIELDS for one, _ in said)]
+    found = [one for one in found if not {SC.Component, SC.Template} & set(document.values(one, TYPE))]
+    parts = {value for _, _, value in document.triples() if isinstance(value, BlankNode)} if found else set()
+    return (subject for subject in found if subject not in parts)
 
 
 def profiles(document: Document) -> Iterator[tuple[Node, Profile | None, tuple[str, ...]]]:

@@ -120,6 +120,7 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
 @example(PREFIXES + f":c1 {GOOD} ; :size [ :of [ :unit 'm' ] ; :by 'hand' ] , [] , [ :by 'eye' ] .")
 @example(PREFIXES + f":c1 {GOOD} . [] {GOOD} . :c1 rob:support :c2 . :c2 {GOOD} ; sc:hasInput :shared-port .")
 @example(PREFIXES + f":c1 {GOOD} . _:b {GOOD} .")
+@example(PREFIXES + f":c1 {GOOD} . :c2 sc:preference 1 . [] sc:preference 1 . :c3 a sc:Template ; sc:preference 1 .")
 @example(PREFIXES + f":c1 {GOOD} ; :place :kitchen . :c2 {GOOD} ; :place :kitchen . :kitchen :size [ :value 3 ] .")
 def test_the_fast_loader_reads_what_the_careful_reader_reads(text: str) -> None:
     careful = advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl"))

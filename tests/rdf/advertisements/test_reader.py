@@ -20,8 +20,6 @@ from selfconf.rdf.vocabulary import RDFS, ROB, SC, UNIT
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 BAD = Path(__file__).resolve().parents[2] / "bad"
-UNDECLARED = {"component-untyped", "ports-of-neither", "run-untyped"}
-"""Files about something that says nowhere that it is a component."""
 PORT = '[ sc:name "a" ; sc:signalType :S'
 Read = tuple[list[Advertisement], list[MalformedAdvertisement]]
 
@@ -243,11 +241,40 @@ def test_reading_is_as_strict_as_the_shape(path: Path) -> None:
         advertisements.read_document(turtle.parse(text, path.name)),
         loader.read_advertisements(text, path.name),
     )
-    if path.stem in UNDECLARED:
-        assert careful == streamed == ([], [])
-    else:
-        assert [malformed.problems for malformed in streamed[1]] == [malformed.problems for malformed in careful[1]]
-        assert careful[1]
+    assert [malformed.problems for malformed in streamed[1]] == [malformed.problems for malformed in careful[1]]
+    assert careful[1]
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "a :L ; sc:hasOutput [ sc:name 'o' ; sc:signalType :S ]",
+        "a sc:Componnt , :L ; sc:hasInput [ sc:name 'i' ]",
+        "sc:hasParameter [ sc:name 'p' ; sc:parameterType :G ]",
+        "a :L ; sc:grounding [ sc:command 'go' ]",
+        "sc:needsOperation [ sc:name 'open' ]",
+        "sc:preference 3",
+    ],
+)
+@pytest.mark.parametrize("subject", [":c", "[]", "_:c"])
+def test_what_speaks_as_a_component_does_and_is_declared_none_is_left_out_and_named(subject: str, said: str) -> None:
+    text = f"{PREFIXES} {subject} {said} . :a a sc:Component, :L ; sc:hasInput [ sc:name 'i' ] ."
+    for good, bad in (
+        advertisements.read_document(turtle.parse(text, "a.ttl")),
+        loader.read_advertisements(text.encode(), "a.ttl"),
+    ):
+        assert [one.component for one in good] == [iri("a")]
+        assert [one.problems for one in bad] == [advertisements.UNDECLARED]
+        assert bad[0].component == iri("c") or subject != ":c"
+
+
+def test_the_ports_of_a_template_and_what_a_port_says_need_no_component() -> None:
+    text = """
+        :t a sc:Template ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ; sc:of :r ] .
+        :a a sc:Component, :L ; sc:hasInput :in , _:in . :in sc:name "i" . _:in sc:name "j" ; sc:preference 1 .
+    """
+    assert len(read(text)[0]) == len(loader.read_advertisements((PREFIXES + text).encode(), "a.ttl")[0]) == 1
+    assert read(text)[1] == loader.read_advertisements((PREFIXES + text).encode(), "a.ttl")[1] == []
 
 
 def test_what_a_grounding_with_a_name_says_is_read() -> None:
