@@ -113,9 +113,11 @@ class ClauseSolver:
         if not force and not counted and self._solver.supports_atmost():
             self._solver.add_atmost(list(literals), most)
             return
-        for clause in as_clauses(literals, most, self._top):
-            self.add([*force, *clause])
-            self._top = max(self._top, *clause)
+        clauses = as_clauses(literals, most, self._top)
+        add = self._solver.add_clause
+        for clause in clauses:
+            add([*force, *clause])
+        self._top = max(self._top, *map(max, clauses))
 
     def solve(self, assumed: Sequence[int], budget: Budget) -> bool | Undecided:
         """Return whether the clauses can hold under assumptions; each conflict is a step, and each call."""
