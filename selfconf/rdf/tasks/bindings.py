@@ -123,9 +123,22 @@ def _rigid(given: TaskDocument, parameter: Parameter) -> IRI | None:
     """The property of a shape in which a parameter stands and which asks for a literal, or a path: none is searched."""
     for role in given.task.template.roles:
         for predicate, value in shape_statements(given.document, role.iri):
-            if value == parameter.iri and (predicate in LITERAL or predicate in _PATHS):
+            if predicate in LITERAL and value == parameter.iri:
+                return predicate
+            if predicate in _PATHS and parameter.iri in _steps(given.document, value):
                 return predicate
     return None
+
+
+def _steps(document: Document, path: Term) -> set[Term]:
+    """A path, and the paths that it has in a row or as alternatives, in lists."""
+    found, waiting = set[Term](), [path]
+    while waiting:
+        step = waiting.pop()
+        if step not in found:
+            found.add(step)
+            waiting += document.items(step)
+    return found
 
 
 def _check(parameter: Parameter, value: Term, document: Document) -> None:

@@ -129,7 +129,17 @@ def test_a_task_binds_for_itself_and_may_not_be_contradicted() -> None:
         bindings.bind(task, [("goal", "z")])
 
 
-@pytest.mark.parametrize("path", [":x", "[ sh:inversePath :x ]"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        ":x",
+        "( :y :x )",
+        "[ sh:inversePath :x ]",
+        "[ sh:alternativePath ( :y :x ) ]",
+        "[ sh:alternativePath ( ( :y :x ) :y ) ]",
+        "( :y [ sh:zeroOrMorePath ( :y :x ) ] )",
+    ],
+)
 def test_a_path_cannot_be_left_free(path: str) -> None:
     text = (
         "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
@@ -137,7 +147,8 @@ def test_a_path_cannot_be_left_free(path: str) -> None:
         f" :r a sc:Role ; sh:property [ sh:path {path} ; sh:hasValue 3 ] ."
     )
     with pytest.raises(
-        BindingError, match=r"'x' cannot be left free, for it stands in sh:(p|inverseP)ath; .*--bind x="
+        BindingError,
+        match=r"'x' cannot be left free, for it stands in sh:(p|inverseP|alternativeP|zeroOrMoreP)ath; .*--bind x=",
     ):
         bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
 
