@@ -454,6 +454,8 @@ class Calls:
         mine = answer.task == message.task and answer.supervisor == message.supervisor
         if call is Call.RELEASE:
             return not mine and not answer.stopping
+        if call is Call.APPLY and answer.patience:
+            return False  # it acts, but follows what it followed before
         return mine and answer.active == (call is Call.APPLY)
 
     def _works_on(self, answer: CallAnswer, message: Reserve | Apply | Release, since: float) -> bool:

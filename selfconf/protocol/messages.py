@@ -150,7 +150,8 @@ class CallAnswer:
     callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
     """Of a composite that acts: which components inside of it call by each operation that it needs."""
     patience: float = 0.0
-    """Of a composite whose inside is being started: for how many seconds the caller may wait for it."""
+    """Of a composite whose inside is being started, or a component of which an input is being handed over gently: for
+    how many seconds the caller may wait for that."""
     stopping: bool = False
     """Whether the code of the component was told to stop, and is not at rest yet: it may still act."""
 

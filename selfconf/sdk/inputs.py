@@ -12,6 +12,12 @@ FAIL, has fallen silent, or has let go of a task and acts for no other, or anoth
 not issued anything yet. It is fed again by the first signal that comes; what still waits of a lost output is dropped,
 or a slow component would take it for news.
 
+*Handing over.* Where a call asks for it (`gently`), an input goes on following the old output until the new one has
+issued a signal. A new output that issues nothing in time while the old one does is reported as silent, and again as
+long as both is so; what becomes of that is for the configurator to say. An output that has nothing to issue, such as a
+doorbell, cannot be told from one that never will: where the old one has issued nothing in that time either, and both
+live, the new one takes its place, and the input has lost nothing.
+
 *Latching.* An input asks each output that it begins to follow for its last signal, whoever else follows that output.
 """
 
@@ -19,6 +25,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
@@ -51,7 +58,10 @@ JUST_COME = 0.5
 UNSEEN = 1.0
 """Seconds until the component of an output has to have shown that it lives, unless the output issues something."""
 HANDOVER = 2.0
-"""Seconds for which an input follows an output that is to be let go of, while the new one issues nothing."""
+"""Seconds in which an output that an input is handed over to has to issue a signal: more where it promises one only in
+`PATIENCE` longer periods, but not more than `BEGINNING`."""
+HANDOVER_PATIENCE = 30.0
+"""Seconds for which the caller may wait for an input to be handed over: the longest handover, and what comes of it."""
 HANDOVER_CHECK = 0.01
 """How often, in seconds, it is looked whether the new one has."""
 LATE = 10_000
@@ -121,12 +131,30 @@ class InputFollower(Protocol):
         ...
 
 
+@immutable
+class Handover:
+    """That an input is to follow other outputs than before, and follows both until one of the new has issued a signal.
+
+    `due` is when it is looked next whether the new ones issue nothing although the old ones do.
+    """
+
+    old: frozenset[Wire]
+    new: tuple[Wire, ...]
+    began: float
+    due: float
+
+    @classmethod
+    def beginning(cls, now: float, old: frozenset[Wire], new: tuple[Wire, ...]) -> Handover:
+        """Return a handover that begins now; one of the new outputs may take as long as the slowest promises."""
+        seconds = max(HANDOVER, *(PATIENCE * (wire.period or 0.0) for wire in new))
+        return cls(old, new, now, now + min(seconds, BEGINNING))
+
+
 class Inputs:
     """The subscriptions of one component, by input and output."""
 
     ending = False
     settled = True
-    patience = 0.0
 
     def __init__(
         self,
@@ -144,9 +172,8 @@ class Inputs:
         self._wanted: frozenset[tuple[str, Wire]] = frozenset()
         self._spare: frozenset[tuple[str, Wire]] = frozenset()
         """Which outputs each input is to follow, and which stand by."""
-        self._handing_over: set[str] = set()
-        """The inputs that follow what they followed before as well, until the new output has issued a signal."""
-        self._handed_over_by = 0.0
+        self._handovers: dict[str, Handover] = {}
+        """The inputs that follow what they followed before as well, until a new output has issued a signal."""
         self._dropped = 0
         """How many signals were dropped of subscriptions that have ended."""
 
@@ -156,46 +183,79 @@ class Inputs:
         New connections are made first, because others wait for what flows over them; the old ones end when the call
         has been answered.
         """
+        now, known = self._bus.now(), self._subscriptions.keys() - self._wanted
         wanted, spare = dict.fromkeys(_signals(message.inputs)), dict.fromkeys(_signals(message.standby))
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
                 self._subscriptions[port, wire] = self._subscription(port, wire)
-        waiting = self._left_without(message.inputs)
-        self._handing_over = waiting if message.gently else set()
-        self._handed_over_by = self._bus.now() + HANDOVER
-        for port in sorted(waiting - self._handing_over):
-            self._events.unfed(port)
+        left = self._left_without(message.inputs)
+        before, self._handovers = self._handovers, {}
+        for port, old in left.items():
+            new = message.inputs.get(port, ())
+            if not message.gently or not new or all(self._subscriptions[port, wire].lost for wire in old):
+                self._events.unfed(port)
+                continue
+            same = before[port] if port in before and before[port].new == new else None  # a call that was repeated
+            self._handovers[port] = same or Handover.beginning(now, old, new)
         self._wanted, self._spare = frozenset(wanted), frozenset(spare)
         for key in wanted:
             self._subscriptions[key].unmute()
+            if key[0] in self._handovers and key in known:  # it stood by: what it issued before may be all it has
+                self._subscriptions[key].ask_for_last()
         self._let_go()
 
-    def _left_without(self, inputs: Mapping[str, tuple[Wire, ...]]) -> set[str]:
-        """The inputs that lose every output they follow, to others of which none has just issued a signal."""
-        left = [
-            port for port, wires in self._followed_by_port().items() if wires and not wires & {*inputs.get(port, ())}
-        ]
-        return {port for port in left if not any(self._subscriptions[port, w].heard for w in inputs.get(port, ()))}
+    def _left_without(self, inputs: Mapping[str, tuple[Wire, ...]]) -> dict[str, frozenset[Wire]]:
+        """The inputs that lose every output they follow, with these, to others of which none has just issued a signal.
+
+        An output to which an input is only being handed over does not count as followed.
+        """
+        followed: dict[str, set[Wire]] = {}
+        for port, wire in self.followed:
+            if port not in self._handovers or wire in self._handovers[port].old:
+                followed.setdefault(port, set()).add(wire)
+        return {
+            port: frozenset(wires)
+            for port, wires in sorted(followed.items())
+            if wires.isdisjoint(inputs.get(port, ()))
+            and not any(self._subscriptions[port, wire].heard for wire in inputs.get(port, ()))
+        }
+
+    @property
+    def patience(self) -> float:
+        """For how many seconds the caller may wait for the inputs that are being handed over; zero: for none."""
+        return HANDOVER_PATIENCE if self._handovers else 0.0
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""
-        if not self._handing_over:
+        if not self._handovers:
             action()
             return
-        late = self._bus.now() > self._handed_over_by
-        for port in sorted(self._handing_over):
-            fed = any(s.issued for key, s in self._subscriptions.items() if key[0] == port and key in self._wanted)
-            if fed or late:
-                self._handing_over.discard(port)
-            if late and not fed:
-                self._events.unfed(port)
+        for port, handover in list(self._handovers.items()):
+            self._hand_over(port, handover)
         self._let_go()
-        self._bus.later(HANDOVER_CHECK if self._handing_over else 0.0, lambda: self.when_settled(action))
+        self._bus.later(HANDOVER_CHECK if self._handovers else 0.0, lambda: self.when_settled(action))
+
+    def _hand_over(self, port: str, handover: Handover) -> None:
+        """End a handover if the new outputs deliver, or are as quiet as the old; report them as silent if they are."""
+        old = [self._subscriptions[port, wire] for wire in handover.old]
+        new = [self._subscriptions[port, wire] for wire in handover.new]
+        now, began = self._bus.now(), handover.began
+        delivers = any(subscription.heard_since(began) for subscription in new)
+        if not delivers and now < handover.due:
+            return
+        quiet = not any(one.heard_since(began) for one in old) and not all(one.lost for one in new)
+        if delivers or quiet:
+            del self._handovers[port]
+            return
+        self._handovers[port] = replace(handover, due=now + HANDOVER)
+        for wire in handover.new:
+            self._events.silent(wire, now - began)
 
     def _let_go(self) -> None:
         """End or mute what no input is to follow any more; an input that is handed over goes on following it."""
+        kept = {(port, wire) for port, handover in self._handovers.items() for wire in handover.old}
         for key, subscription in list(self._subscriptions.items()):
-            if key in self._wanted or (key[0] in self._handing_over and not subscription.muted):
+            if key in self._wanted or key in kept:
                 continue
             subscription.mute()
             if key not in self._spare:
@@ -209,7 +269,7 @@ class Inputs:
             subscription.end()
             self._dropped += subscription.dropped
         self._subscriptions.clear()
-        self._handing_over = set()
+        self._handovers = {}
 
     @property
     def dropped(self) -> int:
@@ -238,15 +298,20 @@ class Inputs:
         )
 
     def _lost(self, port: str) -> None:
-        """One output that an input follows is lost; the input is unfed if that was the last one."""
-        if all(s.lost for (one, _), s in self._subscriptions.items() if one == port and not s.muted):
-            self._events.unfed(port)
+        """One output that an input follows is lost; the input is unfed if that was the last one.
 
-    def _followed_by_port(self) -> Mapping[str, set[Wire]]:
-        ports: dict[str, set[Wire]] = {}
-        for port, wire in self.followed:
-            ports.setdefault(port, set()).add(wire)
-        return ports
+        An output that the input is being handed over to has not fed it yet: there is nothing to hand over any more.
+        """
+        handover = self._handovers.get(port)
+        following = [
+            subscription
+            for (one, wire), subscription in self._subscriptions.items()
+            if one == port and not subscription.muted and (handover is None or wire in handover.old)
+        ]
+        if all(subscription.lost for subscription in following):
+            self._events.unfed(port)
+            if self._handovers.pop(port, None) is not None:
+                self._bus.later(0.0, self._let_go)
 
 
 def _signals(inputs: Mapping[str, tuple[Wire, ...]]) -> Iterator[tuple[str, Wire]]:
@@ -306,10 +371,18 @@ class InputSubscription:
         """Whether the output has issued a signal since it is listened to."""
         return self._heard_at >= 0.0
 
+    def heard_since(self, moment: float) -> bool:
+        """Whether the output has issued a signal at that moment, in seconds of the bus's clock, or later."""
+        return self._heard_at >= moment
+
     @property
     def heard(self) -> bool:
         """Whether the output has just issued a signal, so that the input that follows it from now on is fed."""
         return bool(self._queue) and self._bus.now() - self._heard_at < JUST_COME
+
+    def ask_for_last(self) -> None:
+        """Ask the output once more for its last signal."""
+        self._ask_for_last(ASK_FOR_LAST)
 
     def unmute(self) -> None:
         """Deliver what is received, from the newest signal on if that has only just come."""

@@ -470,3 +470,33 @@ def test_an_input_follows_every_output_that_feeds_it(tmp_path: Path) -> None:
     lab.let_pass(0.1)
     values: list[Any] = [said[1] for said in lab.components["control"].said if said[0] == "position"]
     assert sorted(values) == [1, 2]
+
+
+class Emitting(Recorder):
+    """A source of positions that emits ten a second, or none at all."""
+
+    def __init__(self, *, mute: bool = False) -> None:
+        super().__init__()
+        self.mute = mute
+
+    def started(self) -> None:
+        super().started()
+        if not self.mute:
+            self.every(0.1, lambda: self.emit("pose", {"x": 0}))
+
+
+@pytest.mark.parametrize("mute", [True, False])
+def test_what_runs_is_changed_only_to_a_source_that_delivers(lab: Lab, mute: bool) -> None:
+    for name in ("tracker", "odometry"):
+        lab.crash(name)
+    lab.component("odometry", Emitting())
+    agent = lab.agent(upgrade=0.5)
+    assert lab.running(agent)
+    lab.component("tracker", Emitting(mute=mute))
+    lab.let_pass(10.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"odometry" if mute else "tracker"}
+    assert ("silence" in [event.cause for event in lab.acts("lost")]) == mute
+    assert lab.components["odometry"].said == [("started",)] + ([] if mute else [("stopped",)])
+    assert lab.components["tracker"].said == [("started",)] + ([("stopped",)] if mute else [])
+    assert lab.components["drive"].said.count(("stopped",)) == 0

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from selfconf.bus.memory import Faults, MemoryBus, Network
-from selfconf.bus.port import Request, Urgency
+from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Stamp, Wire
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.inputs import BEGINNING, JUST_COME, PATIENCE, UNSEEN, InputEvents, Inputs
+from selfconf.sdk.inputs import BEGINNING, HANDOVER, JUST_COME, PATIENCE, UNSEEN, InputEvents, Inputs
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.signal_queue import EVENTS
 from selfconf.sdk.supervision import GRACE
@@ -346,6 +346,121 @@ def test_what_an_output_that_stands_by_issued_long_ago_does_not_count() -> None:
     stage.call(apply(2, US, spare))
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("unfed", "position")]
+
+
+# Handing over: what ran before is let go of only when the next delivers.
+
+
+TO_ODOMETRY = {"position": (Wire(ODOMETRY, "pose"),)}
+
+
+class Change:
+    """A component that follows the tracker, and is to follow odometry instead, gently."""
+
+    def __init__(self, inputs: Mapping[str, tuple[Wire, ...]] = TO_ODOMETRY) -> None:
+        self.stage = Stage(Watchful())
+        self.tracker = self.stage.neighbour()
+        self.odometry = other_source(self.stage)
+        self.stage.call(follow(1))
+        self.message = apply(2, US, inputs, gently=True)
+        self.answers: list[Replies] = []
+        self.ask()
+
+    def ask(self) -> None:
+        """Make the call; the answer may take long."""
+        key = KEYS.call(CAP, "apply")
+        self.stage.caller.ask(key, encode(self.message), 60.0, self.answers.append)
+
+    def let_pass(self, seconds: float, *emitting: ComponentRuntime) -> None:
+        """Time passes while some sources issue a signal five times a second."""
+        for _ in range(round(seconds / 0.2)):
+            for source in emitting:
+                source.component.emit("pose", source.profile.component.short)
+            self.stage.let_pass(0.2)
+
+    @property
+    def told(self) -> set[str]:
+        """What the component was told but to start."""
+        return {said[0] if said[0] != "position" else said[1] for said in self.stage.recorder.said[1:]}
+
+
+def test_an_input_goes_on_following_what_fed_it_while_the_next_issues_nothing_and_says_so() -> None:
+    change = Change()
+    change.let_pass(HANDOVER - 0.4, change.tracker)
+    assert not silence(change.stage)
+    change.let_pass(2 * HANDOVER + 0.4, change.tracker)
+    assert silence(change.stage) == [(ODOMETRY, "")] * 2
+    assert change.stage.fails[0].detail == f"no signal on 'pose' for {HANDOVER:.2f} s"
+    assert change.told == {TRACKER.short}
+    assert not change.answers
+    assert change.stage.state().patience > 0.0
+    change.stage.call(follow(3))  # the configurator wants again what ran before
+    change.let_pass(1.0, change.tracker, change.odometry)
+    assert change.told == {TRACKER.short}
+    assert change.stage.state().patience == 0.0
+    assert change.answers
+
+
+def test_a_gentle_call_that_is_repeated_goes_on_with_the_same_handover() -> None:
+    change = Change()
+    change.let_pass(HANDOVER / 2, change.tracker)
+    change.ask()
+    change.let_pass(HANDOVER / 2 + 0.4, change.tracker)
+    assert silence(change.stage) == [(ODOMETRY, "")]
+    assert change.told == {TRACKER.short}
+    change.let_pass(0.4, change.tracker, change.odometry)
+    change.let_pass(0.4, change.tracker)
+    assert len(change.answers) == 2
+    assert change.stage.recorder.said[-1] == ("position", ODOMETRY.short)
+
+
+def test_an_output_that_has_as_little_to_issue_as_the_one_before_takes_its_place() -> None:
+    change = Change()
+    change.let_pass(HANDOVER + 0.4)
+    assert change.answers
+    assert (silence(change.stage), change.told) == ([], set())
+    change.let_pass(0.4, change.tracker, change.odometry)
+    assert change.told == {ODOMETRY.short}
+
+
+def test_an_output_whose_component_has_gone_does_not_take_the_place_of_one_that_issues_nothing() -> None:
+    change = Change()
+    change.odometry.close()
+    change.let_pass(HANDOVER + 0.4)
+    assert silence(change.stage) == [(ODOMETRY, "")]
+    assert change.told == set()
+
+
+def test_an_input_that_is_handed_over_is_unfed_when_what_fed_it_is_lost() -> None:
+    change = Change()
+    change.let_pass(0.4, change.tracker)
+    change.tracker.component.fail("blind")
+    change.let_pass(0.4)
+    assert change.told == {TRACKER.short, "unfed"}
+    assert change.answers
+    change.let_pass(0.4, change.odometry)
+    assert change.told == {TRACKER.short, "unfed", "fed", ODOMETRY.short}
+
+
+def test_an_output_that_promises_to_issue_seldom_has_time_for_what_it_promises() -> None:
+    change = Change({"position": (Wire(ODOMETRY, "pose", HANDOVER),)})
+    change.let_pass(PATIENCE * HANDOVER - 0.4, change.tracker)
+    assert not silence(change.stage)
+    change.let_pass(0.8, change.tracker)
+    assert (ODOMETRY, "") in silence(change.stage)
+    assert change.told == {TRACKER.short}
+
+
+def test_an_output_that_stood_by_is_asked_for_what_it_issued_before() -> None:
+    change = Change({})
+    change.stage.call(replace(follow(3), standby=TO_ODOMETRY))
+    change.let_pass(0.2, change.odometry)
+    change.let_pass(2 * JUST_COME, change.tracker)
+    change.message = apply(4, US, TO_ODOMETRY, gently=True)
+    change.ask()
+    change.let_pass(0.4, change.tracker)
+    assert len(change.answers) == 2
+    assert change.stage.recorder.said[-1] == ("position", ODOMETRY.short)
 
 
 # Queues, where the component's code has a thread of its own.
