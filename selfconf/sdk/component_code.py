@@ -26,7 +26,7 @@ log = logging.getLogger(__name__)
 DEADLINE = 2.0
 """Seconds that a method of a component may take, unless its advertisement says otherwise."""
 STARTING_DEADLINE = 8.0
-"""Seconds that `started` may take, unless its advertisement asks for more."""
+"""Seconds that `started` may take, unless its advertisement says otherwise."""
 Done = Callable[["str | None"], None]
 """Hears, on the bus's thread, why something did not come about, or None."""
 
@@ -47,7 +47,7 @@ class ComponentCode:
         self._parameters = {parameter.name for parameter in profile.parameters}
         self._name = profile.component.short
         self._deadline = DEADLINE if profile.deadline is None else profile.deadline
-        self._start_deadline = max(STARTING_DEADLINE, self._deadline)
+        self._start_deadline = STARTING_DEADLINE if profile.deadline is None else profile.deadline
         self.stopping = False
         """Whether the code was told to stop, and is not at rest yet."""
         self.turn = 0
