@@ -19,6 +19,9 @@ from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset
 if TYPE_CHECKING:
     from selfconf.query import Question
 
+_RELEVANT = {Reasoning.SYNTACTIC: (), Reasoning.SUBCLASS: READ, Reasoning.OWL_RL: None}
+"""The predicates of which a mode looks at the statements; None for all."""
+
 
 def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hierarchy:
     """The hierarchy that a reasoning mode lets the roles see; a folder stands for all ontologies below it.
@@ -27,17 +30,16 @@ def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hiera
     """
     own = listed_files(ontologies, files.ONTOLOGY)
     if reasoning is Reasoning.SYNTACTIC:
-        return hierarchy([], reasoning)
+        # Standard input, which can be read once, is left to the mode that an explanation may look at afterwards.
+        return _of_texts(reasoning, tuple(file_text(path) for path in own if path != files.STDIN))
     return _of_texts(reasoning, tuple(map(file_text, (*library.ontologies(), *own))))
 
 
 # Whoever asks again and again under one large ontology waits for it once.
 @lru_cache(maxsize=2)
 def _of_texts(reasoning: Reasoning, texts: tuple[Text, ...]) -> Hierarchy:
-    relevant = READ if reasoning is Reasoning.SUBCLASS else None
-    return hierarchy(
-        [turtle.read_ontology(*text, relevant) for text in texts], reasoning, entailment.entailed_hierarchy
-    )
+    documents = [turtle.read_ontology(*text, _RELEVANT[reasoning]) for text in texts]
+    return hierarchy(documents, reasoning, entailment.entailed_hierarchy)
 
 
 def with_ontologies(dataset: Dataset, question: Question, ontologies: Sequence[Path]) -> tuple[Dataset, Question]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pyoxigraph as ox
@@ -110,11 +111,24 @@ def test_the_mode_syntactic_has_no_hierarchy_and_refuses_what_is_not_there_all_t
         hierarchy_of(Reasoning.SYNTACTIC, [tmp_path / "nowhere.ttl"])
 
 
-@pytest.mark.parametrize("reasoning", [Reasoning.SUBCLASS, Reasoning.OWL_RL])
+@pytest.mark.parametrize("reasoning", list(Reasoning))
 def test_an_ontology_that_cannot_be_read_is_named(reasoning: Reasoning, tmp_path: Path) -> None:
     (tmp_path / "words.rdf").write_text("<rdf:RDF")
     with pytest.raises(AuthorError, match=r"words\.rdf"):
         hierarchy_of(reasoning, [tmp_path])
+
+
+def test_an_ontology_on_standard_input_is_left_to_the_explanation(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "watch.ttl").write_text(TEMPLATE)
+    (tmp_path / "cam.ttl").write_text(CAMERA)
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(ONTOLOGY.encode())))
+    outcome = run(
+        capsys, "configure", str(tmp_path / "watch.ttl"), "--ads", str(tmp_path / "cam.ttl"), "--ontology", "-"
+    )
+    assert outcome.code == 1
+    assert "with --reasoning subclass there is a configuration" in outcome.out
 
 
 def test_an_ontology_is_a_graph_of_the_dataset_that_is_asked_and_lends_its_prefixes(tmp_path: Path) -> None:
