@@ -21,6 +21,7 @@ READ = (*HIERARCHY, OWL.intersectionOf, FIRST, REST)
 """The predicates that the mode `subclass` reads."""
 _BELOW = (RDFS.subClassOf, OWL.equivalentClass)
 _ABOVE_ALL = (OWL.Thing, RDFS.Resource)
+"""What the rules of OWL put above every class that is declared; it counts where an ontology states it."""
 _INTERSECTION = OWL.intersectionOf  # a name here, as a taxonomy asks for it a hundred thousand times
 Entailment = Callable[[Iterable[Triple]], Iterable[Triple]]
 
@@ -47,7 +48,8 @@ def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning, entail: Enta
         return NOTHING_ABOVE
     triples: Iterable[Triple] = [triple for document in ontologies for triple in document.triples()]
     if reasoning is Reasoning.OWL_RL:
-        triples = list(entail(triples))
+        stated = (triple for triple in triples if triple[2] in _ABOVE_ALL)
+        triples = [*(triple for triple in entail(triples) if triple[2] not in _ABOVE_ALL), *stated]
     return Hierarchy(
         chain(edges(triples, RDFS.subClassOf, OWL.equivalentClass), *map(intersections, ontologies)),
         edges(triples, RDFS.subPropertyOf, OWL.equivalentProperty),
@@ -58,8 +60,6 @@ def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IR
     """The pairs (lower, higher) between named terms; an equivalence is a pair in each direction."""
     for subject, predicate, value in triples:
         if predicate not in (below, same) or not isinstance(subject, IRI) or not isinstance(value, IRI):
-            continue
-        if value in _ABOVE_ALL:
             continue
         yield subject, value
         if predicate == same:

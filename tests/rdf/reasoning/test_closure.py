@@ -8,9 +8,10 @@ from hypothesis import strategies as st
 
 from selfconf import library
 from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.term import IRI
 from selfconf.rdf.reasoning.closure import hierarchy
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.vocabulary import ROB
+from selfconf.rdf.vocabulary import RDFS, ROB
 from tests.lab import PREFIXES, iri
 
 OWL = "@prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
@@ -48,9 +49,18 @@ def test_properties_have_a_hierarchy_of_their_own() -> None:
     assert found.superclasses(iri("p")) == {iri("p"), iri("X")}
 
 
-def test_what_is_above_everything_and_what_has_no_name_is_left_out() -> None:
-    found = of(":A rdfs:subClassOf owl:Thing , rdfs:Resource , [ a owl:Restriction ] .")
-    assert found.superclasses(iri("A")) == {iri("A")}
+def test_what_has_no_name_is_left_out() -> None:
+    assert of(":A rdfs:subClassOf [ a owl:Restriction ] .").flat
+
+
+@pytest.mark.parametrize("mode", [Reasoning.SUBCLASS, Reasoning.OWL_RL])
+def test_owl_thing_lies_above_the_classes_of_which_an_ontology_says_so(mode: Reasoning) -> None:
+    thing = IRI("http://www.w3.org/2002/07/owl#Thing")
+    text = ":A rdfs:subClassOf :B . :B rdfs:subClassOf owl:Thing . :C a owl:Class ; rdfs:subClassOf rdfs:Resource ."
+    found = of(text, mode)
+    assert found.superclasses(iri("A")) == {iri("A"), iri("B"), thing}
+    assert found.superclasses(iri("C")) == {iri("C"), RDFS.Resource}
+    assert of(":A a owl:Class . :B a owl:Class .", mode).superclasses(iri("A")) == {iri("A")}
 
 
 def test_owl_rl_infers_what_subclass_mode_does_not() -> None:
