@@ -26,7 +26,7 @@ from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Place
-from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.model.wording import plain
 from selfconf.rdf.advertisements import Advertisement
@@ -215,8 +215,13 @@ class Inquiry:
         wider = (method.wider() if ecology.remote else None) or partitioner.hierarchy
         self.ecology = ecology.for_task(partitioner, wider)
         priority = self.task.document.task.priority
-        self.holders = {c: holder for c, holder in ecology.holders().items() if holder.priority >= priority}
-        """Who holds components that this task cannot have: tasks of the same or a higher priority."""
+        held = {c: holder for c, holder in ecology.holders().items() if holder.priority >= priority}
+        self._sharers = {c: held[c] for c in held if c in self.ecology and self.ecology[c].profile.is_shareable}
+        self.holders = {c: holder for c, holder in held.items() if c not in self._sharers}
+        """Who holds components that this task cannot have: tasks of the same or a higher priority.
+
+        Those that can be shared count from when an answer would want something else of them than their holders.
+        """
         self.seconds["load"] = ecology.read_seconds + time.perf_counter() - began
         began = time.perf_counter()
         with collector_at_rest():
@@ -251,7 +256,7 @@ class Inquiry:
         limit = TimeLimit(self.method.seconds)
         began = time.perf_counter()
         with collector_looking_at_new(len(self.ecology)):
-            found = composed(self.composer, self.ecology, frozenset(self.holders), None, limit)
+            found = self._composed(limit)
         self.seconds["search"] = time.perf_counter() - began
         if isinstance(found, Undecided):
             return found
@@ -275,6 +280,22 @@ class Inquiry:
             unknown=() if optimum is None else self._unknown(optimum),
             what_if=None if consequences is None else tuple(consequences),
         )
+
+    def _composed(self, limit: TimeLimit) -> Optimum | Outcome:
+        """What is found among the components that this task can have."""
+        while True:
+            found = composed(self.composer, self.ecology, frozenset(self.holders), None, limit)
+            configuration = found.configuration if isinstance(found, Optimum) else found
+            if not isinstance(configuration, Configuration):
+                return found
+            contested = {
+                component: self._sharers.pop(component)
+                for component in configuration.components
+                if component in self._sharers and self._sharers[component].disagrees(component, configuration)
+            }
+            if not contested:
+                return found
+            self.holders |= contested
 
     def _held(self, usable: Collection[IRI], limit: TimeLimit) -> tuple[tuple[IRI, Holder], ...]:
         """The usable components of other tasks, if there would be a configuration with them."""

@@ -106,7 +106,7 @@ class Ecology(ABC):
         return Components(self.advertisements())
 
     def holders(self) -> Mapping[IRI, Holder]:
-        """The tasks that hold components which they do not share, by component; none where nothing runs."""
+        """The tasks that hold components, by component; none where nothing runs."""
         return {}
 
     @abstractmethod

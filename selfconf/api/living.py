@@ -113,11 +113,9 @@ class LivingEcology(Ecology):
         return {component: found.advertisement for component, found in self.discover().found.items()}
 
     def holders(self) -> Mapping[IRI, Holder]:
-        """The tasks that hold components which they do not share, by component; as of the last discovery."""
+        """The tasks that hold components, by component: of several that share one, the first in rank."""
         replies = self._synchronous.ask(self._view.keys.configurator_call("*", "status"))
-        held, found = holders_in(replies, self._view.keys), self.discovery.found
-        shared = {c for c in held if c in found and found[c].advertisement.profile.is_shareable}
-        return {c: holder for c, holder in held.items() if c not in shared}
+        return holders_in(replies, self._view.keys)
 
     def state(self, component: IRI) -> str:
         """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.

@@ -49,6 +49,8 @@ class Discovered:
     """The ecology has answered; `holders` are the other tasks that hold components."""
 
     holders: Mapping[IRI, Holder] = field(default_factory=dict)
+    sharers: Mapping[IRI, Holder] = field(default_factory=dict)
+    """Those that hold components which can be shared."""
 
 
 @immutable

@@ -16,7 +16,8 @@ search runs again. A search that finds nothing counts only if nothing has appear
 it is asked again. Nor does it count before the lost components whose sites can start them again are searched with: they
 are woken as dormant ones are, and how often that is done in vain is limited by their sites.
 
-Other tasks. Components that a task of the same or a higher priority holds do not count for the search. If it fails for
+Other tasks. Components that a task of the same or a higher priority holds do not count for the search; one that can be
+shared does, until a configuration is found that wants something else of it than its holder. If the search fails for
 that reason, those of them that are eligible are named, and a patient task waits at each: whichever is free first may be
 what it takes, and those that wait for one are served in their order only if they all wait there. A task of higher
 priority that asks for a component of this one makes it let go: everything comes to rest, sinks first, and is
@@ -140,13 +141,16 @@ def _discover(state: State) -> Reaction:
 def _discovered(state: State, event: Discovered) -> Reaction:
     if state.phase is not Phase.DISCOVERING and not state.improving:
         return state, ()
-    taken = {
-        component: holder
-        for component, holder in event.holders.items()
-        if holder.priority >= state.priority and component not in state.held and component not in state.free
-    }
+    taken, sharers = (
+        {
+            component: holder
+            for component, holder in holders.items()
+            if holder.priority >= state.priority and component not in state.held and component not in state.free
+        }
+        for holders in (event.holders, event.sharers)
+    )
     lost = {component: loss for component, loss in state.lost.items() if not loss.busy}
-    known = replace(state, taken=taken, lost=lost, free=frozenset(), improving=False)
+    known = replace(state, taken=taken, sharers=sharers, lost=lost, free=frozenset(), improving=False)
     return _compose(known) if state.phase is Phase.DISCOVERING else _improve(known)
 
 
@@ -168,6 +172,8 @@ def _composed(state: State, event: Composed) -> Reaction:
     if state.despite:
         return _refuse(_coveted(state, event))
     if isinstance(event.outcome, Configuration):
+        if contested := state.contested(event.outcome):
+            return _compose(replace(state, taken={**state.taken, **contested}))
         return deploying.deploy(replace(state, target=event.outcome, refusal=None, put_off=0))
     if any(loss.startable for loss in state.lost.values()):
         return _compose(replace(state, lost={c: loss for c, loss in state.lost.items() if not loss.startable}))
@@ -386,9 +392,11 @@ def _freed(state: State, component: IRI) -> Reaction:
 def _free(state: State, component: IRI) -> Reaction:
     """No other task holds a component any more: it counts again for the search."""
     lost = {c: loss for c, loss in state.lost.items() if c != component or not loss.busy}
-    taken = {c: holder for c, holder in state.taken.items() if c != component}
+    taken, sharers = (
+        {c: holder for c, holder in holders.items() if c != component} for holders in (state.taken, state.sharers)
+    )
     free, queued = state.free | {component}, state.queued - {component}
-    known = replace(state, lost=lost, taken=taken, free=free, queued=queued, news=True)
+    known = replace(state, lost=lost, taken=taken, sharers=sharers, free=free, queued=queued, news=True)
     return _discover(known) if state.phase is Phase.REFUSED else (known, ())
 
 
@@ -437,6 +445,8 @@ def _improved(state: State, event: Composed) -> Reaction:
     assert state.target is not None
     if not isinstance(better, Configuration) or better.assignments == state.target.assignments:
         return state, ()
+    if contested := state.contested(better):
+        return _improve(replace(state, taken={**state.taken, **contested}))
     return deploying.deploy(replace(state, target=better, fallback=state.target))
 
 

@@ -102,7 +102,12 @@ class State:
     watched: frozenset[IRI] = frozenset()
     lost: Mapping[IRI, Loss] = field(default_factory=dict)
     taken: Mapping[IRI, Holder] = field(default_factory=dict)
-    """The components that tasks of the same or a higher priority hold, as of the last discovery."""
+    """The components that tasks of the same or a higher priority hold, as of the last discovery.
+
+    Of those that can be shared, the ones of which a configuration that was found would want something else.
+    """
+    sharers: Mapping[IRI, Holder] = field(default_factory=dict)
+    """Such tasks that hold components which can be shared, with what they want of them, as of the last discovery."""
     free: frozenset[IRI] = frozenset()
     """The components that have said that they are free since the ecology was last asked: they know it first."""
     queued: frozenset[IRI] = frozenset()
@@ -122,6 +127,16 @@ class State:
     """Whether the ecology was asked for what the strategy would rather have than what runs."""
     put_off: int = 0
     """How many searches in a row have found nothing and did not count, because something had appeared meanwhile."""
+
+    def contested(self, configuration: Configuration) -> dict[IRI, Holder]:
+        """The components of a configuration that others hold and would share, but want something else of."""
+        return {
+            component: self.sharers[component]
+            for component in configuration.components
+            if component in self.sharers
+            and component not in self.held
+            and self.sharers[component].disagrees(component, configuration)
+        }
 
     @property
     def ended(self) -> bool:

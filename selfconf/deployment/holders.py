@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from selfconf.bus.port import Bus, Replies
 from selfconf.errors import PeerError
@@ -38,8 +39,9 @@ def holders_in(replies: Replies, keys: Keys, own: str = "") -> Mapping[IRI, Hold
             continue
         if status.configurator == own or sample.key != keys.configurator_call(status.configurator, "status"):
             continue
-        holder = Holder(status.task, status.priority, status.beginning, status.configurator)
+        alone = Holder(status.task, status.priority, status.beginning, status.configurator)
         for component in status.components:
+            holder = replace(alone, wants=status.wants[component]) if component in status.wants else alone
             known = found.get(component)
             if known is None or (-known.priority, known.beginning) > (-holder.priority, holder.beginning):
                 found[component] = holder

@@ -76,6 +76,7 @@ from selfconf.model.run_event import (
     TaskWaiting,
 )
 from selfconf.model.term import IRI
+from selfconf.model.wants import Wants
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import component_chunk, owner_of_fail, safe_name, task_identity
 from selfconf.protocol.messages import (
@@ -440,7 +441,8 @@ class TaskRunner:
             self._report(AnswerRejected(complaint))
         self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
         number = self._asked
-        held = Discovered({c: holder for c, holder in holders.items() if not self._shareable(c)})
+        shared = {component: holder for component, holder in holders.items() if self._shareable(component)}
+        held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared)
 
         def known() -> None:
             if number == self._asked:
@@ -494,7 +496,11 @@ class TaskRunner:
             composed = replace(composed, outcome=outcome)
         current = composed.attempt == self.state.attempt
         counts = current and not self.state.despite and self.state.phase is Phase.COMPOSING
-        if counts and (isinstance(outcome, Configuration) or not self.state.searches_again):
+        if isinstance(outcome, Configuration):
+            goes_on = bool(self.state.contested(outcome))
+        else:
+            goes_on = self.state.searches_again
+        if counts and not goes_on:
             self._report(SearchEnded(outcome, seconds))
         wanted = outcome.components if isinstance(outcome, Configuration) else ()
         self._liveness.select(wanted, lambda: self._step(composed))
@@ -569,4 +575,15 @@ class TaskRunner:
             owed=self._out_of_control,
             dropped={one: count for one, count in self._liveness.dropped.items() if count and one in self.state.held},
             outside=None if self.request.outside is None else self.request.outside.composite,
+            wants={one: wants for one in self.state.held if (wants := self._wants(one)) != Wants()},
         )
+
+    def _wants(self, component: IRI) -> Wants:
+        """What is wanted of a component that this task holds, for those that would share it."""
+        target, held = self.state.target, self.state.held[component]
+        if not self._shareable(component):
+            return Wants()
+        if target is not None and component in target.components:
+            return target.wants(component)
+        wires = ((port, wire.component, wire.output) for port, some in held.inputs.items() for wire in some)
+        return Wants(frozenset(wires), frozenset(held.values.items()))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Term
+from selfconf.model.wants import Wants
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -68,6 +69,13 @@ class Configuration:
     def components(self) -> tuple[IRI, ...]:
         """B, the components of the configuration: its players in the order of the roles, then its recruits."""
         return (*self.players, *self.recruits)
+
+    def wants(self, component: IRI) -> Wants:
+        """What is wanted of one of the components."""
+        return Wants(
+            frozenset((one.input, one.source, one.output) for one in self.connections if one.sink == component),
+            frozenset((one.name, one.value) for one in self.settings if one.component == component),
+        )
 
     def role_of(self, component: IRI) -> IRI | None:
         """The role that a component plays, if it plays one."""

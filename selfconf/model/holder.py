@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
+from selfconf.model.term import IRI
+from selfconf.model.wants import Wants
 
 
 @immutable
@@ -17,6 +20,12 @@ class Holder:
     configurator: str = ""
     acting: bool = True
     """Whether the component acts for it: else it has only been reserved."""
+    wants: Wants = Wants()
+    """What it wants of the component, where that can be shared: by those that want the same."""
+
+    def disagrees(self, component: IRI, configuration: Configuration) -> bool:
+        """Whether it wants something else of a component than a configuration."""
+        return self.wants != configuration.wants(component)
 
     @property
     def name(self) -> str:

@@ -16,6 +16,7 @@ from typing import Any, TypeVar, get_args
 from selfconf.errors import PeerError
 from selfconf.model.log_line import LONGEST_LINE, LogLine
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.model.wants import Wants
 from selfconf.model.wording import is_one_line, one_line
 from selfconf.protocol.keys import is_task_identity
 from selfconf.protocol.messages import (
@@ -142,6 +143,8 @@ def _plain(value: object) -> object:
     """A value that JSON has no notation for, as one that it has."""
     if isinstance(value, Wire):
         return value.component, value.output, value.period
+    if isinstance(value, Wants):
+        return {"inputs": sorted(value.inputs), "values": {name: encode_term(term) for name, term in value.values}}
     if isinstance(value, SignalEncoding):
         return {name: member for name, member in dataclasses.asdict(value).items() if member}
     raise TypeError(f"no message holds a {type(value).__name__}")
@@ -287,6 +290,21 @@ def _values(value: object) -> dict[str, Term]:
     return {_name(name): decode_term(item) for name, item in _object(value).items()}
 
 
+def _all_wants(value: object) -> dict[IRI, Wants]:
+    return {_iri(component): _wants(one) for component, one in _object(value).items()}
+
+
+def _wants(value: object) -> Wants:
+    body = _object(value)
+    inputs = [_list(one) for one in _list(body.get("inputs", []))]
+    if any(len(one) != 3 for one in inputs):
+        raise PeerError("what is wanted of an input is its name, a component and an output")
+    return Wants(
+        frozenset((_name(port), _iri(source), _name(output)) for port, source, output in inputs),
+        frozenset(_values(body.get("values", {})).items()),
+    )
+
+
 def _revisions(value: object) -> dict[str, int]:
     return {_name(site): _whole(revision) for site, revision in _object(value).items()}
 
@@ -410,6 +428,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (Status, "lost"): _sayable,
     (Status, "owed"): _iris,
     (Status, "dropped"): _sayable,
+    (Status, "wants"): _all_wants,
     (TaskRecord, "revision"): _whole,
     (TaskRecord, "ended"): _truth,
     (TaskRecord, "document"): _text,

@@ -14,6 +14,7 @@ from typing import Any
 from selfconf.model.immutable import immutable
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, Term
+from selfconf.model.wants import Wants
 
 
 class Cause(str, Enum):
@@ -355,6 +356,8 @@ class Status:
     """How many signals those components have passed over that are too slow."""
     outside: IRI | None = None
     """The composite of which the task is the inside, if it is one."""
+    wants: Mapping[IRI, Wants] = field(default_factory=dict)
+    """What the task wants of those components that can be shared, where it wants anything of them."""
 
 
 @immutable

@@ -22,6 +22,7 @@ from selfconf.model.hierarchy import Reasoning
 from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
+from selfconf.model.wants import Wants
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import SC
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
@@ -144,6 +145,26 @@ def test_a_refusal_names_each_component_that_is_eligible_and_held(
         ("display", "display"),
         ("spare", "spare"),
     ]
+
+
+@pytest.mark.parametrize("agrees", [True, False])
+def test_what_can_be_shared_is_free_for_those_that_want_the_same_of_it(
+    clock: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch, agrees: bool
+) -> None:
+    text = Path("examples/clock/display.ttl").read_text()
+    ecology = sc.read("examples/clock/clock.ttl", text.replace("rob:Display ;", "rob:Display ; sc:shareable true ;"))
+    alone = sc.configure(clock, ecology)
+    assert isinstance(alone, Answer)
+    (screen,) = alone["screen"]
+    holder = Holder("watch~1", wants=alone.wants(screen) if agrees else Wants())
+    monkeypatch.setattr(sc.Ecology, "holders", lambda _: {screen: holder})
+    answer = sc.configure(clock, ecology)
+    if agrees:
+        assert answer == alone
+    else:
+        assert isinstance(answer, Refusal)
+        assert answer.held == ((screen, holder),)
+        assert str(answer.reasons[0]) == "no component that is free is eligible for the role screen"
 
 
 def test_a_refusal_of_what_has_no_file_has_no_places(clock: sc.TaskSpecification) -> None:

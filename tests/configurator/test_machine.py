@@ -29,11 +29,14 @@ from selfconf.configurator.events import (
     Discovered,
     Failed,
     Freed,
+    Improvable,
     Reconnected,
     Stopped,
 )
 from selfconf.configurator.machine import MOST_REPEATS
 from selfconf.configurator.state import MOST_PUT_OFF, Phase, Policy, State
+from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
@@ -376,6 +379,45 @@ def test_a_refusal_that_nobody_else_is_to_blame_for_names_nobody() -> None:
     history.composed(REFUSAL)
     assert history.composed(REFUSAL) == [Finish(REFUSAL)]
     assert not history.state.lost
+
+
+def sharers(configuration: Configuration) -> dict[IRI, Holder]:
+    """Another task that holds the controller, which it would share, as in a configuration of its own."""
+    return {CONTROL: replace(OTHERS, wants=configuration.wants(CONTROL))}
+
+
+def test_what_can_be_shared_counts_as_long_as_all_want_the_same_of_it() -> None:
+    history = History(TASK)
+    history.hear(Accepted(100), Discovered({}, sharers(navigation())))
+    assert kinds(history.composed(navigation()))[-1] is WakeUp
+    assert history.state.phase is Phase.RESERVING
+
+
+def test_what_can_be_shared_is_taken_where_its_holder_wants_something_else_of_it() -> None:
+    history = History(TASK)
+    history.hear(Accepted(100), Discovered({}, sharers(navigation(ODOMETRY))))
+    assert history.composed(navigation()) == [Compose(2, frozenset({CONTROL}), None)]
+    assert history.composed(REFUSAL) == [Compose(3, frozenset(), None)]
+    held = ((CONTROL, sharers(navigation(ODOMETRY))[CONTROL]),)
+    assert history.composed(navigation()) == [Finish(replace(REFUSAL, held=held))]
+    assert not history.state.watched
+
+
+def test_what_runs_is_not_changed_to_something_of_which_its_holder_wants_something_else() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    better = navigation(TRACKER)
+    history.hear(Improvable(), Discovered({}, {TRACKER: replace(OTHERS, wants=better.wants(CONTROL))}))
+    assert history.composed(better) == [Compose(history.state.attempt, frozenset({TRACKER}), None)]
+    assert history.composed(navigation(ODOMETRY)) == []
+    assert history.state.target == navigation(ODOMETRY)
+
+
+def test_what_a_task_of_lower_priority_wants_of_a_component_that_can_be_shared_does_not_matter() -> None:
+    history = History(TASK)
+    other = navigation(ODOMETRY)
+    history.hear(Accepted(100), Discovered({}, {CONTROL: replace(LOWER, wants=other.wants(CONTROL))}))
+    history.composed(navigation())
+    assert history.state.phase is Phase.RESERVING
 
 
 def waiting() -> History:

@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.configurator.state import Loss, Phase, State
+from selfconf.configurator.state import Held, Loss, Phase, State
+from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
+from selfconf.model.wants import Wants
 from selfconf.protocol.messages import Cause
+from tests.configurator.builders import CONTROL, TRACKER, navigation
 
 EYE = IRI("urn:test:eye")
 
@@ -33,3 +36,11 @@ def test_a_lost_component_that_its_site_can_start_is_worth_another_search() -> N
     crashed = Loss(Cause.CRASH, startable=True)
     assert State(lost={EYE: crashed}).searches_again
     assert not State(lost={EYE: replace(crashed, startable=False)}).searches_again
+
+
+def test_what_others_would_share_is_contested_where_they_want_something_else_and_this_task_has_not_got_it() -> None:
+    configuration = navigation()
+    same, other = (Holder("tidy~2", wants=wants) for wants in (configuration.wants(CONTROL), Wants()))
+    assert State(sharers={CONTROL: same, TRACKER: other}).contested(configuration) == {}
+    assert State(sharers={CONTROL: other}).contested(configuration) == {CONTROL: other}
+    assert State(sharers={CONTROL: other}, held={CONTROL: Held({})}).contested(configuration) == {}

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Request, Sample
 from selfconf.deployment.holders import STATUS, ask_holders, holders_in
 from selfconf.model.holder import Holder
-from selfconf.model.term import IRI
+from selfconf.model.term import IRI, Literal
+from selfconf.model.wants import Wants
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Status
@@ -19,9 +22,10 @@ KEYS = Keys("lab")
 LAMP, CAMERA = IRI("urn:c:lamp"), IRI("urn:c:camera")
 
 
-def said(name: str, *components: IRI, priority: int = 0, beginning: float = 0.0, key: str = "") -> Sample:
+def said(name: str, *components: IRI, priority: int = 0, beginning: float = 0.0, key: str = "", **more: Any) -> Sample:
     """What a configurator says of itself."""
     status = Status(name, "running", IRI("urn:t"), 1, 0.0, "", 0, components, {}, f"{name}~1", priority, beginning)
+    status = replace(status, **more)
     return Sample(key or KEYS.configurator_call(name, "status"), encode(status))
 
 
@@ -37,6 +41,12 @@ def test_of_several_holders_the_highest_priority_counts_then_the_earlier_beginni
         assert holders_in(Replies(samples), KEYS)[LAMP].configurator == "early"
     for samples in ((late, high, early), (high, early, late)):
         assert holders_in(Replies(samples), KEYS)[LAMP].configurator == "high"
+
+
+def test_a_holder_is_known_with_what_it_wants_of_the_component() -> None:
+    wants = Wants(frozenset({("in", CAMERA, "picture")}), frozenset({("goal", Literal("x"))}))
+    found = holders_in(Replies((said("a", LAMP, CAMERA, wants={LAMP: wants}),)), KEYS)
+    assert (found[LAMP].wants, found[CAMERA].wants) == (wants, Wants())
 
 
 def test_the_own_status_and_what_is_none_are_passed_over() -> None:

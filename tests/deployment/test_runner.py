@@ -14,7 +14,8 @@ from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.liveness import AUDIT
 from selfconf.deployment.runner import LONGEST_PAUSE, TRY_AGAIN, TaskRunner
 from selfconf.errors import TemplateError
-from selfconf.model.refusal import Outcome, TooFewEligible
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Outcome, Refusal, TooFewEligible
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Verdict
 from selfconf.rdf import conformance as shacl
@@ -365,6 +366,42 @@ def test_a_refusal_says_of_all_that_is_held_by_whom_and_since_when(tmp_path: Pat
         iri(name): (f"holds-{name}", one.identity.beginning) for name, one in zip(SPARE, holding, strict=True)
     }
     assert [one["task"] for one in event_body(event)["refusal"]["held"]] == ["holds-left", "holds-right"]
+
+
+SHARED = {
+    "oracle": ":oracle a sc:Component, :Oracle ; sc:shareable true ;"
+    ' sc:hasParameter [ sc:name "goal" ; sc:parameterType :Goal ] ;'
+    ' sc:hasOutput [ sc:name "says" ; sc:signalType :S ] .',
+    "ear": ':ear a sc:Component, :Ear ; sc:shareable false ; sc:hasInput [ sc:name "in" ; sc:signalType :S ] .',
+    "other-ear": ':other-ear a sc:Component, :Ear ; sc:hasInput [ sc:name "in" ; sc:signalType :S ] .',
+}
+ASKED = PREFIXES + (
+    ":ask a sc:Template ; sc:parameter :goal ; sc:roles ( :oracle-role :ear-role ) ."
+    ' :goal a sc:Parameter ; sc:name "goal" ; sh:datatype xsd:string . :ear-role a sc:Role ; sh:class :Ear .'
+    " :oracle-role a sc:Role ; sh:class :Oracle ; sc:feeds :ear-role ;"
+    " sc:sets [ sc:parameterType :Goal ; sc:value :goal ] ."
+)
+
+
+@pytest.mark.parametrize(("goal", "shared"), [("x", True), ("y", False)])
+def test_a_component_is_shared_with_a_task_that_gives_it_the_same_values_alone(
+    tmp_path: Path, goal: str, shared: bool
+) -> None:
+    lab = Lab(tmp_path, advertised=SHARED)
+    lab.site("shared", *SHARED)
+    for name in SHARED:
+        lab.component(name)
+    first = lab.agent(ASKED, (("goal", "x"),), name="first")
+    assert lab.running(first)
+    lab.events.clear()
+    second = lab.agent(ASKED, (("goal", goal),), name="second")
+    lab.let_pass(1.0)
+    assert (second.state.phase is Phase.RUNNING) == shared
+    assert [event.outcome.__class__ for event in lab.acts("composed")] == [Configuration if shared else Refusal]
+    assert bool(lab.acts("watching")) == shared
+    if not shared:
+        (refused,) = lab.acts("refused")
+        assert [(component, holder.name) for component, holder in refused.refusal.held][-1] == (iri("oracle"), "first")
 
 
 def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:

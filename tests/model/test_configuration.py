@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from itertools import permutations
 
-from selfconf.model.configuration import Assignment, Configuration, Connection
-from selfconf.model.term import IRI
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.term import IRI, Literal
+from selfconf.model.wants import Wants
 
 
 def test_a_configuration_knows_its_components_and_their_roles() -> None:
@@ -29,3 +30,15 @@ def test_a_role_that_nobody_plays_belongs_to_the_configuration_too() -> None:
     configuration = Configuration(IRI("urn:t"), (Assignment(IRI("urn:r"), ()),))
     assert configuration
     assert (configuration.components, configuration.connections) == ((), ())
+
+
+def test_what_is_wanted_of_a_component_are_its_inputs_and_its_values() -> None:
+    a, b, goal = IRI("urn:a"), IRI("urn:b"), Literal("(AT BEDROOM)")
+    configuration = Configuration(
+        IRI("urn:t"),
+        (Assignment(IRI("urn:r"), (a, b)),),
+        (Connection(a, "out", b, "in"),),
+        (ParameterSetting(b, "goal", goal),),
+    )
+    assert configuration.wants(a) == Wants()
+    assert configuration.wants(b) == Wants(frozenset({("in", a, "out")}), frozenset({("goal", goal)}))

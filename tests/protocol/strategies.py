@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, BlankNode, Literal
+from selfconf.model.wants import Wants
 from selfconf.protocol.messages import (
     Access,
     Apply,
@@ -68,6 +69,11 @@ plain: st.SearchStrategy[Any] = st.recursive(
     max_leaves=4,
 )
 values = st.dictionaries(names, terms, max_size=3)
+all_wants = st.builds(
+    Wants,
+    st.frozensets(st.tuples(names, iris, names), max_size=2),
+    values.map(lambda some: frozenset(some.items())),
+)
 log_lines = st.builds(LogLine, texts, texts, st.lists(iris, max_size=2).map(tuple), texts)
 claim: dict[str, st.SearchStrategy[Any]] = {
     "epoch": numbers,
@@ -143,6 +149,8 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
         seconds,
         st.lists(iris, max_size=3).map(tuple),
         st.dictionaries(texts, numbers, max_size=2),
+        st.none() | iris,
+        st.dictionaries(iris, all_wants, max_size=2),
     ),
     TaskRecord: st.builds(
         TaskRecord,

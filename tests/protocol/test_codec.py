@@ -11,11 +11,24 @@ from hypothesis import strategies as st
 
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI, Term
+from selfconf.model.wants import Wants
 from selfconf.model.wording import one_line
 from selfconf.protocol.codec import KINDS as NAMES
 from selfconf.protocol.codec import LARGEST, decode, decode_term, encode, encode_term
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Fail, Message, Notice, Release, Reserve, Stamp, StateOf, TaskRecord, Wire
+from selfconf.protocol.messages import (
+    Apply,
+    Fail,
+    Message,
+    Notice,
+    Release,
+    Reserve,
+    Stamp,
+    StateOf,
+    Status,
+    TaskRecord,
+    Wire,
+)
 from tests.protocol import strategies
 
 KINDS: tuple[type[Any], ...] = get_args(Message)
@@ -211,3 +224,14 @@ def test_what_is_handed_on_as_it_is_can_be_written_again(value: str) -> None:
     payload = json.dumps(whole | {"event": "HERE"}).replace('"HERE"', value).encode()
     with pytest.raises(PeerError, match="whole characters"):
         decode(payload, Notice)
+
+
+@pytest.mark.parametrize(
+    "wants",
+    [[], {"inputs": 1}, {"inputs": [["in", "urn:eye"]]}, {"inputs": [["", "urn:eye", "o"]]}, {"values": {"a": 1}}],
+)
+def test_what_is_wanted_of_a_component_are_inputs_and_values(wants: object) -> None:
+    body = json.loads(encode(Status("c1", "running", IRI("urn:t"), 1, 0.0)))
+    with pytest.raises(PeerError):
+        decode(json.dumps({**body, "wants": {"urn:lamp": wants}}).encode(), Status)
+    assert decode(json.dumps({**body, "wants": {"urn:lamp": {}}}).encode(), Status).wants == {"urn:lamp": Wants()}
