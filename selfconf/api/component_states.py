@@ -40,6 +40,13 @@ class ComponentState(NamedTuple):
     life: str = ""
     reason: str = ""
     """Why it cannot act now, where its site says so: of a composite whose inside cannot be configured."""
+    stopping: bool = False
+    """Whether it was told to stop and has not come to rest; where that lasts, it is out of control."""
+
+    @property
+    def shown(self) -> str:
+        """The state for people: `stopping` of one that lives and does not come to rest."""
+        return "stopping" if self.stopping else self.state
 
     def body(self) -> dict[str, object]:
         """The state as JSON."""
@@ -55,6 +62,7 @@ class ComponentState(NamedTuple):
             "memory": self.memory,
             "issued": dict(self.issued),
             "reason": self.reason,
+            "stopping": self.stopping,
         }
 
 
@@ -80,7 +88,7 @@ def component_states(discovery: Discovery, keys: Keys, replies: Replies) -> Iter
         if heard is not None:
             task = task_name(heard.task)
             told = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.life
-            one = ComponentState(component, types, found.site, "alive", *told)
+            one = ComponentState(component, types, found.site, "alive", *told, stopping=heard.stopping)
         yield one
 
 

@@ -148,6 +148,13 @@ class LivingEcology(Ecology):
         self.complaints = (*self.complaints, *silent)
         return tuple(found)
 
+    def out_of_control(self) -> Mapping[IRI, str]:
+        """The components that were told to stop and do not come to rest in time, sorted, and how each of them is.
+
+        That takes some seconds where a component is stopping. Those who may look on only are told of none.
+        """
+        return {} if self._looks_on_only else self._tasks.out_of_control()
+
     def _life(self, component: IRI) -> str | None:
         """The life of a component; those of a large ecology, which most who look on need not, are called now."""
         if not self._view.knows(component_chunk(component)):

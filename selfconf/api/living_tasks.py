@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import count
@@ -197,16 +197,32 @@ class LivingTasks:
     def _disobedience(self, ended: Sequence[Status]) -> list[str]:
         """What is to be said of components that do not obey in time though their task has ended: they may act on."""
         asked = {(component, status.task) for status in ended for component in (*status.components, *status.owed)}
+        return sorted(
+            {
+                f"{component.short} was turned off and has not obeyed: {why}; it is out of control until it is gone"
+                for (component, _), why in self._after_some_time(asked).items()
+            }
+        )
+
+    def out_of_control(self) -> Mapping[IRI, str]:
+        """The components that were told to stop and do not come to rest in time, sorted, and how each of them is.
+
+        Whether a task is left that knows of them or not: each component is asked. It takes time where one is stopping.
+        """
+        answers = _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE), self._keys)
+        stopping = {(one.component, "") for one in answers if one.stopping}
+        return {component: why for (component, _), why in self._after_some_time(stopping).items()}
+
+    def _after_some_time(self, asked: Iterable[tuple[IRI, str]]) -> dict[tuple[IRI, str], str]:
+        """Those that are still disobedient, of components and the tasks that they were released by, and how they are.
+
+        Until all have obeyed, or the time for that is over.
+        """
         deadline = self._bus.now() + COMING_TO_REST
         while (troubles := self._disobedient(asked)) and self._bus.now() < deadline:
             asked = set(troubles)
             self._bus.pause(REST_CHECK)
-        return sorted(
-            {
-                f"{component.short} was turned off and has not obeyed: {why}; it is out of control until it is gone"
-                for (component, _), why in troubles.items()
-            }
-        )
+        return troubles
 
     def _disobedient(self, asked: Iterable[tuple[IRI, str]]) -> dict[tuple[IRI, str], str]:
         """Of components and the tasks that they were released by, those that are not at rest, and how they are."""
@@ -214,7 +230,7 @@ class LivingTasks:
         questions = [(keys.call(component, "state"), encode(StateOf(task))) for component, task in pairs]
         troubles = {}
         for (component, task), replies in zip(pairs, self._bus.ask_each(questions, STATE), strict=True):
-            answers = _states(replies, keys.call(component, "state"))
+            answers = _states(replies, keys)
             acting = [one for one in answers if one.stopping or (one.active and one.task == task)]
             if acting:
                 what = "its code has not come to rest" if acting[0].stopping else "it acts on"
@@ -243,13 +259,14 @@ class LivingTasks:
             self._bus.pause(0.02)
 
 
-def _states(replies: Replies, key: str) -> list[CallAnswer]:
-    """What the lives of a component have answered on its key."""
+def _states(replies: Replies, keys: Keys) -> list[CallAnswer]:
+    """What the lives of components have answered, each on its own key."""
     found = []
     for sample in replies.samples:
         with suppress(PeerError):
-            if sample.key == key:
-                found.append(decode(sample.payload, CallAnswer))
+            answer = decode(sample.payload, CallAnswer)
+            if sample.key == keys.call(answer.component, "state"):
+                found.append(answer)
     return found
 
 

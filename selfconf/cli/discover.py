@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
@@ -12,6 +12,7 @@ from selfconf.cli.terminal import styled_state
 
 if TYPE_CHECKING:
     from selfconf.api.component_states import ComponentState
+    from selfconf.model.term import IRI
 
 EXAMPLE = """  selfconf discover --format json"""
 
@@ -28,6 +29,9 @@ def run(given: argparse.Namespace) -> int:
 
     with joined(given) as ecology:
         states = ecology.component_states()
+        disobedient: Mapping[IRI, str] = {}
+        if given.format != "json" and any(one.stopping for one in states):
+            disobedient = ecology.out_of_control()
         discovery = ecology.discovery
         complain_of(ecology)
     if given.format == "json":
@@ -35,19 +39,20 @@ def run(given: argparse.Namespace) -> int:
         print(json.dumps({**body, "missing": discovery.missing}, indent=2))
         return 0
     print(_table(states))
-    for line in _reasons(states):
+    for line in _sentences(states, disobedient):
         print(line)
     print(f"{count(len(states), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
     return 0
 
 
-def _reasons(states: tuple[ComponentState, ...]) -> Iterator[str]:
-    """Why components cannot act now, as far as their sites say so."""
+def _sentences(states: tuple[ComponentState, ...], disobedient: Mapping[IRI, str]) -> Iterator[str]:
+    """Why components cannot act now, as far as their sites say so; and which do not come to rest."""
     from selfconf.rdf.sparql import QUERY_PREFIXES
-    from selfconf.render import ecology_names
+    from selfconf.render import disobedience_text, ecology_names
 
     names, _ = ecology_names(QUERY_PREFIXES, [one.component for one in states])
-    return (f"{names(one.component)} cannot act now: {one.reason}" for one in states if one.reason)
+    yield from (f"{names(one.component)} cannot act now: {one.reason}" for one in states if one.reason)
+    yield from disobedience_text(disobedient, names)
 
 
 def _table(states: tuple[ComponentState, ...]) -> str:
@@ -60,7 +65,7 @@ def _table(states: tuple[ComponentState, ...]) -> str:
             names(one.component),
             ", ".join(map(names, one.types)),
             one.site,
-            one.state,
+            one.shown,
             one.task,
             one.place,
             duration(one.age) if one.life else "",

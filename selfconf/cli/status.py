@@ -29,12 +29,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once every configurator has answered, also if nothing is deployed; 2 if one lives and does not answer."""
-    from selfconf.rdf.sparql import QUERY_PREFIXES
-    from selfconf.render import ecology_names
-
     with joined(given) as ecology:
         found = ecology.tasks
         deployed = ecology.deployed() if found else {}
+        disobedient = ecology.out_of_control() if given.format != "json" else {}
         complain_of(ecology)
     if given.format == "json":
         bodies = [_body(status, deployed.get(status.configurator, {})) for status in found]
@@ -42,13 +40,27 @@ def run(given: argparse.Namespace) -> int:
         return 2 if ecology.silent else 0
     if not found and not ecology.silent:
         print(f"nothing is deployed in ecology {ecology.name}")
-    names, note = ecology_names(QUERY_PREFIXES, [iri for one in found for iri in (one.template, *one.components)])
-    for depth, status in _nested(found):
-        lines = _lines(status, deployed.get(status.configurator), names)
-        print("\n".join("    " * depth + line for line in lines))
-    if note:
-        print(note)
+    for line in _told(found, deployed, disobedient):
+        print(line)
     return 2 if ecology.silent else 0
+
+
+def _told(
+    found: Sequence[Status], deployed: Mapping[str, Mapping[str, Any]], disobedient: Mapping[IRI, str]
+) -> Iterator[str]:
+    """The tasks for people, and the components out of control of which none of them tells."""
+    from selfconf.rdf.sparql import QUERY_PREFIXES
+    from selfconf.render import disobedience_text, ecology_names
+
+    owed = {component for one in found for component in one.owed}
+    forgotten = {component: why for component, why in disobedient.items() if component not in owed}
+    named = [iri for one in found for iri in (one.template, *one.components)]
+    names, note = ecology_names(QUERY_PREFIXES, [*named, *forgotten])
+    for depth, status in _nested(found):
+        yield from ("    " * depth + line for line in _lines(status, deployed.get(status.configurator), names))
+    yield from disobedience_text(forgotten, names)
+    if note:
+        yield note
 
 
 def _nested(found: Sequence[Status]) -> Iterator[tuple[int, Status]]:

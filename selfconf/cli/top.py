@@ -86,7 +86,7 @@ def _table(ecology: LivingEcology, now: tuple[ComponentState, ...], rates: dict[
     for one in sorted(now, key=lambda one: (one.state != "alive", not one.active)):  # stable: then by IRI
         issued = ", ".join(f"{port} {rate:.1f}/s" for port, rate in rates[one.component].items())
         memory, age = f"{one.memory / 1e6:.0f} MB" if one.memory else "", duration(one.age) if one.life else ""
-        state = "active" if one.active else one.state
+        state = "active" if one.active else one.shown
         rows.append([names(one.component), state, one.task, issued, memory, age, one.place, one.site])
     living, held = sum(one.state == "alive" for one in now), sum(bool(one.task) for one in now)
     head = ["component", "state", "held by", "issues", "memory", "age", "process", "site"]

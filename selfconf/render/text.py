@@ -6,7 +6,7 @@ The names of ports and parameters are any text that strangers wrote: what would 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from selfconf.model.alternative import Alternative
@@ -24,6 +24,11 @@ Name = Callable[[Term], str]
 """How a term is written: `Names` of a document, or `short`."""
 MOST_LINES = 8
 """How many reasons, and how many near misses, a screen has room for."""
+
+
+def disobedience_text(disobedient: Mapping[IRI, str], name: Name) -> list[str]:
+    """A line for each component that was turned off and does not come to rest, with how it is."""
+    return [f"out of control: {name(one)} was turned off and has not obeyed: {why}" for one, why in disobedient.items()]
 
 
 def configuration_text(configuration: Configuration, name: Name) -> str:

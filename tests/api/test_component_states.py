@@ -43,6 +43,14 @@ def test_what_a_component_says_is_its_state_and_the_others_are_dormant_or_absent
     assert states()[CLOCK].state == "absent"
 
 
+def test_a_component_that_has_not_come_to_rest_is_shown_as_stopping() -> None:
+    said = CallAnswer(Verdict.DONE, CLOCK, "b", 1, stopping=True)
+    found = states(Sample(KEYS.call(CLOCK, "state"), encode(said)))[CLOCK]
+    assert (found.state, found.stopping, found.shown) == ("alive", True, "stopping")
+    assert found.body()["stopping"] is True
+    assert (states()[CLOCK].stopping, states()[CLOCK].shown) == (False, "absent")
+
+
 def test_of_two_lives_the_smaller_one_counts_and_what_is_no_answer_is_passed_over() -> None:
     assert states(answer(CLOCK, "b"), answer(CLOCK, "a"))[CLOCK].life == "a"
     assert states(answer(CLOCK, "a"), answer(CLOCK, "b"))[CLOCK].life == "a"

@@ -60,7 +60,7 @@ class Tasks:
 
         def tell(request: Request) -> None:
             state = left.pop(0) if len(left) > 1 else left[0]
-            request.reply(request.key, encode(state))
+            request.reply(KEYS.call(component, "state"), encode(state))
             request.finish()
 
         node.serve(KEYS.call(component, "state"), tell if answers else lambda request: None)
@@ -182,6 +182,21 @@ def test_a_component_that_does_not_obey_is_named_after_all_is_taken_down(
     with pytest.raises(NetworkError, match=f"drive was turned off and has not obeyed: {how}"):
         tasks.asked.stop()
     assert tasks.asked.running() == ()
+
+
+def test_what_does_not_come_to_rest_is_out_of_control_also_without_a_task(tasks: Tasks) -> None:
+    lamp, stopping = IRI("urn:c#lamp"), replace(AT_REST, stopping=True)
+    tasks.component(DRIVE, stopping)
+    tasks.component(lamp, replace(stopping, component=lamp), replace(AT_REST, component=lamp))
+    tasks.component(IRI("urn:c#cap"), replace(AT_REST, component=IRI("urn:c#cap"), active=True, task="tidy~2"))
+    assert tasks.asked.out_of_control() == {DRIVE: "its code has not come to rest (process 7 on lab)"}
+
+
+def test_nothing_is_waited_for_where_nothing_is_stopping(tasks: Tasks) -> None:
+    tasks.component(DRIVE, AT_REST)
+    began = tasks.network.time
+    assert tasks.asked.out_of_control() == {}
+    assert tasks.network.time - began < 1.0
 
 
 def test_a_task_is_handed_over_once(tasks: Tasks) -> None:

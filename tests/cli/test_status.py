@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import signal
+import sys
+
 import pytest
 
+from selfconf.api import living_tasks
 from selfconf.cli import status
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Status
@@ -35,6 +39,47 @@ def test_what_is_deployed_is_shown_and_taken_down_by_stop(inhabited: Home, capsy
     assert (outcome.code, outcome.out) == (0, f"took down {told['task']} in ecology {inhabited.ecology}\n")
     assert program.ended() == 0
     assert inhabited.active(*EVERYBODY) == set()
+
+
+STUBBORN = """\
+import threading
+from selfconf.sdk import Component, main
+
+class Drive(Component):
+    advertisement = "ads/drive.ttl"
+
+    def stopped(self):
+        threading.Event().wait()
+
+main(Drive)
+"""
+
+
+def test_a_component_that_does_not_come_to_rest_is_listed_when_its_task_has_ended(
+    home: Home, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(living_tasks, "COMING_TO_REST", 0.3)
+    home.site("peis-home", "ads")
+    home.components("sonar", "encoder", "tracker", "control")
+    (home.folder / "stubborn.py").write_text(STUBBORN)
+    drive = home.program(sys.executable, "stubborn.py", "--ecology", home.ecology, "--connect", home.endpoint())
+    assert home.until(lambda: home.state(iri("astrid-drive")) is not None)
+    program, where = home.run(), home.arguments()
+    program.act("running")
+    program.end(signal.SIGINT)
+    sentence = "out of control: :astrid-drive was turned off and has not obeyed: its code has not come to rest (process"
+    assert sentence in run(capsys, "status", *where).out
+    discovered = run(capsys, "discover", *where).out
+    assert sentence in discovered
+    assert [line.split()[3] for line in discovered.splitlines() if line.startswith(":astrid-drive")] == ["stopping"]
+    states = {
+        one["component"]: one["stopping"]
+        for one in run(capsys, "discover", "--format", "json", *where).body["components"]
+    }
+    assert [component for component, stopping in states.items() if stopping] == [iri("astrid-drive")]
+    drive.end(signal.SIGKILL)
+    assert home.until(lambda: home.state(iri("astrid-drive")) is None)
+    assert run(capsys, "status", *where).out == f"nothing is deployed in ecology {home.ecology}\n"
 
 
 def test_where_nothing_is_deployed_both_say_so(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
