@@ -130,17 +130,20 @@ class LivingEcology(Ecology):
     def component_states(self) -> tuple[ComponentState, ...]:
         """How each advertised component is: whether it lives, who holds it, where, since when; sorted by IRI.
 
-        A component that lives and does not answer is named among the `complaints`.
+        A component that lives and does not answer is named among the `complaints`. To those who may look on only the
+        configurators tell who holds it.
         """
         discovery = self.discover()
         asked = self._view.keys.any_call("state")
         # Nobody would hear the question of those who may look on only.
         replies = Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATES)
+        holders = self.holders() if self._looks_on_only else {}
         found = []
         silent: list[str] = []
         for one in component_states(discovery, self._view.keys, replies):
             if one.state != "alive" and self._life(one.component) is not None:
-                one = one._replace(state="alive")
+                held_by = holders.get(one.component)
+                one = one._replace(state="alive", task=task_name(held_by.task) if held_by is not None else "")
                 silent.append(f"{one.component} lives, but does not say how it is")
             found.append(one)
         if silent and self._looks_on_only:

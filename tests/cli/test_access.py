@@ -72,14 +72,18 @@ def test_a_reader_looks_on_and_is_told_that_it_may_do_no_more(
     keys = ("--keys", str(tmp_path / "alice"))
     run(capsys, "keys", "issue", "read.alice", "--out", str(tmp_path / "alice"))
     assert "person-tracker" in run(capsys, "discover", *running.arguments(), *keys).out
+    shown = run(capsys, "top", "--every", "0.1", "--format", "json", *running.arguments(), *keys).body["components"]
+    assert {one["task"] for one in shown if one["component"] == component_of("drive")} == {"walk"}
+    assert " live, 5 held by tasks" in run(capsys, "top", "--every", "0.1", *running.arguments(), *keys).out
     assert run(capsys, "stop", "walk", *running.arguments(), *keys).is_one_sentence("read.alice may look on only")
 
 
 @pytest.mark.parametrize(
     ("command", "code", "words"),
     [
-        (("discover",), 0, ("person-tracker", "takes keys of conf.NAME")),
-        (("top", "--format", "json"), 0, ("person-tracker", "takes keys of conf.NAME")),
+        (("discover",), 0, ("person-tracker", "walk", "takes keys of conf.NAME")),
+        (("top", "--format", "json"), 0, ("person-tracker", '"task": "walk"', "takes keys of conf.NAME")),
+        (("top", "--once"), 0, (" live, 5 held by tasks", "walk", "takes keys of conf.NAME")),
         (("status",), 0, ("running for",)),
         (("tasks",), 0, ("walk",)),
         (("why", "person-tracker"), 0, ("person-tracker", "walk")),
