@@ -10,13 +10,14 @@
 * a parameter inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
 
 A shape that says more is *incomplete* here: its tests are still necessary, so they are the prefilter, and pySHACL
-judges the survivors by the whole shape. That both ways give one partition is a property test. Left out on purpose:
-`sh:class` on the values of a property, which depends on what other advertisements say.
+judges the survivors by the whole shape, but for property shapes that are compiled and have free parameters to
+themselves: those need not be judged for each value. That both ways give one partition is a property test. Left out on
+purpose: `sh:class` on the values of a property, which depends on what other advertisements say.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import TypeGuard
@@ -35,7 +36,7 @@ from selfconf.rdf.eligibility.role_tests import (
 )
 from selfconf.rdf.permitted_fields import STRUCTURE
 from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
-from selfconf.rdf.tasks import ROLE_STRUCTURE, substituted
+from selfconf.rdf.tasks import ROLE_STRUCTURE, mentions, substituted
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import LABEL, RDFS, SC, SH, TYPE
 
@@ -85,9 +86,53 @@ def compile_role(
     compiler = _Compiler(document, free)
     try:
         tests = (*compiler.shape(role), *map(ParameterTest, settings))
-        return CompiledRole(role, tests, not compiler.rest, local(document, role))
+        settled = _settled(document, role, free) if compiler.rest and free else frozenset[Term]()
+        return CompiledRole(role, tests, not compiler.rest, local(document, role), settled)
     except RecursionError:
         raise TemplateError(f"the shape of the role {role!r} nests too deeply", file=document.source) from None
+
+
+def _settled(document: Document, role: IRI, free: frozenset[IRI]) -> frozenset[Term]:
+    """The property shapes of a role that tests say all of, with free parameters that stand nowhere else in its shape.
+
+    None where a constraint looks at the other property shapes of the role: `sh:closed`, or of shapes that are disjoint.
+    """
+    settled = {
+        shape: parameters
+        for shape in document.values(role, SH.property)
+        if (parameters := mentions(document, shape, free))
+        and document.value(shape, SH.qualifiedValueShape) is None
+        and _compiled_in_full(document, shape, free)
+    }
+    if document.value(role, SH.closed) is not None:
+        settled.clear()
+    while settled:
+        elsewhere = mentions(_without(document, role, settled), role, free)
+        shared = [shape for shape, parameters in settled.items() if parameters & elsewhere]
+        if not shared:
+            break
+        for shape in shared:
+            del settled[shape]
+    return frozenset(settled)
+
+
+def _compiled_in_full(document: Document, shape: Term, free: frozenset[IRI]) -> bool:
+    """Whether tests say all that a shape says."""
+    compiler = _Compiler(document, free)
+    for _ in compiler.shape(shape):
+        pass
+    return not compiler.rest
+
+
+def _without(document: Document, role: IRI, shapes: Container[Term]) -> Document:
+    """A template in which a role lacks some of its property shapes."""
+    said = [one for one in document.about(role) if one[0] != SH.property or one[1] not in shapes]
+    return replace(document, statements={**document.statements, role: said})
+
+
+def left_to_judge(document: Document, role: CompiledRole) -> Document:
+    """A template in which the shape of a role says what pySHACL has to be asked, if it has to."""
+    return _without(document, role.iri, role.settled) if role.settled else document
 
 
 def bound_shape(document: Document, values: Mapping[IRI, Term]) -> list[Triple]:

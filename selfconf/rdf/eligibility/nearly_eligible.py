@@ -17,6 +17,7 @@ from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_parameters as free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex, TypeSet
+from selfconf.rdf.eligibility.compiler import left_to_judge
 from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partitioner, Tested
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
 
@@ -141,20 +142,38 @@ def _judged(
     """The components that pySHACL finds to be kept out by one thing, for some value of the free parameter."""
     obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
     focus = _focus(obstacles)
+    parameter = partitioner.mentioned(role)
+    settled = {a: {p: v for p, v in _let_in(partitioner, role, a).items() if p != parameter} for a in focus}
+    forbidden = {a: _forbidden(partitioner, allows) for a, allows in settled.items()}
+    told = {a: [*obstacles[a], *forbidden[a].values()] for a in focus}
+    for a, by_value in _reasons(partitioner, role, ecology, parameter, told).items():
+        near = _alone(by_value)
+        if near:
+            allows = {p: partitioner.suitable.of(p, v) for p, v in settled[a].items() if p not in forbidden[a]}
+            if parameter is not None and ANOTHER not in near:
+                allows[parameter] = frozenset(near)
+            if all(allows.values()):
+                yield NearMiss(role.iri, a.component, next(iter(near.values())), allows)
+
+
+def _reasons(
+    partitioner: Partitioner,
+    role: CompiledRole,
+    ecology: AdvertisementIndex,
+    parameter: IRI | None,
+    told: Mapping[Advertisement, Sequence[Obstacle]],
+) -> dict[Advertisement, dict[Term, list[Obstacle]]]:
+    """All that keeps some components out for each value of a free parameter, behind what the tests have told of it."""
+    focus = list(told)
     tests = {a: _failed(partitioner, role, a) for a in focus}
     subjects = partitioner.subjects(role, focus, ecology)
     reasons: dict[Advertisement, dict[Term, list[Obstacle]]] = {a: {} for a in focus}
-    parameter = partitioner.mentioned(role)
     for value in _values(partitioner, role, parameter, focus):
         values = {} if parameter is None else {parameter: value}
         judged = partitioner.violations(role, focus, ecology, values, subjects)
         for a in focus:
-            reasons[a][value] = [*obstacles[a], *_besides(judged.get(a.component, ()), tests[a])]
-    for a, by_value in reasons.items():
-        near = _alone(by_value)
-        if near:
-            allows = {} if parameter is None or ANOTHER in near else {parameter: frozenset(near)}
-            yield NearMiss(role.iri, a.component, next(iter(near.values())), allows)
+            reasons[a][value] = [*told[a], *_besides(judged.get(a.component, ()), tests[a])]
+    return reasons
 
 
 def _alone(by_value: Mapping[Term, Sequence[Obstacle]]) -> dict[Term, Obstacle]:
@@ -184,7 +203,7 @@ def _values(
     if parameter is None:
         return [ANOTHER]
     listed = free_values.enumerated(partitioner.document, parameter)
-    stated = listed | free_values.seen(partitioner.document, role.iri, partitioner.visible(focus))
+    stated = listed | free_values.seen(left_to_judge(partitioner.document, role), role.iri, partitioner.visible(focus))
     suitable = sorted(partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
     return suitable if listed else [*suitable, ANOTHER]
 

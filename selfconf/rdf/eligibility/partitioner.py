@@ -31,7 +31,7 @@ from selfconf.rdf.eligibility.advertisement_index import (
     ClassClosure,
     TypeSet,
 )
-from selfconf.rdf.eligibility.compiler import bound_shape, compile_role
+from selfconf.rdf.eligibility.compiler import bound_shape, compile_role, left_to_judge
 from selfconf.rdf.eligibility.judgements import Judgements, Values, Violations
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
@@ -71,6 +71,8 @@ class TestOutcome:
     allows: Mapping[IRI, frozenset[Term]]
 
 
+Passed = tuple[Advertisement, TestOutcome]
+"""A component that passes the tests of a role, with what they say of it."""
 Tested = tuple[TypeSet, Sequence[Advertisement], TestOutcome]
 """Some components that are alike, with their kind and what the tests of a role say of them."""
 
@@ -187,28 +189,24 @@ class Partitioner:
         self.not_judged = {}
         self._judgements.look_at(ecology)
         found: list[list[EligibleComponent]] = []
-        by_value: dict[int, tuple[IRI, list[Advertisement]]] = {}
+        by_value: dict[int, tuple[IRI, list[Passed]]] = {}
         for number, role in enumerate(self.roles):
-            passed = self._passed(role, ecology)
-            survivors = self._issuing(role, [a for a, _ in passed])
-            if role.complete:
-                found.append([EligibleComponent(a.profile, outcome.allows, _NOTHING) for a, outcome in passed])
-                continue
-            if parameter := self.mentioned(role):
-                by_value[number] = parameter, survivors
-                found.append([])
-            else:
-                outside = self.violations(role, survivors, ecology, {})
-                found.append(
-                    [EligibleComponent(a.profile, {}, _NOTHING) for a in survivors if a.component not in outside]
-                )
+            passed = self._issuing(role, self._passed(role, ecology))
+            parameter = None if role.complete else self.mentioned(role)
+            if parameter is not None:
+                by_value[number] = parameter, passed
+                passed = []
+            elif not role.complete:
+                outside = self.violations(role, [a for a, _ in passed], ecology, {})
+                passed = [(a, outcome) for a, outcome in passed if a.component not in outside]
+            found.append([EligibleComponent(a.profile, outcome.allows, _NOTHING) for a, outcome in passed])
         if not self.free:
             return found
         return self._suited(found, by_value, ecology)
 
-    def _passed(self, role: CompiledRole, ecology: AdvertisementIndex) -> list[tuple[Advertisement, TestOutcome]]:
+    def _passed(self, role: CompiledRole, ecology: AdvertisementIndex) -> list[Passed]:
         """The advertisements that pass all tests of a role, with what the tests say."""
-        passed: list[tuple[Advertisement, TestOutcome]] = []
+        passed: list[Passed] = []
         for _, alike, outcome in self.tested(role, ecology, self.akin(role, ecology)):
             if not outcome.obstacles:
                 passed += [(a, outcome) for a in alike]
@@ -216,7 +214,7 @@ class Partitioner:
                 self.not_judged.update((a.component, reason) for a in alike)
         return passed
 
-    def _issuing(self, role: CompiledRole, passed: list[Advertisement]) -> list[Advertisement]:
+    def _issuing(self, role: CompiledRole, passed: list[Passed]) -> list[Passed]:
         """Those of some advertisements that have ports of the types which the shape asks for, where pySHACL is asked.
 
         A property that lies below those of ports may lead to further ports: then pySHACL decides.
@@ -234,27 +232,29 @@ class Partitioner:
             }
             return all(any(signal in self.hierarchy.served(one) for one in types[link]) for link, signal in required)
 
-        return [one for one in passed if may_conform(one.profile)] if required else passed
+        return [one for one in passed if may_conform(one[0].profile)] if required else passed
 
     def _suited(
         self,
         found: list[list[EligibleComponent]],
-        by_value: Mapping[int, tuple[IRI, list[Advertisement]]],
+        by_value: Mapping[int, tuple[IRI, list[Passed]]],
         ecology: AdvertisementIndex,
     ) -> list[list[EligibleComponent]]:
         """The eligible components that leave values to the free parameters, with the values that suit these."""
         stated: dict[IRI, set[Term]] = {parameter: set() for parameter in self.free}
-        for one in chain.from_iterable(found):
-            for parameter, values in one.allows.items():
+        judged = chain.from_iterable(passed for _, passed in by_value.values())
+        for allows in chain((one.allows for one in chain.from_iterable(found)), (tests.allows for _, tests in judged)):
+            for parameter, values in allows.items():
                 stated[parameter] |= values
-        for number, (parameter, survivors) in by_value.items():
-            shown = self.visible(survivors if self.roles[number].local else ecology.values())
-            stated[parameter] |= free_values.seen(self.document, self.roles[number].iri, shown)
+        for number, (parameter, passed) in by_value.items():
+            role = self.roles[number]
+            shown = self.visible([a for a, _ in passed] if role.local else ecology.values())
+            stated[parameter] |= free_values.seen(left_to_judge(self.document, role), role.iri, shown)
             stated[parameter] |= free_values.enumerated(self.document, parameter)
         suitable = {parameter: self.suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
-        for number, (parameter, survivors) in by_value.items():
+        for number, (parameter, passed) in by_value.items():
             found[number] = list(
-                self._judged_by_value(self.roles[number], parameter, suitable[parameter], survivors, ecology)
+                self._judged_by_value(self.roles[number], parameter, suitable[parameter], passed, ecology)
             )
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
 
@@ -270,8 +270,8 @@ class Partitioner:
         return found if self.free else (), wrong
 
     def mentioned(self, role: CompiledRole) -> IRI | None:
-        """The free parameter that the shape of a role mentions, if it does."""
-        parameters = mentions(self.document, role.iri, self.free)
+        """The free parameter that the shape of a role mentions where pySHACL judges it, if it does."""
+        parameters = mentions(left_to_judge(self.document, role), role.iri, self.free)
         if len(parameters) > 1:
             names = " and ".join(sorted(self._parameters[parameter].name for parameter in parameters))
             raise TemplateError(
@@ -286,10 +286,11 @@ class Partitioner:
         role: CompiledRole,
         parameter: IRI,
         values: frozenset[Term],
-        survivors: Sequence[Advertisement],
+        passed: Sequence[Passed],
         ecology: AdvertisementIndex,
     ) -> Iterator[EligibleComponent]:
         """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
+        survivors = [advertisement for advertisement, _ in passed]
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
         subjects = self.subjects(role, survivors, ecology)
         others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
@@ -297,12 +298,13 @@ class Partitioner:
             outside = self.violations(role, survivors, ecology, {parameter: value}, subjects)
             for component in allowed.keys() - outside.keys():
                 allowed[component].add(value)
-        for advertisement in survivors:
+        for advertisement, outcome in passed:
             found = frozenset(allowed[advertisement.component])
+            others_allowed = {other: some for other, some in outcome.allows.items() if other != parameter}
             if ANOTHER not in found:
-                yield EligibleComponent(advertisement.profile, {parameter: found}, _NOTHING)
+                yield EligibleComponent(advertisement.profile, {**others_allowed, parameter: found}, _NOTHING)
             else:
-                yield EligibleComponent(advertisement.profile, {}, {parameter: values - found})
+                yield EligibleComponent(advertisement.profile, others_allowed, {parameter: values - found})
 
     def violations(
         self,
@@ -338,7 +340,7 @@ class Partitioner:
         from selfconf.rdf.conformance import violations
         from selfconf.rdf.rdflib_terms import to_rdflib
 
-        shapes = to_rdflib(bound_shape(self.document, values))
+        shapes = to_rdflib(bound_shape(left_to_judge(self.document, role), values))
         seen = self.subjects(role, focus, ecology) if subjects is None else subjects
         sizes = {advertisement.component: advertisement.breadth for advertisement in focus}
         return violations(seen, shapes, role.iri, list(sizes), self.document.source, sizes=sizes)

@@ -200,6 +200,8 @@ class CompiledRole:
     complete: bool
     local: bool = True
     """Whether the shape looks at nothing but the component's own statements."""
+    settled: frozenset[Term] = frozenset()
+    """The property shapes with free parameters that are left to the tests alone, where pySHACL judges the rest."""
 
     @property
     def classes(self) -> tuple[ClassTest, ...]:

@@ -29,16 +29,16 @@ def substituted(document: Document, values: Mapping[IRI, Term]) -> Document:
     return replace(document, statements=statements)
 
 
-def mentions(document: Document, role: IRI, parameters: frozenset[IRI]) -> set[IRI]:
-    """The parameters that stand somewhere in the shape of a role."""
+def mentions(document: Document, shape: Term, parameters: frozenset[IRI]) -> set[IRI]:
+    """The parameters that stand somewhere in a shape, such as that of a role."""
     found: set[IRI] = set()
-    for _, value in shape_statements(document, role):
+    for _, value in [] if isinstance(shape, Literal) else shape_statements(document, shape):
         if value in parameters and isinstance(value, IRI):
             found.add(value)
     return found
 
 
-def shape_statements(document: Document, role: IRI) -> Iterator[tuple[IRI, Term]]:
+def shape_statements(document: Document, role: Node) -> Iterator[tuple[IRI, Term]]:
     """Predicate and object of each statement of a role's shape, nested and named shapes included."""
     for _, predicate, value in shape_triples(document, role):
         yield predicate, value

@@ -14,7 +14,7 @@ from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.role_tests import ClassTest
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
-from tests.lab import ADVERTISEMENTS, PREFIXES
+from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 from tests.rdf.eligibility.test_compiler import COMPONENTS, HIERARCHIES, SHAPES, by_pyshacl, ecology
 from tests.rdf.eligibility.test_partitioner import partitioner, read
 
@@ -59,6 +59,26 @@ def test_tests_and_pyshacl_agree_on_the_near_misses(
     akin = {one.component for one in ads if of_its_class(one)}
     alone = {miss.component for miss in near_misses(by_pyshacl(Partitioner(task, hierarchy)), ads)}
     assert {miss.component for miss in near_misses(Partitioner(task, hierarchy), ads)} == alone & akin
+
+
+def test_who_is_let_in_still_gives_the_free_parameters_their_values() -> None:
+    text = """
+        :t a sc:Template ; sc:roles ( :r ) ; sc:parameter :on , :at . :on a sc:Parameter ; sc:name "on" .
+        :at a sc:Parameter ; sc:name "at" ; sh:in ( :kitchen :cellar ) .
+        :r a sc:Role ; sh:class :A ; sh:property [ sh:path rob:support ; sh:in ( :on ) ] ,
+            [ sh:path rob:place ; sh:hasValue :at ] , [ sh:path ( :battery :charge ) ; sh:minInclusive 5 ] .
+    """
+    ads = read(
+        [
+            ":weak a sc:Component, :A ; rob:support :Astrid ; rob:place :kitchen ; :battery [ :charge 3 ] .",
+            ":away a sc:Component, :A ; rob:support :Pippi ; rob:place :attic ; :battery [ :charge 5 ] .",
+            ":both a sc:Component, :A ; rob:support :Pippi ; rob:place :attic ; :battery [ :charge 3 ] .",
+        ]
+    )
+    away, weak = near_misses(partitioner(text), ads)
+    assert (away.component, away.allows) == (iri("away"), {iri("on"): {iri("Pippi")}})
+    assert str(away) == "it wants at to be attic, which it may not be"
+    assert (weak.component, weak.allows) == (iri("weak"), {iri("on"): {iri("Astrid")}, iri("at"): {iri("kitchen")}})
 
 
 def test_what_only_pyshacl_can_judge_is_an_obstacle_like_any_other() -> None:

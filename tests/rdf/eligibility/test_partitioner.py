@@ -317,6 +317,60 @@ def test_a_bound_parameter_stands_for_a_shape(value: str, eligible: bool) -> Non
     assert bool(*names(partitioner(text, bound=(("par", value),)).partition(read(ads)))) == eligible
 
 
+@settings(max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
+@given(components(), roles(free=True), st.sampled_from(VALUES), st.sampled_from(VALUES), st.sampled_from(("1", "2")))
+def test_free_parameters_of_their_own_may_stand_beside_what_pyshacl_judges(
+    texts: list[str], role: str, value: str, other: str, most: str
+) -> None:
+    rest = f"sh:property [ sh:path rob:place ; sh:in ( :other ) ] , [ sh:path [ sh:zeroOrOnePath rdfs:label ] ; sh:maxCount {most} ]"
+    text = (
+        ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :par , :other . :par a sc:Parameter ; sc:name 'par' ."
+        f" :other a sc:Parameter ; sc:name 'other' . :r {role} ; {rest} ."
+    )
+    partition = partitioner(text).partition(read(texts))
+    document = turtle.parse(f"{PREFIXES} :s :p {value} ; :q {other} .", "value")
+    bound = {PARAMETER: document.value(iri("s"), iri("p")), iri("other"): document.value(iri("s"), iri("q"))}
+    taken = set()
+    for candidate in partition.candidates[0]:
+        masks = zip(candidate.admits, partition.variables, strict=True)
+        admitted = (
+            mask >> variable.domain.index(one) & 1
+            if (one := bound[variable.parameter]) in variable.domain
+            else mask < 0
+            for mask, variable in masks
+        )
+        if all(admitted):
+            taken.add(candidate.profile.component.short)
+    assert taken == conforming(texts, f"{role} ; {rest.replace(':other', other)}", value)
+
+
+@pytest.mark.parametrize(
+    ("shape", "parameters"),
+    [
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path :at ; sh:in ( :q ) ]", set()),
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path ( :at :near ) ; sh:in ( :q ) ]", {"q"}),
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path ( :at :near ) ; sh:in ( :p ) ]", {"p"}),
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ] ; sh:closed true", {"p"}),
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ; sh:hasValue :q ] , [ sh:path ( :at :b ) ; sh:in ( :p ) ]", None),
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path :at ; sh:in ( :q ) ] ; sh:closed true", None),
+    ],
+)
+def test_a_parameter_is_tried_value_by_value_only_where_pyshacl_judges_it(
+    shape: str, parameters: set[str] | None
+) -> None:
+    found = partitioner(
+        ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :p , :q . :p a sc:Parameter ; sc:name 'p' ."
+        f" :q a sc:Parameter ; sc:name 'q' . :r a sc:Role ; sh:property [ sh:path ( :a :b ) ; sh:minCount 1 ] ; {shape} ."
+    )
+    (role,) = found.roles
+    assert not role.complete
+    if parameters is None:
+        with pytest.raises(TemplateError, match="mentions the free parameters p and q"):
+            found.mentioned(role)
+    else:
+        assert found.mentioned(role) == next(map(iri, parameters), None)
+
+
 @pytest.mark.parametrize("path", [":p", "[ sh:alternativePath ( :p :q ) ]"], ids=["compiled", "judged by pySHACL"])
 def test_a_value_that_has_no_order_with_a_limit_does_not_pass_it(path: str) -> None:
     text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:property [ sh:path {path} ; sh:minInclusive 5 ] ."
