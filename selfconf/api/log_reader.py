@@ -11,10 +11,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from selfconf.api.living import join
+from selfconf.api.living import LivingEcology, join
 from selfconf.api.site_logs import LogSource, local_log, names_of_log, site_logs
 from selfconf.errors import NetworkError
 from selfconf.model.log_line import LogLine
+from selfconf.model.wording import one_line
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.rendezvous import asked_for, local_sites
 
@@ -27,18 +28,32 @@ ASK_AGAIN = 1.0
 class LogReader:
     """Reads some logs as one, in the order of the times of their lines: the latest lines, then what is added."""
 
-    def __init__(self, sources: Iterable[LogSource], component: str = "", pause: float = FOLLOW_PAUSE) -> None:
+    def __init__(
+        self,
+        sources: Iterable[LogSource],
+        component: str = "",
+        pause: float = FOLLOW_PAUSE,
+        look_up: Callable[[str], object] = lambda component: None,
+    ) -> None:
         """`component` is an IRI or a local name: only the lines of its processes are read; empty: all.
 
-        `pause` is for how many seconds one who follows the logs is to wait between two looks.
+        `pause` is for how many seconds one who follows the logs is to wait between two looks. `look_up` raises
+        AuthorError for a component that is not there, as far as the ecology lives and can be asked.
         """
-        self._component, self.pause = component, pause
+        self._component, self.pause, self._look_up = component, pause, look_up
         self._positions = dict.fromkeys(sources, "")
 
     def latest(self, most: int) -> list[LogLine]:
         """The latest lines, so many at most; what is added from then on is what `added` returns."""
         found = self._merged(lambda source: self._part(source, LogQuestion(self._component, most)).lines)
         return found[max(0, len(found) - most) :]
+
+    def why_nothing(self) -> str:
+        """Say that no line is kept. Raises AuthorError where it is known that there is no such component."""
+        if not self._component:
+            return "nothing that a component has printed is kept in the log"
+        self._look_up(self._component)
+        return f"nothing that {one_line(self._component)} has printed is kept in the log"
 
     def added(self) -> list[LogLine]:
         """The lines that were added since the last look."""
@@ -84,6 +99,7 @@ def log_reader(
     except NetworkError as error:
         trouble = error
     with ExitStack() as stack:
+        living: LivingEcology | None = None
         others: list[LogSource] = []
         if connect or (folder is None and (endpoints or local_sites(ecology))):
             try:
@@ -95,4 +111,6 @@ def log_reader(
                 complain(f"only the logs of this machine are shown: {error}")
         if trouble is not None and not others:
             raise trouble
-        yield LogReader([*map(local_log, paths), *others], component, ASK_AGAIN if others else FOLLOW_PAUSE)
+        look_up: Callable[[str], object] = (lambda component: None) if living is None else living.component
+        sources = [*map(local_log, paths), *others]
+        yield LogReader(sources, component, ASK_AGAIN if others else FOLLOW_PAUSE, look_up)

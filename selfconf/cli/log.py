@@ -40,7 +40,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 with lines, and after Ctrl-C where lines are followed; 1 if there are none."""
+    """0 with lines, and after Ctrl-C where lines are followed; 1 if there are none.
+
+    Raises AuthorError for a component that has none and is not advertised, where the ecology lives.
+    """
     from selfconf.api.log_reader import log_reader
     from selfconf.termination import end_as_by_ctrl_c
 
@@ -52,6 +55,8 @@ def run(given: argparse.Namespace) -> int:
             found = reader.latest(given.lines)
             if found:
                 display("\n".join(map(show, found)))
+            elif given.lines:
+                complain(reader.why_nothing())
             if not given.follow:
                 return 0 if found or not given.lines else 1
             while True:

@@ -10,6 +10,7 @@ import pytest
 
 from selfconf.api.log_reader import LogReader, log_reader
 from selfconf.api.site_logs import local_log
+from selfconf.errors import AuthorError
 from selfconf.model.log_line import LogLine
 from selfconf.protocol.messages import LogPart, LogQuestion
 from tests.cli.processes import Home
@@ -43,6 +44,16 @@ def test_what_a_site_tells_in_parts_is_asked_for_until_there_is_no_more() -> Non
     assert reader.latest(9) == []
     assert [line.time for line in reader.added()] == ["1", "2", "3"]
     assert [line.time for line in reader.added()] == ["4"]
+
+
+def test_where_nothing_is_kept_that_is_said_or_that_there_is_no_such_component() -> None:
+    def look_up(component: str) -> None:
+        raise AuthorError(f"no component {component} is advertised")
+
+    assert LogReader([]).why_nothing() == "nothing that a component has printed is kept in the log"
+    assert LogReader([], "clock").why_nothing() == "nothing that clock has printed is kept in the log"
+    with pytest.raises(AuthorError, match="no component clock is advertised"):
+        LogReader([], "clock", look_up=look_up).why_nothing()
 
 
 @pytest.fixture

@@ -57,6 +57,9 @@ def test_lines_are_shown_while_it_runs_followed_and_shown_after_its_death(
     assert (line["text"], line["stream"], line["components"]) == ("goes on", "stdout", [iri("talker")])
     assert follower.end(signal.SIGINT) == 0
     assert follower.complaints == ""
+    for follow in ((), ("--follow",)):
+        nobody = run(capsys, "log", "nobody", "--ecology", talking.ecology, *follow)
+        assert nobody.is_one_sentence("no component nobody is advertised")
     assert program.end() == 0
     assert site.end(signal.SIGKILL) != 0
     outcome = run(capsys, "log", "talker", "--ecology", talking.ecology)
@@ -68,6 +71,7 @@ def test_lines_are_shown_while_it_runs_followed_and_shown_after_its_death(
     assert {"time", "stream", "components", "text"} == json.loads(last[0]).keys()
     nothing = run(capsys, "log", "nobody")
     assert (nothing.code, nothing.out) == (1, "")
+    assert nothing.err == "nothing that nobody has printed is kept in the log\n"
 
 
 def test_where_no_log_is_kept_there_is_one_sentence(
