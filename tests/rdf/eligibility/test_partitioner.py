@@ -322,7 +322,8 @@ def test_a_bound_parameter_stands_for_a_shape(value: str, eligible: bool) -> Non
 def test_free_parameters_of_their_own_may_stand_beside_what_pyshacl_judges(
     texts: list[str], role: str, value: str, other: str, most: str
 ) -> None:
-    rest = f"sh:property [ sh:path rob:place ; sh:in ( :other ) ] , [ sh:path [ sh:zeroOrOnePath rdfs:label ] ; sh:maxCount {most} ]"
+    judged = f"[ sh:path [ sh:zeroOrOnePath rdfs:label ] ; sh:maxCount {most} ]"
+    rest = f"sh:property [ sh:path rob:place ; sh:in ( :other ) ] , {judged}"
     text = (
         ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :par , :other . :par a sc:Parameter ; sc:name 'par' ."
         f" :other a sc:Parameter ; sc:name 'other' . :r {role} ; {rest} ."
@@ -360,7 +361,8 @@ def test_a_parameter_is_tried_value_by_value_only_where_pyshacl_judges_it(
 ) -> None:
     found = partitioner(
         ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :p , :q . :p a sc:Parameter ; sc:name 'p' ."
-        f" :q a sc:Parameter ; sc:name 'q' . :r a sc:Role ; sh:property [ sh:path ( :a :b ) ; sh:minCount 1 ] ; {shape} ."
+        " :q a sc:Parameter ; sc:name 'q' ."
+        f" :r a sc:Role ; sh:property [ sh:path ( :a :b ) ; sh:minCount 1 ] ; {shape} ."
     )
     (role,) = found.roles
     assert not role.complete
