@@ -432,7 +432,9 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-K05", "A task stands in one file with its template.",
-        "A task is configured from one file; a task whose template is elsewhere is not found there.",
+        "A task is configured from one file; a task whose template is elsewhere is not found there. The configuration "
+        "of a task is judged by its template, and by advertisements, where these stand in its own file: put them into "
+        "one.",
         ":music a sc:Task ; sc:template :radio .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
         ("TaskTemplateHere",),
         Severity.WARNING,
