@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from selfconf.rdf.advertisements import Advertisement
 
 EXAMPLE = """  selfconf run examples/clock/tell-the-time.ttl --ads examples/clock"""
+SETTLE = 5.0
+"""Seconds that a component has to be there before a task is changed for it, unless it is said."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -75,8 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--settle",
         metavar="SECONDS",
         type=seconds_option,
-        default=5.0,
-        help="with --upgrade, for how long they have to be there first (default: %(default)s)",
+        help=f"with --upgrade, for how long they have to be there first (default: {SETTLE})",
     )
     parser.add_argument(
         "--detach",
@@ -86,6 +87,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
     add_budget_arguments(parser)
     add_ecology_arguments(parser)
+
+
+def _upgrade(given: argparse.Namespace) -> float | None:
+    """After how many seconds the task is changed to what is rather had; None: never. Raises AuthorError."""
+    if given.settle is not None and not given.upgrade:
+        raise AuthorError("--settle says when to change to better components, which --upgrade asks for; give both")
+    return (SETTLE if given.settle is None else given.settle) if given.upgrade else None
 
 
 def _priority(text: str) -> int:
@@ -170,8 +178,7 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     from selfconf.configurator import Policy
 
     policy, method = Policy(given.policy), method_of(given, task)
-    upgrade = given.settle if given.upgrade else None
-    begun = partial(Run, task, method, policy=policy, wait=given.wait, priority=given.priority, upgrade=upgrade)
+    begun = partial(Run, task, method, policy=policy, wait=given.wait, priority=given.priority, upgrade=_upgrade(given))
     shown = rendezvous.credentials(given.keys, *MEMBERS)
     begun = partial(begun, credentials=shown)
     with ExitStack() as stack:
@@ -196,7 +203,7 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
         )
     from selfconf.model.run_event import TaskDetached
 
-    method = method_of(given, task)
+    method, upgrade = method_of(given, task), _upgrade(given)
     with joined(given) as ecology:
         name = ecology.detach(
             task,
@@ -208,7 +215,7 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
             seconds=method.seconds,
             name=given.name or "",
             priority=given.priority,
-            upgrade=given.settle if given.upgrade else None,
+            upgrade=upgrade,
         )
     report = json_lines if given.format == "json" else TextLines(task)
     report(TaskDetached(name, time=time.time()))

@@ -9,6 +9,7 @@ import pytest
 
 from selfconf.access import believe
 from selfconf.sdk.supervision import GRACE
+from tests.cli import command
 from tests.cli.endpoints import oxigraph
 from tests.cli.processes import NO_NOHUP, Home, component_of, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES
@@ -75,6 +76,15 @@ def test_a_run_that_upgrades_changes_to_what_is_rather_had_and_back_when_that_is
     run.act("running")
     assert home.active(*EVERYBODY) == TASK | {"odometry"}
     assert run.end(signal.SIGINT) == 0
+
+
+@pytest.mark.parametrize("detach", [(), ("--detach",)])
+def test_a_time_for_upgrades_takes_upgrades(
+    home: Home, detach: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    bound = ("--bind", "robot=:Astrid", "--bind", "goal=x")
+    outcome = command.run(capsys, "run", str(home.folder / "navigate.ttl"), *bound, "--settle", "2", *detach)
+    assert outcome.is_one_sentence("--settle says when", "--upgrade")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGHUP, marks=NO_NOHUP)])
