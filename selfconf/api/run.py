@@ -15,7 +15,7 @@ from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.credentials import Credentials
-from selfconf.composition import TimeLimit, composed
+from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.model.configuration import Configuration
@@ -31,6 +31,8 @@ TASKS_CALL = 0.5
 """Seconds that the other tasks may take to say their names, where none was given: one that hangs holds up no other."""
 TAKING_DOWN = 15.0
 """How long, in seconds, a configurator may take to turn off everything that it holds."""
+EXPLAINING = 2.0
+"""For how many seconds at most a refusal is explained to a task that waits, which may soon come to another one."""
 CHECK = 0.5
 """How often, in seconds, it is checked whether what a run rests on is still there."""
 
@@ -77,6 +79,8 @@ class Run:
         self._composer = method.composer(self.task)
         self._rests_on, self._described = rests_on, described
         self._found: Mapping[IRI, Advertisement] = {}
+        self._told: tuple[Refusal, Mapping[IRI, Advertisement], Refusal] | None = None
+        """The refusal that was explained last, of which ecology, and the explanation."""
         self._work = WorkQueue()
         self._ended = False
         record = task_record(self.task, method, policy, name, priority, upgrade)
@@ -150,7 +154,7 @@ class Run:
             ended = self._ended  # before the look at the queue: what was reported by then is in it
             event = self._work.next(0.0 if ended else CHECK)
             if event is not None:
-                yield self._placed(event)
+                yield self._with_explanation(event)
             elif ended:
                 break
         if self._runner.trouble is not None:
@@ -188,9 +192,15 @@ class Run:
         """The refusal by which the task has ended, with all that can be found out now that nothing runs any more."""
         if not isinstance(self.refusal, Refusal):
             return self.refusal
-        limit = TimeLimit(self.method.seconds)
-        described = self._described()
-        return refusal_with_places(self._composer, self._found, self.refusal, self.method, limit, described)
+        return self._explain(self.refusal, self._composer, self.method.seconds)
+
+    def _explain(self, refusal: Refusal, composer: Composer, seconds: float | None) -> Refusal:
+        """A refusal with all that the time allows to find out; one that waits comes to the same again and again."""
+        if self._told is None or self._told[:2] != (refusal, self._found):
+            limit, described = TimeLimit(seconds), self._described()
+            explained = refusal_with_places(composer, self._found, refusal, self.method, limit, described)
+            self._told = refusal, self._found, explained
+        return self._told[2]
 
     def _compose(
         self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
@@ -204,12 +214,27 @@ class Run:
         self.refusal, self._ended = refusal, True
         self._work.wake_up()
 
-    def _placed(self, event: RunEvent) -> RunEvent:
-        """An event with the places of what its refusal speaks of; looked up now, when nothing waits for act 4."""
-        if isinstance(event, TaskWaiting | TaskRefused) and isinstance(event.refusal, Refusal):
+    def _with_explanation(self, event: RunEvent) -> RunEvent:
+        """An event with what else its refusal can tell; that is found out now, when nothing waits for act 4.
+
+        A task that waits may have something to do any moment: then the refusal gets the places of its facts alone.
+        """
+        if not isinstance(event, TaskWaiting | TaskRefused) or not isinstance(event.refusal, Refusal):
+            return event
+        refusal = event.refusal
+        if isinstance(event, TaskRefused):
+            return replace(event, refusal=self._explain(refusal, self._composer, self.method.seconds))
+        found: list[Refusal] = []
+
+        def explain() -> None:
+            # With a composer of its own: to be ended in the middle must not spoil the partition of the next search.
+            seconds = min(EXPLAINING, self.method.seconds or EXPLAINING)
+            found.append(self._explain(refusal, self.method.composer(self.task), seconds))
+
+        if not self._work.until_more(explain) or not found:
             places = Places(self.task.document.task.template, self._described())
-            return replace(event, refusal=places.placed(event.refusal))
-        return event
+            found = [places.placed(refusal)]
+        return replace(event, refusal=found[0])
 
     def _check(self) -> None:
         if self._rests_on():

@@ -27,6 +27,8 @@ class WorkQueue:
         self._works: deque[_Work] = deque()
         self._under_way: tuple[str, Callable[[], None]] | None = None
         """For whom something is being done, and what ends it."""
+        self._until_more: Callable[[], None] | None = None
+        """What ends that which is done only until there is something else."""
         self._events: deque[RunEvent] = deque()
         self._more = threading.Condition()
         self._woken = False
@@ -35,7 +37,7 @@ class WorkQueue:
         """Have something done that takes long, for an owner where there are several."""
         with self._more:
             self._works.append(_Work(work, owner))
-            self._more.notify()
+            self._notify()
 
     def abandon(self, owner: str = "") -> None:
         """End and forget what is done for an owner, or for everybody if none is named; `next` returns soon."""
@@ -45,19 +47,45 @@ class WorkQueue:
             if self._under_way is not None and owner in ("", self._under_way[0]):
                 self._under_way[1]()
             self._woken = True
-            self._more.notify()
+            self._notify()
 
     def report(self, event: RunEvent) -> None:
         """Hand an event over."""
         with self._more:
             self._events.append(event)
-            self._more.notify()
+            self._notify()
 
     def wake_up(self) -> None:
         """Let `next` return at once."""
         with self._more:
             self._woken = True
-            self._more.notify()
+            self._notify()
+
+    def _notify(self) -> None:
+        """There is something to do: nothing goes on that is done only until then."""
+        if self._until_more is not None:
+            self._until_more()
+        self._more.notify()
+
+    def until_more(self, work: Callable[[], None]) -> bool:
+        """Do something that is ended as soon as there is something else to do; whether it has come to its own end.
+
+        Outside of the main thread, where nothing could end it, it is not begun.
+        """
+        if threading.current_thread() is not threading.main_thread():
+            return False
+        try:
+            with abandonable() as abandon:
+                with self._more:
+                    if self._works or self._events or self._woken:
+                        return False
+                    self._until_more = abandon
+                work()
+            return True
+        except Abandoned:
+            return False
+        finally:
+            self._until_more = None
 
     def next(self, seconds: float) -> RunEvent | None:
         """Do all the work there is, and return the next event; None if none has come after that long."""

@@ -110,6 +110,8 @@ def test_what_cannot_be_configured_ends_with_a_refusal_that_is_explained(
     assert isinstance(seen[-1], TaskRefused)
     explained = run.explained()
     assert isinstance(explained, sc.Refusal)
+    assert seen[-1].refusal is explained
+    assert explained.repairs
     assert [str(miss) for miss in explained.near_misses] == ["its place is kitchen, not cellar"]
     assert repr(explained).startswith("<no configuration for :tell-the-time")
 
@@ -119,6 +121,8 @@ def test_a_patient_run_waits_for_the_ecology_to_change(served: Home, clock: sc.T
         waiting = until(run, TaskWaiting)[-1]
         assert isinstance(waiting, TaskWaiting)
         assert isinstance(waiting.refusal, sc.Refusal)
+        assert [str(miss) for miss in waiting.refusal.near_misses] == ["its place is kitchen, not cellar"]
+        assert waiting.refusal.repairs
         ads = served.folder / "cellar"
         ads.mkdir()
         (ads / "display.ttl").write_text(DISPLAY_IN_THE_CELLAR)

@@ -85,3 +85,36 @@ def test_to_abandon_what_is_over_or_not_begun_harms_nothing() -> None:
     queue.abandon()
     assert queue.next(60.0) is None
     assert done == ["searched"]
+
+
+@pytest.mark.parametrize("how", ["work", "report", "wake_up", "abandon"])
+def test_what_is_done_until_there_is_more_ends_as_soon_as_there_is(how: str) -> None:
+    queue, begun = WorkQueue(), threading.Event()
+    more = {"work": lambda: queue.work(lambda: None), "report": lambda: queue.report(EcologyAsked())}
+
+    def interrupt() -> None:
+        begun.wait()
+        more.get(how, getattr(queue, how))()
+
+    other = threading.Thread(target=interrupt)
+    other.start()
+    assert not queue.until_more(lambda: _forever(begun))
+    other.join()
+    assert (queue.next(0.0) is not None) == (how == "report")
+
+
+def test_what_is_done_until_there_is_more_comes_to_its_end_where_there_is_nothing() -> None:
+    queue, done = WorkQueue(), list[str]()
+    assert queue.until_more(lambda: done.append("explained"))
+    queue.work(lambda: done.append("searched"))
+    assert not queue.until_more(lambda: done.append("explained again"))
+    queue.next(0.0)
+    assert done == ["explained", "searched"]
+
+
+def test_what_could_not_be_ended_in_another_thread_is_not_begun() -> None:
+    queue, done = WorkQueue(), list[object]()
+    other = threading.Thread(target=lambda: done.append(queue.until_more(lambda: done.append("explained"))))
+    other.start()
+    other.join()
+    assert done == [False]
