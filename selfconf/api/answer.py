@@ -262,7 +262,7 @@ class Inquiry:
             return found
         if isinstance(found, Refusal):
             free = {c: one for c, one in self.ecology.items() if c not in self.holders}
-            usable = self.composer.usable(self.holders.keys())
+            usable = self.composer.usable(self.holders.keys(), found)
             found = replace(found.told_of_held(usable), held=self._held(usable, limit))
             return refusal_with_places(self.composer, free if self.holders else self.ecology, found, self.method, limit)
         optimum = found if isinstance(found, Optimum) else None
@@ -305,7 +305,8 @@ class Inquiry:
         wanted = found.configuration if isinstance(found, Optimum) else found
         if not isinstance(wanted, Configuration):
             return ()
-        return tuple((component, self.holders[component]) for component in sorted(usable))
+        named = usable or self.holders.keys() & set(wanted.components)
+        return tuple((component, self.holders[component]) for component in sorted(named))
 
     def _unknown(self, optimum: Optimum) -> tuple[IRI, ...]:
         """The properties of unknown terms that no component in the ecology has a number for."""

@@ -19,7 +19,8 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
-from selfconf.model.refusal import Outcome, Refusal, TooFewEligible
+from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, ValueUnknown
+from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
@@ -111,14 +112,16 @@ class Composer:
         problem = self._problem(self.partition(ecology), frozenset(), None)
         return {problem.supply.recruits[number].component for number in recruits_that_matter(problem)}
 
-    def usable(self, components: Set[IRI]) -> dict[IRI, tuple[IRI, ...]]:
-        """Those of some components that the task can use, as of the ecology that was partitioned last.
+    def usable(self, components: Set[IRI], refusal: Refusal) -> dict[IRI, tuple[IRI, ...]]:
+        """Those of some components without which the ecology that was partitioned last was refused, and that may help.
 
-        Each with the roles that it may play, in their order: none for one that may only be recruited.
+        Each with the roles that it may play, in their order: none for one that may only be recruited. A component of
+        roles that no reason speaks of leaves each of the reasons as it is.
         """
         roles: dict[IRI, tuple[IRI, ...]] = {}
+        lacking = self._lacking(refusal)
         for role, candidates in zip(self._task.template.roles, self._partition.candidates, strict=True):
-            for candidate in candidates:
+            for candidate in candidates if role.iri in lacking else ():
                 if (one := candidate.profile.component) in components:
                     roles[one] = (*roles.get(one, ()), role.iri)
         if any(recruit.component in components for recruit in self._partition.recruits):
@@ -127,6 +130,23 @@ class Composer:
                 if (one := problem.supply.recruits[number].component) in components:
                     roles.setdefault(one, ())
         return roles
+
+    def _lacking(self, refusal: Refusal) -> set[IRI]:
+        """The roles of which another candidate may help: those of the reasons, and those that feed these."""
+        template = self._task.template
+        if not refusal.reasons or any(isinstance(reason, ValueUnknown) for reason in refusal.reasons):
+            return {role.iri for role in template.roles}  # any candidate may state a value
+        few = {reason.role for reason in refusal.reasons if isinstance(reason, TooFewEligible)}
+        fed = {
+            requirement.role
+            for reason in refusal.reasons
+            if not isinstance(reason, TooFewEligible)
+            for requirement in reason.requirements
+            if isinstance(requirement, RolePlayed | InputFed)
+        }
+        while more := {one.source for one in template.interactions if one.sink in fed} - fed:
+            fed |= more
+        return few | fed
 
     def compose(
         self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None

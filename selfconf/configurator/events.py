@@ -60,7 +60,7 @@ class Composed:
     attempt: int
     outcome: Outcome
     usable: frozenset[IRI] = frozenset()
-    """The components held by other tasks that may play a role, or be recruited, where there is no configuration."""
+    """The components that other tasks hold, and that may play a role or be recruited where candidates lack."""
 
 
 @immutable

@@ -18,10 +18,10 @@ are woken as dormant ones are, and how often that is done in vain is limited by 
 
 Other tasks. Components that a task of the same or a higher priority holds do not count for the search; one that can be
 shared does, until a configuration is found that wants something else of it than its holder. If the search fails for
-that reason, those of them that are eligible are named, and a patient task waits at each: whichever is free first may be
-what it takes, and those that wait for one are served in their order only if they all wait there. A task of higher
-priority that asks for a component of this one makes it let go: everything comes to rest, sinks first, and is
-configured again without that component.
+that reason, those of them that are eligible where candidates lack are named, and a patient task waits at each:
+whichever is free first may be what it takes, and those that wait for one are served in order only if they all wait
+there. A task of higher priority that asks for a component of this one makes it let go: everything comes to rest, sinks
+first, and is configured again without that component.
 
 A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
 released again when it is seen again.
@@ -187,15 +187,14 @@ def _coveted(state: State, event: Composed) -> State:
     """Count the components of other tasks as lost with which there may be a configuration, if there is one at all."""
     if not isinstance(event.outcome, Configuration):
         return state
-    wanted = event.usable.union(event.outcome.components)
+    wanted = event.usable or frozenset(event.outcome.components)
     busy = {
-        component: Loss(Cause.REFUSED, str(holder), "", True)
-        for component, holder in state.taken.items()
-        if component in wanted
+        component: Loss(Cause.REFUSED, str(state.taken[component]), "", True)
+        for component in sorted(wanted & state.taken.keys())
     }
     refusal = state.refusal
     if isinstance(refusal, Refusal):
-        refusal = replace(refusal, held=tuple((component, state.taken[component]) for component in sorted(busy)))
+        refusal = replace(refusal, held=tuple((component, state.taken[component]) for component in busy))
     return replace(state, lost={**state.lost, **busy}, refusal=refusal)
 
 

@@ -46,8 +46,8 @@ class RunRequest:
     compose: ComposeFunction
     not_judged: Callable[[], Mapping[IRI, NotJudged]] = dict
     """The components that the last `compose` left out because they cannot be judged; called where that was."""
-    usable: Callable[[Set[IRI]], Mapping[IRI, tuple[IRI, ...]]] = lambda components: {}
-    """Those of some components that the last `compose` could have used, each with the roles that it may play."""
+    usable: Callable[[Set[IRI], Refusal], Mapping[IRI, tuple[IRI, ...]]] = lambda components, refusal: {}
+    """Those of some components that could help where `compose` has refused, each with the roles that it may play."""
     policy: Policy = Policy.REPAIR
     name: str = ""
     """The name of the task in the ecology; by default that of its template."""

@@ -457,14 +457,15 @@ class TaskRunner:
     def _compose(self, effect: Compose) -> None:
         """Search elsewhere, so that a search keeps this configurator from nothing."""
         found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
-        taken, despite = self.state.taken.keys(), self.state.despite
+        taken, refused = self.state.taken.keys(), self.state.refusal if self.state.despite else None
 
         def work() -> None:
             began = time.monotonic()
             try:
                 outcome = self.request.compose(found, effect.lost, effect.running)
                 not_judged = dict(self.request.not_judged())
-                usable = self.request.usable(taken) if despite or isinstance(outcome, Refusal) else {}
+                refusal = outcome if isinstance(outcome, Refusal) else refused
+                usable = self.request.usable(taken, refusal) if isinstance(refusal, Refusal) else {}
             except SelfconfError as error:
                 trouble = error
                 self.bus.wake_up(lambda: self._give_up(trouble))

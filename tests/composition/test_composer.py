@@ -213,18 +213,36 @@ def test_components_that_were_passed_over_are_those_before_the_last_choice() -> 
     assert composer.passed_over(configured(composer, given)) == {iri("position"): [iri("gps")], iri("control"): []}
 
 
-def test_what_a_task_could_use_is_told_with_the_roles_that_it_may_play() -> None:
-    composer = Composer(task(PLAIN))
-    composer.partition(ecology(locator("gps"), locator("beacon"), controller("cap"), ":lamp a sc:Component, :Lamp ."))
-    asked = {iri("gps"), iri("cap"), iri("lamp"), iri("unheard-of")}
-    assert composer.usable(asked) == {iri("gps"): (iri("position"),), iri("cap"): (iri("control"),)}
+def helping(composer: Composer, given: Mapping[IRI, Advertisement], *held: str) -> dict[IRI, tuple[IRI, ...]]:
+    """The held components that could help where the ecology is refused without them."""
+    components = frozenset(map(iri, held))
+    refusal = composer.compose(given, components, None)
+    assert isinstance(refusal, Refusal)
+    return composer.usable(components, refusal)
 
 
-def test_what_a_task_could_recruit_is_told_without_a_role() -> None:
+def test_what_could_help_is_told_with_the_roles_that_it_may_play() -> None:
+    given = ecology(locator("gps"), locator("beacon"), controller("cap"), ":lamp a sc:Component, :Lamp .")
+    held = "gps", "beacon", "lamp", "unheard-of"
+    assert helping(Composer(task(PLAIN)), given, *held) == {iri(one): (iri("position"),) for one in ("gps", "beacon")}
+
+
+def test_a_component_of_a_role_that_has_candidates_does_not_help() -> None:
+    given = ecology(locator("gps"), locator("beacon"), controller("cap"))
+    assert helping(Composer(task(PLAIN)), given, "beacon", "cap") == {iri("cap"): (iri("control"),)}
+
+
+def test_a_component_that_feeds_what_is_not_fed_helps() -> None:
+    given = ecology(locator("ear", "Echo"), locator("gps"), controller("cap"), controller("hat"))
+    helped = helping(Composer(task(PLAIN)), given, "gps", "hat")
+    assert helped == {iri("gps"): (iri("position"),), iri("hat"): (iri("control"),)}
+
+
+def test_what_could_help_as_a_recruit_is_told_without_a_role() -> None:
     recruiting = ":navigate a sc:Template ; sc:roles ( :control ) . :control a sc:Role ; sh:class :Controller"
     composer = Composer(task(f"{recruiting} ; sc:recruits true ."))
-    composer.partition(ecology(locator("gps"), locator("ear", "Echo"), controller("cap")))
-    assert composer.usable({iri("gps"), iri("ear")}) == {iri("gps"): ()}
+    given = ecology(locator("gps"), locator("ear", "Echo"), controller("cap"))
+    assert helping(composer, given, "gps", "ear") == {iri("gps"): ()}
 
 
 def test_what_strangers_say_keeps_them_out_and_no_one_else() -> None:

@@ -438,14 +438,15 @@ def test_a_patient_task_waits_for_what_another_holds_and_begins_when_it_is_free(
     assert kinds(history.all_answer()) == [Running]
 
 
-def test_a_patient_task_waits_for_all_that_others_hold_and_it_could_use() -> None:
+def test_a_patient_task_waits_for_all_that_others_hold_and_that_could_help() -> None:
     history = History(PATIENT)
     history.hear(Accepted(100), Discovered({TRACKER: OTHERS, ODOMETRY: OTHERS, DRIVE: OTHERS}))
     history.composed(REFUSAL)
     found = Composed(history.state.attempt, navigation(), frozenset({TRACKER, ODOMETRY}))
-    assert history.hear(found) == [QueueFor(one, history.state.epoch) for one in sorted((TRACKER, ODOMETRY, DRIVE))]
-    held = tuple((one, OTHERS) for one in sorted((TRACKER, ODOMETRY, DRIVE)))
+    assert history.hear(found) == [QueueFor(one, history.state.epoch) for one in sorted((TRACKER, ODOMETRY))]
+    held = tuple((one, OTHERS) for one in sorted((TRACKER, ODOMETRY)))
     assert history.state.refusal == replace(REFUSAL, held=held)
+    assert list(history.state.lost) == sorted((TRACKER, ODOMETRY))
     assert not history.state.held
     assert history.hear(Freed(ODOMETRY)) == [Discover()]
 
