@@ -187,13 +187,13 @@ def end_deployment(state: State) -> Reaction:
 def rewire(state: State, components: frozenset[IRI]) -> Reaction:
     """Apply once more to those that follow some components, or are called by them, behind which others stand now."""
     held = {
-        one: replace(held, confirmed=held.confirmed and not _connected(held, components))
+        one: replace(held, confirmed=held.confirmed and not is_wired_to(held, components))
         for one, held in state.held.items()
     }
     return deploy(replace(state, held=held))
 
 
-def _connected(held: Held, components: frozenset[IRI]) -> bool:
+def is_wired_to(held: Held, components: frozenset[IRI]) -> bool:
     """Whether a component follows some others, or may be called by them."""
     sources = (wire.component for wires in held.inputs.values() for wire in wires)
     return not components.isdisjoint((*sources, *(one.component for some in held.callers.values() for one in some)))

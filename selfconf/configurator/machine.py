@@ -450,10 +450,14 @@ def _improved(state: State, event: Composed) -> Reaction:
 
 
 def _rewired(state: State, component: IRI) -> Reaction:
-    """Tell those that are connected to a component what stands behind it now, once all are told whom they are for."""
+    """Tell those that are connected to a component what stands behind it now, once all are told whom they are for.
+
+    The component is one of this configuration, or the composite that this is the inside of, which is what is outside.
+    """
+    changed = frozenset((component,))
     if state.phase is Phase.RUNNING:
-        return deploying.rewire(state, frozenset((component,)))
-    if component not in state.held:
+        return deploying.rewire(state, changed)
+    if component not in state.held and not any(deploying.is_wired_to(held, changed) for held in state.held.values()):
         return state, ()
     return replace(state, rewired=state.rewired | {component}), ()  # also while another configuration is looked for
 

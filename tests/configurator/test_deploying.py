@@ -272,6 +272,16 @@ def test_what_moves_while_another_configuration_is_looked_for_is_told_once_that_
     assert history.answer(CONTROL, Call.APPLY)[0] == Running(navigation())
 
 
+def test_what_is_outside_may_change_while_the_inside_of_a_composite_is_repaired() -> None:
+    whole = IRI("urn:c:whole")
+    inside = replace(navigation(), connections=(*navigation().connections, Connection(whole, "hint", DRIVE, "hint")))
+    history = History(TASK).running(with_arm(inside))
+    history.hear(Failed(ARM, "1", Cause.FAIL))
+    assert history.hear(Rewired(whole)) == []
+    assert applied(history.composed(inside)) == [DRIVE]
+    assert history.answer(DRIVE, Call.APPLY)[0] == Running(inside)
+
+
 def test_what_gets_another_input_waits_for_its_source() -> None:
     first = navigation()
     more = replace(first, connections=(*first.connections, Connection(ODOMETRY, "pose", CONTROL, "hint")))
