@@ -45,7 +45,7 @@ def deployed_body(document: Document) -> dict[str, Any] | None:
             for node in document.values(name, SC.connection)
         ],
         "bindings": {
-            local_name(document.value(node, SC.parameter)): _value(document.value(node, SC.value))
+            _parameter_name(document, node): _value(document.value(node, SC.value))
             for asked in document.values(name, SC.task)
             for node in document.values(asked, SC.binding)
         },
@@ -66,9 +66,10 @@ def _text(document: Document, node: Term, predicate: IRI) -> str:
     return "" if value is None else value.lexical if isinstance(value, Literal) else str(value)
 
 
-def local_name(term: Term | None) -> str:
-    """The local name of a parameter's IRI, by which people know it; empty for what is no IRI."""
-    return term.short if isinstance(term, IRI) else ""
+def _parameter_name(document: Document, binding: Term) -> str:
+    """The name of the parameter of a binding; of a record that does not state it, the local name of its IRI."""
+    parameter = document.value(binding, SC.parameter)
+    return _text(document, binding, SC.name) or (parameter.short if isinstance(parameter, IRI) else "")
 
 
 def _value(value: Term | None) -> object:

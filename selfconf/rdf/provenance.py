@@ -73,6 +73,7 @@ def configuration_triples(
             yield asked, SC.binding, node
             yield node, TYPE, SC.Binding
             yield node, SC.parameter, parameter.iri
+            yield node, SC.name, Literal(parameter.name)  # the template, which says so, is not served with it
             yield node, SC.value, configuration.bindings[parameter.name]
     before = {} if revises is None else {a.role: a.components for a in revises[1].assignments}
     for assignment in configuration.assignments:

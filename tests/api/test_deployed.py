@@ -5,7 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from selfconf.api.deployed import deployed_body
-from selfconf.rdf.turtle import parse
+from selfconf.model.configuration import Configuration
+from selfconf.model.template import Parameter, Task, Template
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.provenance import configuration_triples
+from selfconf.rdf.turtle import parse, to_turtle
 from tests.lab import Lab, iri
 
 
@@ -26,6 +30,24 @@ def test_roles_connections_parameters_and_what_was_passed_over_are_read(tmp_path
         "to": {"component": iri("thinking-cap"), "input": "position"},
     } in body["connections"]
     assert body["parameters"] == [{"component": iri("thinking-cap"), "name": "goal", "value": "(AT BEDROOM)"}]
+
+
+def test_bindings_are_told_by_the_names_of_their_parameters() -> None:
+    room, floor = (Parameter(IRI(f"https://example.org/{of}#p"), of) for of in ("room", "floor"))
+    task = Task(Template(iri("t"), (), parameters=(room, floor)))
+    bindings: dict[str, Term] = {"room": iri("kitchen"), "floor": Literal("2")}
+    text = to_turtle(configuration_triples(Configuration(iri("t"), (), (), (), bindings), iri("c"), task))
+    body = deployed_body(parse(text, "cfg"))
+    assert body is not None
+    assert body["bindings"] == {"room": iri("kitchen"), "floor": "2"}
+
+
+def test_a_binding_of_an_older_record_is_told_by_the_local_name_of_its_parameter() -> None:
+    sc = "https://w3id.org/selfconf#"
+    bound = f"[ <{sc}binding> [ <{sc}parameter> <{iri('room')}> ; <{sc}value> 2 ] ]"
+    body = deployed_body(parse(f"<urn:a> a <{sc}Configuration> ; <{sc}task> {bound} .", "cfg"))
+    assert body is not None
+    assert body["bindings"] == {"room": 2}
 
 
 def test_recruits_are_read_beside_the_roles() -> None:

@@ -48,6 +48,7 @@ def test_a_configuration_says_which_task_it_answers_with_which_values() -> None:
     assert document.value(task, SC.template) == iri("t")
     (binding,) = document.values(task, SC.binding)
     assert document.value(binding, SC.parameter) == iri("goal")
+    assert document.value(binding, SC.name) == Literal("goal")
     assert document.value(binding, SC.value) == Literal("(AT BEDROOM)")
     named = turtle.parse(
         to_turtle(write.configuration_triples(CONFIGURATION, NAME, replace(TASK, iri=iri("fetch")))), "configuration"
