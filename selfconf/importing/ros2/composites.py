@@ -10,7 +10,7 @@ Ports of a composite are joined to those of a node by type. So one of which the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.ros2.interfaces import ROS2, TOPICS, InterfaceKind, NodeInterface
 from selfconf.importing.ros2.system_models import SystemModel
 from selfconf.importing.ros2.templates import fact, interaction, role_of, system_template, template_head
-from selfconf.importing.ros2.wiring import NodeInstance, SystemWiring, WiredPair
+from selfconf.importing.ros2.wiring import NodeInstance, SystemWiring
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, SH, TYPE
@@ -64,8 +64,8 @@ class SystemComposites:
     def composite(self, system: SystemModel) -> Iterator[Description]:
         """A part as a component, with the template of its inside and the roles of that."""
         template, members = self._ledger.minted(system.name, "inside"), self._wiring.members(system)
-        head, *others = system_template(template, system.name, members, self._wiring.pairs[system.name])
-        ports = [(name, port, self._port(name, port)) for name, port in self._ports[system.name].items()]
+        head, *others = system_template(template, system.name, members, self._wiring.pairs(system))
+        ports = [(name, port, self._port(system, name, port)) for name, port in self._ports[system.name].items()]
         yield (
             ImportedComponent(
                 self._iri(system.name),
@@ -106,7 +106,7 @@ class SystemComposites:
         of_parts = {name: self._ledger.minted(system.name, "parts", "part", name) for name in parts}
         inside = {port.key: (of_parts[name], exposed) for name in parts for exposed, port in self._ports[name].items()}
         interactions = []
-        for number, pair in enumerate(self._wiring.pairs[system.name], 1):
+        for number, pair in enumerate(self._wiring.own_pairs(system), 1):
             source = _end(roles, inside, pair.source, pair.output)
             sink = _end(roles, inside, pair.sink, pair.input)
             if source is None or sink is None or source[0] == sink[0]:
@@ -127,8 +127,8 @@ class SystemComposites:
 
     def _ports_of(self, system: SystemModel) -> Iterator[tuple[str, CompositePort]]:
         members = self._wiring.members(system)
-        fed = {(pair.sink.key, pair.input) for pair in self._wiring.pairs[system.name]}
-        outside = self._connected_outside(system)
+        fed = {(pair.sink.key, pair.input) for pair in self._wiring.pairs(system)}
+        outside = set[tuple[tuple[str, str], NodeInterface]]().union(*self._connected_outside(system))
         taken: set[tuple[str, bool]] = set()
         for instance in members:
             for interface in instance.interfaces[: len(instance.node.exposed)]:
@@ -148,17 +148,18 @@ class SystemComposites:
                 taken.add((interface.name, port.is_output))
                 yield interface.name, port
 
-    def _connected_outside(self, part: SystemModel) -> set[tuple[tuple[str, str], NodeInterface]]:
-        """The inputs of a part that some system with this part connects."""
+    def _connected_outside(self, part: SystemModel) -> list[set[tuple[tuple[str, str], NodeInterface]]]:
+        """Of each system with this part, the inputs that it connects itself."""
         wholes = (system for system in self._wiring.systems if part.name in system.subsystems)
-        pairs: Iterable[WiredPair] = (pair for whole in wholes for pair in self._wiring.pairs[whole.name])
-        return {(pair.sink.key, pair.input) for pair in pairs}
+        return [{(pair.sink.key, pair.input) for pair in self._wiring.own_pairs(whole)} for whole in wholes]
 
-    def _port(self, name: str, port: CompositePort) -> ImportedPort:
+    def _port(self, part: SystemModel, name: str, port: CompositePort) -> ImportedPort:
         """A port of a composite as it is seen from outside."""
-        optional = not port.is_output and not self._wiring.required(port.instance, port.interface)
+        required = self._wiring.required(port.instance, port.interface) and all(
+            port.key in connected for connected in self._connected_outside(part)
+        )
         kind = port.interface.signal_type()
-        return ImportedPort(name, () if kind is None else (kind,), None, optional)
+        return ImportedPort(name, () if kind is None else (kind,), None, not port.is_output and not required)
 
 
 def _asks_for(part: str) -> tuple[DescribedStatement, ...]:

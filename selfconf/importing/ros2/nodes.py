@@ -73,7 +73,7 @@ def _systems(
             ledger.leave_out("templates of systems without nodes", "a template has at least one role", source)
             continue
         template = ledger.minted(system.name)
-        described = system_template(template, system.name, wiring.members(system), wiring.pairs[system.name])
+        described = system_template(template, system.name, wiring.members(system), wiring.pairs(system))
         prefixes = {"": f"{template}/", "role": f"{template}/role/"}
         path = f"{folder}/{slug(system.name)}" if folder else slug(system.name)
         yield ImportedDocument(f"{path}.template", source.name, tuple(described), prefixes)

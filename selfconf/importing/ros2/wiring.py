@@ -1,7 +1,7 @@
 """Who is connected to whom in systems of ROS 2 nodes: the names in a model, resolved to interfaces of nodes.
 
 A system may have other systems as its parts. They are flattened: their nodes are nodes of the whole, so that a
-connection of the whole may name an interface of a part.
+connection of the whole may name an interface of a part, and their connections are connections of the whole.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class SystemWiring:
         self._instances = {
             id(system): tuple(self._instance(system, node) for node in system.nodes) for system in self.systems
         }
-        self.pairs = {system.name: tuple(self._pairs(system)) for system in self.systems}
+        self._own_pairs = {id(system): tuple(self._resolved(system)) for system in self.systems}
 
     def own(self, system: SystemModel) -> tuple[NodeInstance, ...]:
         """The nodes that a system itself describes."""
@@ -62,24 +62,37 @@ class SystemWiring:
     def members(self, system: SystemModel) -> list[NodeInstance]:
         """The nodes of a system and of its parts, each once."""
         found: dict[tuple[str, str], NodeInstance] = {}
-        seen, waiting = {system.name}, [system]
-        while waiting:
-            current = waiting.pop(0)
-            for instance in self.own(current):
+        for each in self._with_parts(system):
+            for instance in self.own(each):
                 found.setdefault(instance.key, instance)
-            for name in current.subsystems:
-                if name in self._by_name and name not in seen:
-                    seen.add(name)
-                    waiting.append(self._by_name[name])
         return list(found.values())
 
+    def own_pairs(self, system: SystemModel) -> tuple[WiredPair, ...]:
+        """The connections that a system itself describes."""
+        return self._own_pairs[id(system)]
+
+    def pairs(self, system: SystemModel) -> list[WiredPair]:
+        """The connections of a system and of its parts, each once, its own first."""
+        return list(dict.fromkeys(pair for each in self._with_parts(system) for pair in self.own_pairs(each)))
+
     def required(self, instance: NodeInstance, interface: NodeInterface) -> bool:
-        """Whether every system that has a node connects an interface of it."""
+        """Whether every system that has a node connects an interface of it, by itself or inside of a part."""
         having = [system for system in self.systems if instance.key in {each.key for each in self.members(system)}]
         return all(
-            any((pair.sink.key, pair.input) == (instance.key, interface) for pair in self.pairs[system.name])
+            any((pair.sink.key, pair.input) == (instance.key, interface) for pair in self.pairs(system))
             for system in having
         )
+
+    def _with_parts(self, system: SystemModel) -> list[SystemModel]:
+        """A system and the systems that are its parts, directly or as parts of these, each once."""
+        found = {system.name: system}
+        waiting = [system]
+        while waiting:
+            for name in waiting.pop(0).subsystems:
+                if name in self._by_name and name not in found:
+                    found[name] = self._by_name[name]
+                    waiting.append(found[name])
+        return list(found.values())
 
     def _instance(self, system: SystemModel, node: SystemNode) -> NodeInstance:
         package, _, name = node.model.partition(".")
@@ -103,7 +116,7 @@ class SystemWiring:
             found.append(NodeInterface(exposed.kind, exposed.name, said.type if said else None, qualities))
         return NodeInstance(system.name, node, model, (*found, *left.values()))
 
-    def _pairs(self, system: SystemModel) -> Iterator[WiredPair]:
+    def _resolved(self, system: SystemModel) -> Iterator[WiredPair]:
         for name in system.subsystems:
             if name not in self._by_name:
                 self.ledger.leave_out("subsystems", "their models are not among the sources", system.source)

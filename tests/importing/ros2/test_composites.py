@@ -122,4 +122,18 @@ def test_a_system_that_calls_what_is_in_a_part_is_described_flat_alone(workshop:
     task = selfconf.template(workshop.out / "robot.template.ttl")
     answer = selfconf.configure(task, home)
     assert isinstance(answer, Answer)
-    assert len(answer.connections) == 3  # what a part connects inside is in its own template
+    assert {(each.output, each.input) for each in answer.connections} == {
+        ("clean_scan", "brain_scan"),
+        ("brain_speed", "laser_rate"),
+        ("reset()", "brain_reset()"),
+        ("laser_scan", "raw_scan"),  # inside of the part
+    }
+
+
+def test_the_inside_of_a_part_has_the_connections_of_its_own_parts(workshop: Workshop) -> None:
+    outer = SYSTEMS + "house:\n  subSystems:\n    - robot\n"
+    workshop.imported("ros2", {"demo.ros2": PACKAGE, "robot.rossystem": outer})
+    inside = workshop.texts()["robot.composite.ttl"]
+    assert inside.count("a sc:Interaction") == 3
+    for name in ("raw_scan", "laser_rate", "brain_scan"):
+        assert inside.count(f'sc:name "{name}"') == 0  # each is fed inside

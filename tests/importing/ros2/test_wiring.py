@@ -55,7 +55,8 @@ def system(
 
 
 def named(found: SystemWiring, name: str) -> list[tuple[str, str, str, str]]:
-    return [(p.source.node.name, p.output.name, p.sink.node.name, p.input.name) for p in found.pairs[name]]
+    (system,) = (each for each in found.systems if each.name == name)
+    return [(p.source.node.name, p.output.name, p.sink.node.name, p.input.name) for p in found.pairs(system)]
 
 
 def test_connections_lead_from_who_publishes_or_serves_whichever_end_is_named_first() -> None:
@@ -74,6 +75,20 @@ def test_a_connection_may_lead_into_a_part() -> None:
     assert named(found, "s") == [("front", "scan_out", "stop", "scan_in")]
     assert [instance.key for instance in found.members(whole)] == [("s", "stop"), ("base", "front")]
     assert list(left_out) == ["subsystems: their models are not among the sources"]
+
+
+def test_a_whole_has_the_connections_of_its_parts_and_of_theirs_each_once() -> None:
+    inner = system("inner", (LIDAR, STOP), ("scan_out", "scan_in"))
+    base = system("base", (), ("reset_srv", "reset_client"), parts=("inner",))
+    whole = system("s", (node("rear", "p.stop", cmd_rear=SUB),), ("scan_out", "scan_in"), parts=("base", "inner"))
+    found, left_out = wiring(whole, base, inner)
+    pairs = [("front", "scan_out", "stop", "scan_in"), ("front", "reset_srv", "stop", "reset_client")]
+    assert named(found, "s") == pairs
+    assert [pair.input.name for pair in found.own_pairs(whole)] == ["scan_in"]
+    assert named(found, "base") == pairs[::-1]
+    assert left_out == {}
+    stop = found.own(inner)[1]
+    assert [each.name for each in stop.interfaces if found.required(stop, each)] == ["scan_in"]
 
 
 def test_systems_that_are_parts_of_each_other_end() -> None:
