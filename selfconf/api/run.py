@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from types import TracebackType
 
 from selfconf.api.answer import Method, refusal_with_places
@@ -33,6 +34,8 @@ TAKING_DOWN = 15.0
 """How long, in seconds, a configurator may take to turn off everything that it holds."""
 EXPLAINING = 2.0
 """For how many seconds at most a refusal is explained to a task that waits, which may soon come to another one."""
+OF_TASK = "task"
+"""The owner of what is done for a task, as long as it lasts."""
 CHECK = 0.5
 """How often, in seconds, it is checked whether what a run rests on is still there."""
 
@@ -105,8 +108,8 @@ class Run:
                 name=self.task_name,
                 priority=record.priority,
                 upgrade=upgrade,
-                aside=self._work.work,
-                abandon=self._work.abandon,
+                aside=partial(self._work.work, owner=OF_TASK),
+                abandon=partial(self._work.abandon, OF_TASK),  # and not what explains how the task has ended
                 record=record,
                 report=self._work.report,
                 ended=self._settle,
@@ -166,7 +169,7 @@ class Run:
 
     def stop_on_signals(self) -> None:
         """From now on SIGINT, SIGTERM and SIGHUP stop the run, instead of ending the program in the middle of it."""
-        Termination(self._bus, self._runner.stop)
+        Termination(self._bus, self._runner.stop, told=self._work.abandon)
 
     @property
     def name(self) -> str:
@@ -221,20 +224,24 @@ class Run:
         """
         if not isinstance(event, TaskWaiting | TaskRefused) or not isinstance(event.refusal, Refusal):
             return event
-        refusal = event.refusal
-        if isinstance(event, TaskRefused):
-            return replace(event, refusal=self._explain(refusal, self._composer, self.method.seconds))
-        found: list[Refusal] = []
+        refusal, found, over = event.refusal, list[Refusal](), isinstance(event, TaskRefused)
+        composer, seconds = self._composer, self.method.seconds
+        if not over:
+            # With a composer of its own: to be ended in the middle must not spoil the partition of the next search.
+            composer, seconds = self.method.composer(self.task), min(EXPLAINING, seconds or EXPLAINING)
 
         def explain() -> None:
-            # With a composer of its own: to be ended in the middle must not spoil the partition of the next search.
-            seconds = min(EXPLAINING, self.method.seconds or EXPLAINING)
-            found.append(self._explain(refusal, self.method.composer(self.task), seconds))
+            found.append(self._explain(refusal, composer, seconds))
 
-        if not self._work.until_more(explain) or not found:
-            places = Places(self.task.document.task.template, self._described())
-            found = [places.placed(refusal)]
+        if not (self._work.do(explain) if over else self._work.until_more(explain)):
+            found = [self._with_places(refusal)]
+            if over:
+                self._told = refusal, self._found, found[0]
         return replace(event, refusal=found[0])
+
+    def _with_places(self, refusal: Refusal) -> Refusal:
+        """A refusal that says where its facts stand, which takes no time to find out."""
+        return Places(self.task.document.task.template, self._described()).placed(refusal)
 
     def _check(self) -> None:
         if self._rests_on():

@@ -99,17 +99,24 @@ class WorkQueue:
         with self._more:
             return self._events.popleft() if self._events else None
 
-    def _do_first(self) -> None:
-        """Do what has waited for the longest, unless it is abandoned, or has been meanwhile."""
+    def do(self, work: Callable[[], None]) -> bool:
+        """Do something now; whether it has come to its own end, and was not abandoned."""
+        with self._more:
+            self._works.appendleft(_Work(work, ""))
+        return self._do_first()
+
+    def _do_first(self) -> bool:
+        """Do what has waited for the longest, unless it is abandoned, or has been meanwhile; whether it is done."""
         try:
             with abandonable() as abandon:
                 with self._more:
                     if not self._works:
-                        return
+                        return False
                     work = self._works.popleft()
                     self._under_way = work.owner, abandon
                 work.do()
+            return True
         except Abandoned:
-            pass
+            return False
         finally:
             self._under_way = None

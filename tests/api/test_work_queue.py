@@ -118,3 +118,12 @@ def test_what_could_not_be_ended_in_another_thread_is_not_begun() -> None:
     other.start()
     other.join()
     assert done == [False]
+
+
+def test_what_is_done_now_comes_before_what_waits_and_may_be_abandoned() -> None:
+    queue, done, begun = WorkQueue(), list[str](), threading.Event()
+    queue.work(lambda: done.append("waits"))
+    assert queue.do(lambda: done.append("now"))
+    assert done == ["now"]
+    threading.Timer(0.05, queue.abandon).start()
+    assert not queue.do(lambda: _forever(begun))
