@@ -99,6 +99,19 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     what_if: tuple[Consequence, ...] | None = field(default=None, kw_only=True, repr=False, compare=False)
     """What would replace each component if it failed, where that was asked for and there was time."""
 
+    @classmethod
+    def of(
+        cls,
+        configuration: Configuration,
+        task: TaskDocument,
+        optimum: Optimum | None = None,
+        unknown: tuple[IRI, ...] = (),
+        what_if: tuple[Consequence, ...] | None = None,
+    ) -> Answer:
+        """A configuration of a task as an answer to it."""
+        facts = {one.name: getattr(configuration, one.name) for one in fields(Configuration)}
+        return cls(**facts, task=task, optimum=optimum, unknown=unknown, what_if=what_if)
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "bindings", MappingProxyType(dict(self.bindings)))
 
@@ -179,6 +192,11 @@ class ExplainedRefusal(Refusal):
     """A refusal as the library answers with it: it prints on one screen, with the place of each fact."""
 
     task: TaskDocument = field(kw_only=True, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, refusal: Refusal, task: TaskDocument) -> ExplainedRefusal:
+        """A refusal of a task with the prefixes of its document."""
+        return cls(**{one.name: getattr(refusal, one.name) for one in fields(Refusal)}, task=task)
 
     @property
     def names(self) -> Names:
@@ -268,15 +286,10 @@ class Inquiry:
         optimum = found if isinstance(found, Optimum) else None
         plain = found.configuration if isinstance(found, Optimum) else found
         consequences = limit.within(lambda: self.composer.what_if(self.ecology, plain), None) if what_if else None
-        return Answer(
-            plain.template,
-            plain.assignments,
-            plain.connections,
-            plain.settings,
-            plain.bindings,
-            plain.recruits,
-            task=self.task.document,
-            optimum=optimum,
+        return Answer.of(
+            plain,
+            self.task.document,
+            optimum,
             unknown=() if optimum is None else self._unknown(optimum),
             what_if=None if consequences is None else tuple(consequences),
         )
@@ -334,7 +347,7 @@ def refusal_with_places(
     """
     refusal = explained(composer, ecology, refusal, method.wider(), limit)
     placed = Places(composer.task.task.template, ecology if described is None else described).placed(refusal)
-    return ExplainedRefusal(**{one.name: getattr(placed, one.name) for one in fields(Refusal)}, task=composer.task)
+    return ExplainedRefusal.of(placed, composer.task)
 
 
 def configure(

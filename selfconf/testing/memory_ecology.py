@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from selfconf import files, library
-from selfconf.api.answer import Method
+from selfconf.api.answer import Answer, Method
 from selfconf.api.arguments import Paths, listed_paths
 from selfconf.api.composites import Composites
+from selfconf.api.event_answers import answered, answered_event
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification
@@ -17,7 +18,6 @@ from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.configurator import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError
-from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
@@ -58,7 +58,7 @@ class MemoryRun:
     """A task that runs in an ecology in memory, and what has happened so far."""
 
     def __init__(self, ecology: MemoryEcology, task: TaskSpecification, method: Method, policy: Policy, wait: bool):
-        self._ecology = ecology
+        self._ecology, self._task = ecology, task.document
         self.events: list[RunEvent] = []
         """What has happened, in order; the same values as those of `Run.events`."""
         self.refusal: Refusal | Undecided | None = None
@@ -73,7 +73,7 @@ class MemoryRun:
             passed_over=composer.passed_over,
             policy=policy,
             patient=wait,
-            report=self.events.append,
+            report=self._report,
             ended=self._ended,
         )
         network = ecology.network
@@ -91,9 +91,9 @@ class MemoryRun:
         return self._runner.state.phase is Phase.RUNNING
 
     @property
-    def configuration(self) -> Configuration | None:
+    def configuration(self) -> Answer | None:
         """What is deployed, or being deployed."""
-        return self._runner.configuration
+        return answered(self._runner.configuration, self._task)
 
     def started(self) -> MemoryRun:
         """The run once it is running. Raises ProgrammerError, with the refusal, if it does not come to that."""
@@ -108,8 +108,11 @@ class MemoryRun:
         self._runner.stop()
         self._ecology.until(lambda: self.ended)
 
+    def _report(self, event: RunEvent) -> None:
+        self.events.append(answered_event(event, self._task))
+
     def _ended(self, refusal: Refusal | Undecided | None) -> None:
-        self.refusal, self.ended = refusal, True
+        self.refusal, self.ended = answered(refusal, self._task), True
 
 
 class MemoryEcology:

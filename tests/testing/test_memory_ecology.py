@@ -8,7 +8,7 @@ import pytest
 
 import selfconf as sc
 from selfconf.errors import AuthorError, ProgrammerError
-from selfconf.model.run_event import ComponentLost, TaskRunning
+from selfconf.model.run_event import ComponentLost, TaskRefused, TaskRunning
 from selfconf.sdk import Component, Signal
 from selfconf.testing import Faults, MemoryEcology
 
@@ -95,8 +95,24 @@ def test_a_component_that_is_cut_off_comes_back() -> None:
 def test_a_task_that_cannot_run_says_why() -> None:
     ecology = MemoryEcology()
     ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK))
     with pytest.raises(ProgrammerError, match="the task does not run; it is refused"):
-        ecology.run(sc.template(TASK)).started()
+        run.started()
+    assert isinstance(run.events[-1], TaskRefused)
+    assert run.events[-1].refusal == run.refusal
+    assert repr(run.refusal).startswith("<no configuration for :tell")
+
+
+def test_what_runs_is_read_by_role_as_an_answer_of_the_library_is() -> None:
+    ecology = MemoryEcology()
+    ecology.add(Clock("first"), CLOCK.replace("NAME", "a"))
+    ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK)).started()
+    (running,) = (event for event in run.events if isinstance(event, TaskRunning))
+    assert run.configuration is not None
+    assert run.configuration == running.configuration
+    assert run.configuration["source"] == ("urn:test:a",)
+    assert run.configuration.to_mermaid()
 
 
 def test_an_advertisement_that_is_none_is_refused(tmp_path: Path) -> None:

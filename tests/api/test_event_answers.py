@@ -1,0 +1,64 @@
+"""What the events of a run hand out is what `configure` answers with."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import pytest
+
+import selfconf as sc
+from selfconf.api.answer import Answer, ExplainedRefusal
+from selfconf.api.event_answers import answered, answered_event
+from selfconf.model.refusal import Refusal
+from selfconf.model.run_event import EcologyAsked, SearchEnded, TaskRefused, TaskRunning, TaskWaiting
+
+
+@pytest.fixture
+def answer(clock: sc.TaskSpecification) -> Answer:
+    """The configuration of the clock, as the library answers with it."""
+    found = sc.configure(clock, sc.read("examples/clock"))
+    assert isinstance(found, Answer)
+    return found
+
+
+def test_a_configuration_in_an_event_is_an_answer(answer: Answer) -> None:
+    for event, name in (
+        (TaskRunning(answer.plain, 1), "configuration"),
+        (SearchEnded(answer.plain, 0.5), "outcome"),
+    ):
+        found: Any = getattr(answered_event(event, answer.task), name)
+        assert found == answer
+        assert found["screen"] == answer["screen"]
+        assert found.to_turtle() == answer.to_turtle()
+        assert found.to_mermaid() == answer.to_mermaid()
+        assert found._repr_html_() == answer._repr_html_()
+        assert repr(found) == repr(answer)
+        assert pickle.loads(pickle.dumps(found)) == found
+        with pytest.raises(TypeError):
+            found.bindings["room"] = 1
+
+
+def test_a_refusal_in_an_event_prints_as_that_of_configure(clock: sc.TaskSpecification) -> None:
+    refusal = sc.configure(clock.bind(room=":cellar"), sc.read("examples/clock"))
+    assert isinstance(refusal, ExplainedRefusal)
+    plain = Refusal(refusal.template, refusal.reasons)
+    for event, name in (
+        (SearchEnded(plain, 0.5), "outcome"),
+        (TaskWaiting(plain), "refusal"),
+        (TaskRefused(plain), "refusal"),
+    ):
+        found = getattr(answered_event(event, refusal.task), name)
+        assert repr(found).splitlines()[0] == repr(refusal).splitlines()[0]
+        assert found.reasons == refusal.reasons
+
+
+def test_what_is_an_answer_already_stays_and_what_has_none_too(answer: Answer) -> None:
+    undecided, asked, waiting = sc.Undecided(1), EcologyAsked(), TaskWaiting(None)
+    refusal = ExplainedRefusal.of(Refusal(answer.template, ()), answer.task)
+    assert answered(answer, answer.task) is answer
+    assert answered(refusal, answer.task) is refusal
+    assert answered(undecided, answer.task) is undecided
+    assert answered(None, answer.task) is None
+    assert answered_event(asked, answer.task) is asked
+    assert answered_event(waiting, answer.task) is waiting
