@@ -100,7 +100,8 @@ class MemoryRun:
         self._ecology.until(lambda: self.running or self.ended)
         self._ecology.advance(REPORT_LAG)
         if not self.running:
-            raise ProgrammerError(f"the task does not run; it is {self.phase}, {self.refusal or 'without a refusal'}")
+            why = ", without a refusal" if self.refusal is None else f": {self.refusal}"
+            raise ProgrammerError(f"the task does not run; it is {self.phase}{why}")
         return self
 
     def stop(self) -> None:

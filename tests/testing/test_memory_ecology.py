@@ -96,7 +96,8 @@ def test_a_task_that_cannot_run_says_why() -> None:
     ecology = MemoryEcology()
     ecology.add(Screen(), SCREEN)
     run = ecology.run(sc.template(TASK))
-    with pytest.raises(ProgrammerError, match="the task does not run; it is refused"):
+    why = "the task does not run; it is refused: no configuration for :tell\n  because no component is eligible"
+    with pytest.raises(ProgrammerError, match=why):
         run.started()
     assert isinstance(run.events[-1], TaskRefused)
     assert run.events[-1].refusal == run.refusal
