@@ -7,8 +7,9 @@ from dataclasses import replace
 from functools import partial
 from types import TracebackType
 
-from selfconf.api.answer import Method, refusal_with_places
+from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.detached import task_record
+from selfconf.api.event_answers import answered, answered_event
 from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
 from selfconf.api.places import Places
@@ -77,8 +78,7 @@ class Run:
         """
         check_may_run(credentials)
         self.task, self.method = task.complete(), method
-        self.refusal: Refusal | Undecided | None = None
-        """Why the task has ended, where there is no configuration (any more)."""
+        self._refusal: Refusal | Undecided | None = None
         self._composer = method.composer(self.task)
         self._rests_on, self._described = rests_on, described
         self._found: Mapping[IRI, Advertisement] = {}
@@ -157,7 +157,7 @@ class Run:
             ended = self._ended  # before the look at the queue: what was reported by then is in it
             event = self._work.next(0.0 if ended else CHECK)
             if event is not None:
-                yield self._with_explanation(event)
+                yield answered_event(self._with_explanation(event), self.task.document)
             elif ended:
                 break
         if self._runner.trouble is not None:
@@ -177,9 +177,14 @@ class Run:
         return self._runner.name
 
     @property
-    def configuration(self) -> Configuration | None:
+    def configuration(self) -> Answer | None:
         """What is deployed, or being deployed."""
-        return self._runner.configuration
+        return answered(self._runner.configuration, self.task.document)
+
+    @property
+    def refusal(self) -> Refusal | Undecided | None:
+        """Why the task has ended, where there is no configuration (any more)."""
+        return answered(self._refusal, self.task.document)
 
     @property
     def losses(self) -> Mapping[IRI, Loss]:
@@ -193,9 +198,10 @@ class Run:
 
     def explained(self) -> Refusal | Undecided | None:
         """The refusal by which the task has ended, with all that can be found out now that nothing runs any more."""
-        if not isinstance(self.refusal, Refusal):
-            return self.refusal
-        return self._explain(self.refusal, self._composer, self.method.seconds)
+        if not isinstance(self._refusal, Refusal):
+            return self._refusal
+        explained = self._explain(self._refusal, self._composer, self.method.seconds)
+        return answered(explained, self.task.document)
 
     def _explain(self, refusal: Refusal, composer: Composer, seconds: float | None) -> Refusal:
         """A refusal with all that the time allows to find out; one that waits comes to the same again and again."""
@@ -214,7 +220,7 @@ class Run:
         return answer.configuration if isinstance(answer, Optimum) else answer
 
     def _settle(self, refusal: Refusal | Undecided | None) -> None:
-        self.refusal, self._ended = refusal, True
+        self._refusal, self._ended = refusal, True
         self._work.wake_up()
 
     def _with_explanation(self, event: RunEvent) -> RunEvent:

@@ -45,7 +45,9 @@ def test_events_are_values_in_the_order_in_which_things_happen(served: Home, clo
                 seen.append(event)
                 if isinstance(event, TaskRunning):
                     assert run.configuration == event.configuration
-                    assert event.configuration.components == would_be.components
+                    assert event.configuration == would_be
+                    assert run.configuration is not None
+                    assert run.configuration["screen"] == would_be["screen"]
                     assert not living.configure(clock)  # what this task holds counts for no other
                     run.stop()
     milestones = (EcologyAsked, EcologyDiscovered, SearchEnded, TaskRunning, TaskStopped)
