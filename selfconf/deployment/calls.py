@@ -8,7 +8,7 @@ arrived.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TypedDict
@@ -62,6 +62,7 @@ from selfconf.protocol.messages import (
     CallAnswer,
     Cause,
     End,
+    Fail,
     Release,
     Reserve,
     StateOf,
@@ -136,12 +137,13 @@ class Calls:
         self._called: set[IRI] = set()
         """The components that were asked to be held, or to act, whatever has come of it."""
         self._unborn: set[IRI] = set()
-        """The components that had no life when their sites were asked to start them, and have had none since."""
+        """The components that had no life when they were to be woken, and have had none since."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
         self.gone: set[IRI] = set()
         """The components without a life for so long that what is left of an earlier one acts for nobody, if it is not
-        only frozen; what is owed to them stays owed, as one that was frozen goes on with what it did."""
+        only frozen, and those whose sites have said that their processes have ended; what is owed to them stays owed,
+        as one that was frozen goes on with what it did."""
 
     # Waking and reserving.
 
@@ -156,6 +158,7 @@ class Calls:
         elif found is not None and found.startable:
             self._start_by_site(effect, found)
         else:
+            self._unborn.add(effect.component)
             detail = "it is advertised, but it does not run" if found is None or not found.unable else found.unable
             self._unreachable(effect.component, Call.WAKE, effect.epoch, detail)
 
@@ -169,6 +172,15 @@ class Calls:
         if waiting is not None:
             waiting[1]()
             self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
+
+    def heard_fail(self, fail: Fail) -> None:
+        """Of a crash a site speaks: it has seen the process of the component end, or is ending it."""
+        if fail.cause is Cause.CRASH and fail.component in (self._state().held.keys() | self._state().owed.keys()):
+            self.gone.add(fail.component)
+
+    def out_of_control(self, owed: Iterable[IRI]) -> tuple[IRI, ...]:
+        """Those of the components that are owed a release which may still act, sorted."""
+        return tuple(sorted(one for one in owed if one not in self.gone or self._lives_on(one)))
 
     def abandon(self, component: IRI) -> None:
         """A component was lost: it is not waited for any more if it was started for this task."""
@@ -200,6 +212,8 @@ class Calls:
         self._waking[effect.component] = waking
 
         def answered(replies: Replies) -> None:
+            if replies.errors:
+                self.gone.add(effect.component)  # its site can tell that no process of it runs
             if not replies.samples:
                 self._give_up(waking, replies.errors[0] if replies.errors else "its site does not answer")
 
@@ -399,6 +413,7 @@ class Calls:
         since = began if first is None else first
         if call is not Call.RELEASE:
             self._called.add(component)
+            self.gone.discard(component)
 
         def said(replies: Replies) -> CallAnswer | None:
             """What the life that is meant has answered; what another one says does not count while it may answer."""

@@ -328,7 +328,7 @@ class TaskRunner:
     @property
     def _out_of_control(self) -> tuple[IRI, ...]:
         """The components that have not obeyed their release and may still act, sorted."""
-        return tuple(sorted(self.state.owed.keys() - self._calls.gone))
+        return self._calls.out_of_control(self.state.owed)
 
     @property
     def losses(self) -> dict[IRI, str]:
@@ -516,6 +516,8 @@ class TaskRunner:
         reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
         if not self._heeds(fail):
             return
+        if own:
+            self._calls.heard_fail(fail)
         if fail.cause is Cause.LET_GO and fail.component in self.state.held:
             log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
         around = self._calls.composite_around(fail.component) if reported else None

@@ -149,15 +149,20 @@ def test_a_component_that_hangs_is_replaced(lab: Lab) -> None:
 
 def test_a_component_that_is_advertised_but_does_not_run_is_passed_over(tmp_path: Path) -> None:
     lab = Lab(tmp_path)
-    lab.site("home")
+    lab.site("home", *TASK, "odometry", "tracker")
     for name in TASK | {"odometry"}:
         lab.component(name)
-    assert lab.running(lab.agent())
+    agent = lab.agent()
+    assert lab.running(agent)
     assert lab.active() == TASK | {"odometry"}
+    assert agent.state.lost[iri("person-tracker")].detail == "it is advertised, but it does not run"
+    assert agent.status().owed == ()  # what never ran is not out of control
 
 
-def living_room(lab: Lab, life: str, wake: Callable[[MemoryBus], object], name: str = "living-room") -> MemoryBus:
-    """A site that can start the tracker, as `wake` does; its node."""
+def living_room(
+    lab: Lab, life: str, wake: Callable[[MemoryBus], object], name: str = "living-room", refusal: str = ""
+) -> MemoryBus:
+    """A site that can start the tracker, as `wake` does, unless it refuses to for a reason; its node."""
     tracker, node = iri("person-tracker"), lab.network.node()
     page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
 
@@ -167,7 +172,10 @@ def living_room(lab: Lab, life: str, wake: Callable[[MemoryBus], object], name: 
         request.finish()
 
     def asked(request: Request) -> None:
-        request.reply(lab.keys.wake(name), b"started")
+        if refusal:
+            request.refuse(refusal)
+        else:
+            request.reply(lab.keys.wake(name), b"started")
         request.finish()
         wake(node)
 
@@ -387,6 +395,52 @@ def test_a_component_that_hears_but_is_not_heard_is_released_though_it_seems_to_
     assert lab.until(lambda: lab.active() == TASK | {"odometry"}, 1.0)
     lab.let_pass(2 * GONE)
     assert agent.status().owed == ()  # it is not known to have obeyed, but nobody has to see to it
+
+
+@pytest.mark.parametrize("told_first", [True, False], ids=["the site is heard first", "the end is seen first"])
+def test_a_component_whose_site_has_seen_it_end_is_not_out_of_control(lab: Lab, told_first: bool) -> None:
+    agent, tracker = lab.agent(), iri("person-tracker")
+    assert lab.running(agent)
+    publisher = lab.network.node().publisher(lab.keys.fail(tracker), Urgency.EVENT)
+    crash = encode(Fail(tracker, "", 0, Cause.CRASH, "its process has ended with code -9"))
+    if told_first:
+        publisher.put(crash)
+        lab.crash("tracker")
+    else:
+        lab.crash("tracker")
+        assert lab.until(lambda: agent.status().owed == (tracker,), 1.0)
+        publisher.put(crash)
+    lab.let_pass(0.1)
+    assert agent.status().owed == ()
+    assert tracker in agent.state.owed  # should it be heard of again, it is released
+
+
+def test_a_component_that_lives_may_be_out_of_control_though_a_process_of_it_has_ended(lab: Lab) -> None:
+    """A component that a person has started lives on when the process ends that its site has started as well."""
+    thread, drive = slow_code(lab, "drive"), iri("astrid-drive")
+    agent = lab.agent()
+    assert lab.running(agent)
+    thread.spend(60.0)
+    ended = encode(Fail(drive, "", 0, Cause.CRASH, "its process has ended with code 2"))
+    lab.network.node().publisher(lab.keys.fail(drive), Urgency.EVENT).put(ended)
+    assert lab.until(lambda: agent.status().owed == (drive,), 1.0)
+    lab.let_pass(2 * GONE)
+    assert agent.status().owed == (drive,)
+
+
+def test_a_component_that_its_site_does_not_start_again_is_not_out_of_control(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    living_room(lab, "1", lambda node: None, refusal="it has crashed too often")
+    agent, tracker = lab.agent(), iri("person-tracker")
+    assert lab.running(agent)
+    lab.crash("tracker")
+    assert lab.until(lambda: bool(lab.ended), 1.0)
+    assert agent.state.lost[tracker].detail == "it has crashed too often"
+    assert lab.acts("refused")[0].owed == ()
+    assert tracker in agent.state.owed
 
 
 def test_a_component_that_goes_on_after_it_was_frozen_for_long_is_released(lab: Lab) -> None:
