@@ -261,12 +261,12 @@ CODES: tuple[Code, ...] = (
         ),
     ),
     Code(
-        "SC-A22", "A composite has its template in its file, the ports of that, and only parameters of that.",
+        "SC-A22", "A composite has its template in its file, the ports and types of that, and only parameters of that.",
         "What is outside of it is connected to what its template connects inside, and is set to what that is bound to.",
         f"{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] .",
         f'{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] ;\n'
         '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
-        ("CompositeTemplateHere", "CompositePorts", "CompositeParameters"),
+        ("CompositeTemplateHere", "CompositePorts", "CompositePortTypes", "CompositeParameters"),
     ),
     Code(
         "SC-T01", "A template has an IRI and is a sc:Template.",

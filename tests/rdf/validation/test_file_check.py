@@ -5,7 +5,12 @@ from __future__ import annotations
 import pytest
 
 from selfconf import library
+from selfconf.composition import Inside
+from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.hierarchy import NOTHING_ABOVE
+from selfconf.rdf.advertisements import read_advertisements
+from selfconf.rdf.turtle import parse
 from selfconf.rdf.validation import file_check
 from selfconf.rdf.validation.file_check import FileCheck, shapes_of
 from selfconf.rdf.validation.prefilter import prefilter
@@ -80,3 +85,34 @@ def test_a_component_that_another_file_describes_as_well_is_told_with_that_file(
 
 def test_shapes_are_read_once_for_the_same_texts() -> None:
     assert shapes_of(*TEXTS) is shapes_of(*TEXTS)
+
+
+@pytest.mark.parametrize(
+    ("inside", "outside", "same"),
+    [
+        ("sc:hasOutput [ {} sc:signalType :A , :B ]", "sc:hasOutput [ {} sc:signalType :B , :A ]", True),
+        ("sc:hasOutput [ {} sc:signalType :A , :B ]", "sc:hasOutput [ {} sc:signalType :A ]", False),
+        ("sc:hasInput [ {} sc:signalType :A ]", "sc:hasInput [ {} sc:signalType :A , :B ]", False),
+        ("sc:hasInput [ {} sc:signalType :A ]", "sc:hasInput [ {} ]", False),
+        ("sc:hasInput [ {} sc:signalType :A ]", "sc:hasInput [ {} sc:signalType :A ; sc:optional true ]", True),
+        ("sc:hasOperation [ {} sc:request :A ]", "sc:hasOperation [ {} sc:request :A ]", True),
+        ("sc:needsOperation [ {} sc:request :A ]", "sc:needsOperation [ {} sc:response :A ]", False),
+        ("sc:hasOperation [ {} ]", "sc:hasOperation [ {} sc:response :A ]", False),
+    ],
+)
+def test_a_composite_has_the_types_of_its_template_as_whoever_configures_it_asks(
+    inside: str, outside: str, same: bool
+) -> None:
+    name = 'sc:name "p" ;'
+    text = (
+        f":t a sc:Template ; sc:roles ( :r ) ; {inside.format(f'{name} sc:of :r ;')} .\n:r a sc:Role ; sh:class :R .\n"
+        f":c a sc:Component, :C ; sc:grounding [ sc:template :t ] ; {outside.format(name)} .\n"
+    )
+    assert ("SC-A22" not in [code for code, _, _ in told(text)]) is same
+    ((composite,), _) = read_advertisements((PREFIXES + text).encode(), "a.ttl")
+    try:
+        Inside.of(composite.profile, parse(PREFIXES + text, "a.ttl"), NOTHING_ABOVE)
+    except AuthorError:
+        assert not same
+    else:
+        assert same
