@@ -81,11 +81,9 @@ class Outputs:
             raise ProgrammerError(f"{self._profile.component.short} advertises no output {port!r}")
         if not self._active():
             return
-        fields = self._fields[port]
         try:
             packed = as_bytes(value, media)
-            problems = (one.problem_of_bytes() if packed else one.problem(value) for one in fields)
-            problem = next(filter(None, problems), None)
+            problem = self._problem(port, value, packed is not None)
             if problem is not None:
                 self._malformed(f"what it emits on {port!r} {problem}")
                 return
@@ -99,6 +97,20 @@ class Outputs:
         self._last[port] = payload, stamp
         self.issued[port] += 1  # a count for people: where two threads emit on one output, one may be missed
         output.put(payload, stamp)
+
+    def problem(self, port: str, value: Any) -> str | None:
+        """What keeps a value from being a signal of an output, without its subject; None if nothing does."""
+        try:
+            packed = as_bytes(value)
+            if packed is None:
+                as_json(value)
+            return self._problem(port, value, packed is not None)
+        except UnsayableError as error:
+            return f"is no signal: {error}"
+
+    def _problem(self, port: str, value: Any, packed: bool) -> str | None:
+        problems = (one.problem_of_bytes() if packed else one.problem(value) for one in self._fields[port])
+        return next(filter(None, problems), None)
 
     def forget(self) -> None:
         """Forget the last signals: a new activation begins."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,9 @@ from selfconf.api.task import template
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.model.run_event import CallDeclined, ComponentLost
-from selfconf.model.term import Literal
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.advertisements import Advertisement, read_advertisements
+from selfconf.rdf.turtle import ntriples
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk import Component, Refused, Response, Signal
 from selfconf.testing.memory_ecology import MemoryEcology, MemoryRun
@@ -26,7 +28,22 @@ DELIVERY = 0.1
 
 
 class _Feeder(Component):
-    """Issues signals for one input of the component on the bench."""
+    """Issues signals for one input of the component on the bench, on an output for each signal type that it accepts.
+
+    An output issues what is of all its types, and an input accepts what is of any.
+    """
+
+    def __init__(self, outputs: Sequence[str]) -> None:
+        self.outputs = outputs
+
+    def feed(self, value: Any) -> str | None:
+        """Issue a value on the first output that it fits; if it fits none, returns what is wrong with it."""
+        problems = {output: self._attached().outputs.problem(output, value) for output in self.outputs}
+        for output, problem in problems.items():
+            if problem is None:
+                self.emit(output, value)
+                return None
+        return " and ".join(dict.fromkeys(filter(None, problems.values())))
 
 
 class _Listener(Component):
@@ -55,8 +72,24 @@ class _Caller(Component):
     """Calls one operation of the component on the bench."""
 
 
+class _BenchEcology(MemoryEcology):
+    """An ecology in which inputs accept what the bench feeds them, whatever they accept elsewhere (`sc:accepts`)."""
+
+    def _advertised(self, component: Component, advertisement: str | Path | None) -> Advertisement:
+        found = super()._advertised(component, advertisement)
+        said = [triple for triple in found.triples if triple[1] != SC.accepts]
+        if len(said) == len(found.triples):
+            return found
+        place = "the bench" if found.place is None else found.place.source
+        (without_shapes,), _ = read_advertisements(ntriples(said), place)
+        return without_shapes
+
+
 class ComponentBench:
-    """Tries one component by itself: start it, send it signals, call it, let time pass, see what it emits."""
+    """Tries one component by itself: start it, send it signals, call it, let time pass, see what it emits.
+
+    What feeds it is the bench, which its inputs accept whatever shape they ask of others (`sc:accepts`).
+    """
 
     def __init__(
         self, component: Component, advertisement: str | Path | None = None, *, ontologies: Paths = ()
@@ -67,12 +100,12 @@ class ComponentBench:
         selfconf and those given. A signal that is not of its type is a failure.
         """
         self.component = component
-        self.ecology = MemoryEcology(ontologies=ontologies)
+        self.ecology: MemoryEcology = _BenchEcology(ontologies=ontologies)
         self.ecology.add(component, advertisement)
         (only,) = self.ecology.advertisements.values()
         self.profile: Profile = only.profile
         self._feeders = {
-            port.name: self.ecology.add(_Feeder(), _probe(f"in{number}", "hasOutput", port))
+            port.name: self.ecology.add(_Feeder(_feeding(port)), _feeder(f"in{number}", port))
             for number, port in enumerate(self.profile.signal_inputs)
         }
         self._listeners = {
@@ -105,10 +138,20 @@ class ComponentBench:
             )
 
     def send(self, port: str, value: Any) -> None:
-        """Let a signal arrive on an input, and let the time pass that its answers take."""
+        """Let a signal arrive on an input, and let the time pass that its answers take.
+
+        Raises ProgrammerError for a value that is of none of the signal types of the input, and where the component
+        does not act: before `start`, and after it has failed or was stopped.
+        """
+        name = self.profile.component.short
         if port not in self._feeders:
-            raise ProgrammerError(f"{self.profile.component.short} advertises no input {port!r}")
-        self._feeders[port].emit("signal", value)
+            raise ProgrammerError(f"{name} advertises no input {port!r}")
+        if not self.active:
+            failure = self.failure
+            raise ProgrammerError(f"{name} does not act{'; start it first' if failure is None else f': {failure}'}")
+        problem = self._feeders[port].feed(value)
+        if problem is not None:
+            raise ProgrammerError(f"what is sent to the input {port!r} of {name} {problem}")
         self.advance(DELIVERY)
 
     def answer(self, operation: str, answer: Callable[[Any], Any]) -> None:
@@ -161,11 +204,15 @@ class ComponentBench:
     def _template(self, parameters: dict[str, str | int | float | bool]) -> str:
         """A template in which the component plays, fed by a probe for each input and heard by one for each output."""
         profile = self.profile
-        feeding = [(f":in{number}", "signal", port.name) for number, port in enumerate(profile.signal_inputs)]
+        feeding = [
+            (f":in{number}", output, port.name)
+            for number, port in enumerate(profile.signal_inputs)
+            for output in _feeding(port)
+        ]
         feeding += [(f":op{number}", "call()", port.name) for number, port in enumerate(profile.needed_operations)]
         hearing = [(f":out{number}", port.name, "signal") for number, port in enumerate(profile.signal_outputs)]
         hearing += [(f":call{number}", port.name, "call()") for number, port in enumerate(profile.operations)]
-        feeders, listeners = [one for one, _, _ in feeding], [one for one, _, _ in hearing]
+        feeders, listeners = list(dict.fromkeys(one for one, _, _ in feeding)), [one for one, _, _ in hearing]
         roles = [f":{name}-role" for name in (one[1:] for one in (*feeders, *listeners))]
         lines = [f":bench a sc:Template ; sc:roles ( {' '.join([*roles, ':tested'])} ) ."]
         lines.append(f":tested a sc:Role ; sh:in ( <{self.profile.component}> ) {self._settings(parameters)} .")
@@ -193,6 +240,21 @@ def _turtle(value: str | int | float | bool) -> str:
 def _interaction(source: str, output: str, sink: str, port: str) -> str:
     names = f"sc:output {Literal(output).turtle(str)} ; sc:input {Literal(port).turtle(str)}"
     return f"[] a sc:Interaction ; sc:from {source} ; sc:to {sink} ; {names} ."
+
+
+def _feeding(port: Input) -> list[str]:
+    """The outputs by which an input is fed: one for each signal type, or one without a type."""
+    return [f"signal{number}" for number in range(max(1, len(port.signals)))]
+
+
+def _feeder(name: str, port: Input) -> str:
+    """The advertisement of a probe that feeds an input."""
+    types: Sequence[IRI | None] = port.signals or (None,)
+    outputs = [
+        f'[ sc:name "{output}"{"" if kind is None else f" ; sc:signalType <{kind}>"} ]'
+        for output, kind in zip(_feeding(port), types, strict=True)
+    ]
+    return PREFIXES + f":{name} a sc:Component, :Probe ; sc:hasOutput {' , '.join(outputs)} .\n"
 
 
 def _probe(name: str, link: str, port: Input | Output) -> str:

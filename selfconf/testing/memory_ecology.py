@@ -161,7 +161,7 @@ class MemoryEcology:
         Its advertisement is the one of its class, or the one given: Turtle text or a file. Raises AuthorError for one
         that does not conform, and for a document with several components of which the class names none.
         """
-        found = _advertisement(component, advertisement)
+        found = self._advertised(component, advertisement)
         self._shelf.put(found)
         bus = self.network.node()
         life = f"life{len(self.network.nodes)}"
@@ -213,6 +213,10 @@ class MemoryEcology:
     def until(self, condition: Callable[[], bool], seconds: float = UNTIL_SECONDS) -> bool:
         """Let simulated time pass until something holds; returns whether it does."""
         return self.network.run(condition, seconds)
+
+    def _advertised(self, component: Component, advertisement: str | Path | None) -> Advertisement:
+        """What is advertised of a component that is to live."""
+        return _advertisement(component, advertisement)
 
     def _node(self, component: Component) -> MemoryBus:
         for runtime, bus in self._runtimes.values():

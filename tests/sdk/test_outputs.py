@@ -71,6 +71,14 @@ def test_an_array_that_no_signal_can_carry_is_the_authors_mistake() -> None:
         stage.component.emit("velocity", numpy.zeros(2, ">f4"))
 
 
+def test_what_keeps_a_value_from_being_a_signal_is_told_without_a_failure() -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    assert stage.runtime.outputs.problem("velocity", {"x": 1}) is None
+    assert "is no signal: JSON cannot say it" in str(stage.runtime.outputs.problem("velocity", object()))
+    assert stage.component.active
+
+
 def test_the_signals_that_an_activation_sets_free_go_before_its_answer() -> None:
     class Eager(Recorder):
         def started(self) -> None:

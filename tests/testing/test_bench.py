@@ -180,3 +180,81 @@ def test_what_is_emitted_is_checked_against_its_signal_type_by_ontologies_and_th
         assert bench.failure is not None
         assert "what it emits on 'heating'" in bench.failure
         assert bench.emitted["heating"] == []
+
+
+KETTLE = """@prefix sc: <https://w3id.org/selfconf#> .
+@prefix sh: <http://www.w3.org/ns/shacl#> .
+@prefix rob: <https://w3id.org/selfconf/robotics#> .
+@prefix unit: <http://qudt.org/vocab/unit/> .
+@prefix : <urn:test:> .
+:kettle a sc:Component, :Kettle ; sc:hasInput [ sc:name "state" ; SAID ] .
+"""
+
+
+class Kettle(Component):
+    """Notes what it hears."""
+
+    def __init__(self) -> None:
+        self.heard: list[Any] = []
+
+    def received(self, port: str, signal: Signal) -> None:
+        self.heard.append(signal.value)
+
+
+@pytest.mark.parametrize("optional", ["", " ; sc:optional true"])
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "sh:property [ sh:path sc:unit ; sh:hasValue unit:K ]",
+        "sh:property [ sh:path ( sc:rate sc:value ) ; sh:minCount 1 ; sh:minInclusive 5 ]",
+        "sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] rob:support ) ; sh:hasValue :Astrid ]",
+    ],
+)
+def test_an_input_is_fed_whatever_shape_it_accepts(shape: str, optional: str) -> None:
+    kettle = Kettle()
+    said = f"sc:signalType rob:Temperature{optional} ; sc:accepts [ {shape} ]"
+    bench = ComponentBench(kettle, KETTLE.replace("SAID", said))
+    bench.start()
+    bench.send("state", {"temperature": 2.0})
+    assert kettle.heard == [{"temperature": 2.0}]
+
+
+def test_an_input_of_several_types_is_sent_what_is_of_any() -> None:
+    kettle = Kettle()
+    bench = ComponentBench(kettle, KETTLE.replace("SAID", "sc:signalType rob:Temperature, rob:Text"))
+    bench.start()
+    bench.send("state", {"temperature": 2.0})
+    bench.send("state", {"text": "boiling"})
+    bench.send("state", {"temperature": 100.0})
+    assert kettle.heard == [{"temperature": 2.0}, {"text": "boiling"}, {"temperature": 100.0}]
+    with pytest.raises(ProgrammerError, match=r"'state' of kettle lacks 'temperature' .* and lacks 'text'"):
+        bench.send("state", {"colour": "red"})
+
+
+@pytest.mark.parametrize(
+    ("value", "why"),
+    [
+        ({"celsius": 2.0}, "what is sent to the input 'state' of kettle lacks 'temperature'"),
+        (b"2.0", "'state' of kettle is bytes"),
+        (object(), "'state' of kettle is"),
+    ],
+)
+def test_a_malformed_signal_is_refused_and_the_component_acts_on(value: Any, why: str) -> None:
+    kettle = Kettle()
+    bench = ComponentBench(kettle, KETTLE.replace("SAID", "sc:signalType rob:Temperature"))
+    bench.start()
+    with pytest.raises(ProgrammerError, match=why):
+        bench.send("state", value)
+    assert bench.active
+    bench.send("state", {"temperature": 2.0})
+    assert kettle.heard == [{"temperature": 2.0}]
+
+
+def test_nothing_is_sent_to_a_component_that_does_not_act() -> None:
+    bench = ComponentBench(Thermostat(), ADVERTISEMENT)
+    with pytest.raises(ProgrammerError, match="thermostat does not act; start it first"):
+        bench.send("temperature", {"celsius": 15.0})
+    bench.start()
+    bench.send("temperature", {"celsius": 2000.0})
+    with pytest.raises(ProgrammerError, match="thermostat does not act: it burns"):
+        bench.send("temperature", {"celsius": 15.0})
