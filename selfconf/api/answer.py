@@ -15,7 +15,7 @@ from selfconf.api.ecology import Ecology
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.places import Places
 from selfconf.api.reading import described_in
-from selfconf.api.task import TaskSpecification
+from selfconf.api.task import TaskSpecification, completed
 from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained, insides
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
@@ -218,13 +218,11 @@ class Inquiry:
 
     def __init__(self, task: TaskSpecification, ecology: Ecology, method: Method) -> None:
         """Reads what the task may want of the ecology. Raises AuthorError, ProgrammerError and NetworkError."""
-        if not isinstance(task, TaskSpecification):
-            raise ProgrammerError(f"a task is what selfconf.template() gives, not {type(task).__name__}")
+        self.task, self.method = completed(task), method
         if not isinstance(ecology, Ecology):
             raise ProgrammerError(
                 f"an ecology is what selfconf.read() or selfconf.join() gives, not {type(ecology).__name__}"
             )
-        self.task, self.method = task.complete(), method
         self.seconds: dict[str, float] = {}
         """How long each part took: load, partition, search."""
         began = time.perf_counter()

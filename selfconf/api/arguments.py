@@ -14,6 +14,8 @@ from selfconf.model.template import MOST_PRIORITY
 
 Paths: TypeAlias = str | Path | Iterable[str | Path]
 """One path, or several."""
+Endpoints: TypeAlias = str | Iterable[str]
+"""One endpoint, or several."""
 Choice = TypeVar("Choice", bound=Enum)
 
 
@@ -22,6 +24,14 @@ def listed_paths(paths: Paths) -> list[str | Path]:
     listed = [paths] if isinstance(paths, str | Path) else list(paths) if isinstance(paths, Iterable) else None
     if listed is None or not all(isinstance(path, str | os.PathLike) for path in listed):
         raise ProgrammerError(f"paths are one path or several, as text or as Path, not {paths!r}")
+    return listed
+
+
+def listed_endpoints(endpoints: Endpoints) -> list[str]:
+    """The endpoints; one by itself is a list of one, not of its letters. Raises ProgrammerError for what is none."""
+    listed = [endpoints] if isinstance(endpoints, str) else list(endpoints) if isinstance(endpoints, Iterable) else None
+    if listed is None or not all(isinstance(endpoint, str) for endpoint in listed):
+        raise ProgrammerError(f"endpoints are one or several, as text, not {endpoints!r}")
     return listed
 
 
@@ -54,6 +64,18 @@ def seconds_limit(seconds: float | None) -> float | None:
     if isinstance(seconds, bool) or not isinstance(seconds, Real) or not 0 < seconds <= LONGEST_SECONDS:
         raise ProgrammerError(
             f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, or None for no limit, not {seconds!r}"
+        )
+    return float(seconds)
+
+
+def checked_upgrade(seconds: float | None) -> float | None:
+    """After how many seconds a better component is changed to, or None. Raises ProgrammerError for what is no time."""
+    if seconds is None:
+        return None
+    if isinstance(seconds, bool) or not isinstance(seconds, Real) or not 0 <= seconds <= LONGEST_SECONDS:
+        raise ProgrammerError(
+            f"an upgrade comes after a number of seconds from 0 to {LONGEST_SECONDS:,.0f}, or never by None, "
+            f"not after {seconds!r}"
         )
     return float(seconds)
 

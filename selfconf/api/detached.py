@@ -11,7 +11,7 @@ from typing import Any
 
 from selfconf import files
 from selfconf.api.answer import Method
-from selfconf.api.arguments import checked_priority, option
+from selfconf.api.arguments import checked_priority, checked_upgrade, option
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Policy
@@ -41,7 +41,7 @@ def task_record(
 ) -> TaskRecord:
     """What the sites are given of a task that is to live in the ecology.
 
-    Raises AuthorError for a name that is none, and ProgrammerError for a priority that is none.
+    Raises AuthorError for a name that is none, and ProgrammerError for a priority or upgrade that is none.
     """
     document = task.document.document
     name = checked_name(name, "a task") if name else safe_name(task.iri.short)
@@ -51,7 +51,7 @@ def task_record(
         "reasoning": method.reasoning.value,
         "steps": method.steps,
         "seconds": method.seconds,
-        "upgrade": upgrade,
+        "upgrade": checked_upgrade(upgrade),
     }
     return TaskRecord(
         task=task_identity(name, secrets.token_hex(4)),

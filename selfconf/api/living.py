@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from selfconf import rendezvous
-from selfconf.api.arguments import Paths, option
+from selfconf.api.arguments import Endpoints, Paths, listed_endpoints, option
 from selfconf.api.component_states import ComponentState, component_states
 from selfconf.api.deployed import connected, deployed_body
 from selfconf.api.echo import HeardSignal, echo
@@ -398,8 +398,8 @@ class LivingEcology(Ecology):
         `policy` says what to do with the rest when a component is lost, `repair` or `dismantle`; `wait` waits for the
         ecology to change where there is no configuration. A task of higher `priority` gets the components that one of
         lower priority holds; it is a whole number from -1,000,000 to 1,000,000, else ProgrammerError is raised.
-        `upgrade` are the seconds after which a component that the strategy would rather have is changed to; without it,
-        none is.
+        `upgrade` are the seconds, zero or more, after which a component that the strategy would rather have is changed
+        to; without it, none is.
         """
         from selfconf.api.answer import Method
         from selfconf.api.run import Run
@@ -441,11 +441,12 @@ class LivingEcology(Ecology):
         """
         from selfconf.api.answer import Method
         from selfconf.api.detached import task_record
+        from selfconf.api.task import completed
         from selfconf.configurator import Policy
 
         check_may_run(self._credentials)
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
-        record = task_record(task.complete(), method, option(Policy, "policy", policy), name, priority, upgrade)
+        record = task_record(completed(task), method, option(Policy, "policy", policy), name, priority, upgrade)
         return self._complaining(self._tasks.detach(record))
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
@@ -466,13 +467,13 @@ class LivingEcology(Ecology):
         return f"<living ecology {self.name}>"
 
 
-def join(ecology: str | None = None, *, connect: Sequence[str] = (), keys: str | Path | None = None) -> LivingEcology:
+def join(ecology: str | None = None, *, connect: Endpoints = (), keys: str | Path | None = None) -> LivingEcology:
     """The living ecology of a name; without one, the only one on this machine, or the one behind the endpoints.
 
-    `connect` are endpoints of sites, such as `tcp/127.0.0.1:7447`; without them the sites on this machine. Joining
-    reads; nothing changes before `run`. `keys` is a folder of keys; without it, that of the variable SELFCONF_KEYS, if
-    there is one. Raises NetworkError, saying what to try, if there is no such ecology, or if it does not let in whom
-    the keys speak for, and AuthorError for keys that are none.
+    `connect` is an endpoint of a site, such as `tcp/127.0.0.1:7447`, or several; without them the sites on this
+    machine. Joining reads; nothing changes before `run`. `keys` is a folder of keys; without it, that of the variable
+    SELFCONF_KEYS, if there is one. Raises NetworkError, saying what to try, if there is no such ecology, or if it does
+    not let in whom the keys speak for, and AuthorError for keys that are none.
 
     >>> with join() as living:
     ...     answer = living.configure(template("examples/clock/tell-the-time.ttl"))
@@ -480,4 +481,4 @@ def join(ecology: str | None = None, *, connect: Sequence[str] = (), keys: str |
     ((<https://example.org/my-home#display>,), ())
     """
     shown = rendezvous.credentials(None if keys is None else Path(keys), *MEMBERS)
-    return LivingEcology(*rendezvous.find(ecology, list(connect), shown), shown)
+    return LivingEcology(*rendezvous.find(ecology, listed_endpoints(connect), shown), shown)

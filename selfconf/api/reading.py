@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
@@ -57,7 +57,7 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
     >>> len(home.components)
     2
     """
-    given = [one for source in sources for one in (source if isinstance(source, list | tuple) else [source])]
+    given = [one for source in sources for one in (source if _are_several(source) else [source])]
     endpoints = [str(source) for source in given if is_endpoint(source)]
     if endpoints:
         if len(given) > 1:
@@ -67,6 +67,11 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
     ecology = LoadedEcology(*gathered(_texts(given)), names=tuple(map(_name, given)))
     ecology.read_seconds = time.perf_counter() - began
     return ecology
+
+
+def _are_several(source: Source | Iterable[Source]) -> TypeGuard[Iterable[Source]]:
+    """Whether there are several sources; text and a graph, of letters and of triples, are one."""
+    return isinstance(source, Iterable) and not isinstance(source, str | bytes | Mapping | _Graph)
 
 
 def is_endpoint(source: object) -> bool:

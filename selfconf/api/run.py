@@ -14,7 +14,7 @@ from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
 from selfconf.api.places import Places
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
-from selfconf.api.task import TaskSpecification
+from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.credentials import Credentials
 from selfconf.composition import Composer, TimeLimit, composed
@@ -73,11 +73,11 @@ class Run:
         """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
 
         A task without a `name` has that of its template, or where that is taken, one with a number: `patrol-2`. Raises
-        BindingError, ProgrammerError for a priority that is none, and NetworkError, also for credentials that do not
-        let it run tasks, and for a name that is taken.
+        BindingError, ProgrammerError for a task, priority or upgrade that is none, and NetworkError, also for
+        credentials that do not let it run tasks, and for a name that is taken.
         """
         check_may_run(credentials)
-        self.task, self.method = task.complete(), method
+        self.task, self.method = completed(task), method
         self._refusal: Refusal | Undecided | None = None
         self._composer = method.composer(self.task)
         self._rests_on, self._described = rests_on, described

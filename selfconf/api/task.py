@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.api.reading import text_of
 from selfconf.api.tables import Tabular
-from selfconf.errors import BindingError, TemplateError
+from selfconf.errors import BindingError, ProgrammerError, TemplateError
 from selfconf.model.immutable import immutable
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, BlankNode, Literal, Term
@@ -113,6 +113,13 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
         return TaskSpecification(tasks.read_task(document, wanted))
     except TemplateError as error:
         raise tasks.placed(error, text.decode(), base or "file:///") from None
+
+
+def completed(task: object) -> TaskSpecification:
+    """A task with defaults filled in and every value checked. Raises BindingError, ProgrammerError for what is none."""
+    if not isinstance(task, TaskSpecification):
+        raise ProgrammerError(f"a task is what selfconf.template() gives, not {type(task).__name__}")
+    return task.complete()
 
 
 def pairs(bound: Iterable[str]) -> dict[str, str]:

@@ -8,12 +8,12 @@ from typing import TypeVar
 
 from selfconf import files, library
 from selfconf.api.answer import Answer, Method
-from selfconf.api.arguments import Paths, listed_paths
+from selfconf.api.arguments import Paths, listed_paths, option
 from selfconf.api.composites import Composites
 from selfconf.api.event_answers import answered, answered_event
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import gathered, text_of
-from selfconf.api.task import TaskSpecification
+from selfconf.api.task import TaskSpecification, completed
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.configurator import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
@@ -184,9 +184,13 @@ class MemoryEcology:
     def run(
         self, task: TaskSpecification, *, policy: str = "repair", wait: bool = False, strategy: str = "first"
     ) -> MemoryRun:
-        """Begin to run a task; `started()` of the result lets time pass until it runs."""
+        """Begin to run a task; `started()` of the result lets time pass until it runs.
+
+        Raises BindingError, and ProgrammerError for a task or word that is none.
+        """
+        complete, method, chosen = completed(task), Method.of(strategy), option(Policy, "policy", policy)
         self.advance(1.5)  # the site looks at its shelf once a second
-        return MemoryRun(self, task.complete(), Method.of(strategy), Policy(policy), wait)
+        return MemoryRun(self, complete, method, chosen, wait)
 
     def crash(self, component: Component) -> None:
         """End the process of a component as kill -9 does: it says nothing any more."""

@@ -9,7 +9,16 @@ from typing import Any
 
 import pytest
 
-from selfconf.api.arguments import LONGEST_SECONDS, checked_priority, listed_paths, option, seconds_limit, steps_limit
+from selfconf.api.arguments import (
+    LONGEST_SECONDS,
+    checked_priority,
+    checked_upgrade,
+    listed_endpoints,
+    listed_paths,
+    option,
+    seconds_limit,
+    steps_limit,
+)
 from selfconf.errors import ProgrammerError
 
 
@@ -24,6 +33,22 @@ def test_one_path_is_a_list_of_one() -> None:
     assert listed_paths("examples") == ["examples"]
     assert listed_paths(Path("examples")) == [Path("examples")]
     assert listed_paths(path for path in ("a", Path("b"))) == ["a", Path("b")]
+
+
+def test_one_endpoint_is_a_list_of_one() -> None:
+    assert listed_endpoints("tcp/127.0.0.1:1") == ["tcp/127.0.0.1:1"]
+    assert listed_endpoints(f"tcp/127.0.0.1:{port}" for port in (1, 2)) == ["tcp/127.0.0.1:1", "tcp/127.0.0.1:2"]
+    for endpoints in (None, 5, b"tcp", [b"tcp"]):
+        with pytest.raises(ProgrammerError, match=r"^endpoints are one or several, as text, not "):
+            listed_endpoints(endpoints)  # type: ignore[arg-type]  # that is what is tested
+
+
+def test_an_upgrade_comes_after_some_seconds_or_never() -> None:
+    assert [checked_upgrade(one) for one in (None, 0, 0.5)] == [None, 0.0, 0.5]
+    wrong: tuple[Any, ...] = (-1, float("nan"), float("inf"), True, "5")
+    for seconds in wrong:
+        with pytest.raises(ProgrammerError, match=r"^an upgrade comes after a number of seconds from 0 to 1,000,000"):
+            checked_upgrade(seconds)
 
 
 def test_a_word_is_an_option_or_is_answered_with_the_options() -> None:

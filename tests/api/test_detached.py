@@ -44,10 +44,12 @@ def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> Non
         task_record(task, Method.of(), Policy.REPAIR, "no/name")
 
 
-def test_a_priority_that_no_component_would_take_is_refused() -> None:
+def test_a_priority_that_no_component_would_take_and_an_upgrade_that_never_comes_are_refused() -> None:
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")
     with pytest.raises(ProgrammerError, match="a priority is a whole number"):
         task_record(task, Method.of(), Policy.REPAIR, priority=10**23)
+    with pytest.raises(ProgrammerError, match="an upgrade comes after"):
+        task_record(task, Method.of(), Policy.REPAIR, upgrade=-1)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import selfconf as sc
 from selfconf import LivingEcology, Refusal, discovery, join, template
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
-from selfconf.errors import AuthorError, NetworkError
+from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
@@ -23,6 +23,7 @@ def test_an_ecology_is_found_by_name_by_endpoint_or_as_the_only_one(served: Home
         ((served.ecology,), {}),
         ((), {}),
         ((), {"connect": [served.endpoint()]}),
+        ((), {"connect": served.endpoint()}),
         ((served.ecology,), {"connect": (served.endpoint(),)}),
     ):
         with sc.join(*arguments, **options) as living:
@@ -64,6 +65,16 @@ def test_the_ecology_is_asked_in_sparql(served: Home) -> None:
         (row,) = living.query("SELECT ?g ?place { GRAPH ?g { ?c rob:place ?place } }")
         assert row["place"] == "https://example.org/my-home#kitchen"
         assert living.query("ASK { ?c a sc:Configuration }") is False
+
+
+def test_what_cannot_be_run_is_refused_in_a_sentence(served: Home, clock: sc.TaskSpecification) -> None:
+    with sc.join() as living:
+        with pytest.raises(ProgrammerError, match=r"a task is what selfconf\.template\(\) gives"):
+            living.run("clock.ttl")  # type: ignore[arg-type]  # that is what is tested
+        with pytest.raises(ProgrammerError, match=r"a task is what selfconf\.template\(\) gives"):
+            living.detach("clock.ttl")  # type: ignore[arg-type]  # that is what is tested
+        with pytest.raises(ProgrammerError, match="an upgrade comes after"):
+            living.run(clock, upgrade=-1)
 
 
 def test_stopping_what_is_not_there_says_what_to_try(served: Home) -> None:

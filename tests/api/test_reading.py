@@ -65,6 +65,12 @@ def test_a_graph_is_read_and_so_is_every_graph_of_a_dataset() -> None:
     assert repr(sc.read(dataset)) == "<ecology of 2 components from <graph>>"
 
 
+def test_several_sources_may_come_from_anything_that_gives_them() -> None:
+    found = sc.read(path for path in (Path("examples/clock"), "examples/watch"))
+    assert sorted(found.components) == sorted(sc.read("examples/clock", "examples/watch").components)
+    assert len(sc.read({Path("examples/clock")}).components) == 2
+
+
 def test_standard_input_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(CLOCK_TURTLE.read_bytes())))
     assert names(sc.read("-")) == ["clock"]

@@ -13,8 +13,8 @@ import rdflib
 
 import selfconf as sc
 from selfconf import template
-from selfconf.api.task import pairs
-from selfconf.errors import AuthorError, BindingError, TemplateError, TurtleError
+from selfconf.api.task import completed, pairs
+from selfconf.errors import AuthorError, BindingError, ProgrammerError, TemplateError, TurtleError
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
 from selfconf.rdf.vocabulary import XSD
 from tests.lab import NAVIGATE as NAVIGATION
@@ -128,6 +128,12 @@ def test_unknown_double_and_missing_bindings_are_refused(task: sc.TaskSpecificat
         task.bind(robot=":Pippi")
     with pytest.raises(BindingError, match="needs a value"):
         sc.configure(sc.template(NAVIGATE), home)
+
+
+def test_what_is_no_task_is_refused_in_a_sentence(task: sc.TaskSpecification) -> None:
+    assert completed(task).document == task.complete().document
+    with pytest.raises(ProgrammerError, match=r"^a task is what selfconf\.template\(\) gives, not str$"):
+        completed("examples/navigate.ttl")
 
 
 def test_a_task_does_not_change(task: sc.TaskSpecification) -> None:

@@ -124,3 +124,11 @@ def test_an_advertisement_that_is_none_is_refused(tmp_path: Path) -> None:
         ecology.advertise(PREFIXES)
     with pytest.raises(ProgrammerError, match="add it first"):
         ecology.crash(Screen())
+
+
+def test_what_is_no_task_and_no_policy_is_refused_in_a_sentence() -> None:
+    ecology = MemoryEcology()
+    with pytest.raises(ProgrammerError, match=r"a task is what selfconf\.template\(\) gives"):
+        ecology.run("task.ttl")  # type: ignore[arg-type]  # that is what is tested
+    with pytest.raises(ProgrammerError, match="there is no policy 'mend'"):
+        ecology.run(sc.template(TASK), policy="mend")
