@@ -95,7 +95,8 @@ class LivingEcology(Ecology):
         self.close()
 
     def close(self) -> None:
-        """Leave the ecology; nothing that runs in it is touched."""
+        """Leave the ecology; nothing that runs in it is touched. It can be asked nothing any more, nor run a task."""
+        self._synchronous.leave()
         self._bus.close()
 
     def discover(self) -> Discovery:
@@ -405,6 +406,7 @@ class LivingEcology(Ecology):
         from selfconf.api.run import Run
         from selfconf.configurator import Policy
 
+        self._synchronous.check()
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         chosen = option(Policy, "policy", policy)
         return Run(

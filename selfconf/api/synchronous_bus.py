@@ -7,7 +7,7 @@ from functools import partial
 from typing import TypeVar
 
 from selfconf.bus.port import Bus, Replies
-from selfconf.errors import NetworkError
+from selfconf.errors import NetworkError, ProgrammerError
 
 ROLL_CALL = 3.0
 """How long, in seconds, a roll-call or a question may take, if nothing else is said."""
@@ -22,9 +22,23 @@ class SynchronousBus:
     def __init__(self, bus: Bus, seconds: float = ROLL_CALL) -> None:
         """`seconds` is how long a roll-call or a question may take, unless it says otherwise."""
         self._bus, self._seconds = bus, seconds
+        self._left = False
+
+    def leave(self) -> None:
+        """From now on nothing can be asked: the bus is closed by its owner."""
+        self._left = True
+
+    def check(self) -> None:
+        """Raises ProgrammerError where the ecology was left."""
+        if self._left:
+            raise ProgrammerError("the ecology was left, by `close` or at the end of its `with`; join it again")
 
     def wait(self, begin: Callable[[Callable[[_Result], None]], None]) -> _Result:
-        """Begin something that says when it is done, and return its result. Raises NetworkError if it never does."""
+        """Begin something that says when it is done, and return its result. Raises NetworkError if it never does.
+
+        Raises ProgrammerError where the ecology was left.
+        """
+        self.check()
         results: list[_Result] = []
         begin(results.append)
         deadline = self._bus.now() + ANSWER_PATIENCE

@@ -77,6 +77,24 @@ def test_what_cannot_be_run_is_refused_in_a_sentence(served: Home, clock: sc.Tas
             living.run(clock, upgrade=-1)
 
 
+def test_an_ecology_that_was_left_says_so(served: Home, clock: sc.TaskSpecification) -> None:
+    with sc.join() as living:
+        pass
+    living.close()
+    for ask in (
+        lambda: living.components,
+        lambda: living.tasks,
+        lambda: living.query("ASK {}"),
+        lambda: living.configure(clock),
+        lambda: living.run(clock),
+        lambda: living.detach(clock),
+        lambda: living.stop(),
+    ):
+        with pytest.raises(ProgrammerError, match="the ecology was left"):
+            ask()
+    assert repr(living) == f"<living ecology {served.ecology}>"
+
+
 def test_stopping_what_is_not_there_says_what_to_try(served: Home) -> None:
     with sc.join() as living:
         assert living.stop() == ()

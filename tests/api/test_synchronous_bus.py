@@ -7,7 +7,7 @@ import pytest
 from selfconf.api.synchronous_bus import ANSWER_PATIENCE, SynchronousBus
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
-from selfconf.errors import NetworkError
+from selfconf.errors import NetworkError, ProgrammerError
 
 
 @pytest.fixture
@@ -53,6 +53,14 @@ def test_what_is_not_done_is_trouble_with_its_reason(network: Network) -> None:
         bus.demand("k/refuses", b"", "it did not move")
     with pytest.raises(NetworkError, match="it did not move: it does not answer"):
         bus.demand("k/nobody", b"", "it did not move")
+
+
+def test_nothing_is_asked_once_the_ecology_was_left(network: Network) -> None:
+    bus = SynchronousBus(network.node())
+    bus.leave()
+    for ask in (bus.check, lambda: bus.ask("k/answers"), lambda: bus.living("k/life/*")):
+        with pytest.raises(ProgrammerError, match="the ecology was left"):
+            ask()
 
 
 def test_what_never_ends_is_given_up(network: Network) -> None:
