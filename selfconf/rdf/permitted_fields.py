@@ -17,6 +17,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.number import number_of
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.model.truth import BOOLEAN, TRUTH
 from selfconf.rdf.turtle import SKOLEM
 from selfconf.rdf.vocabulary import RDF, SC, SH, TYPE, UNIT, XSD
 
@@ -98,7 +99,7 @@ COUNT_FROM_ONE = ValueKind(
 TRUE_OR_FALSE = ValueKind(
     "true or false",
     r"(true|false)",
-    literal=lambda lexical, datatype: datatype == XSD.boolean and lexical in ("true", "false"),
+    literal=lambda lexical, datatype: datatype == BOOLEAN and lexical in TRUTH,
 )
 NODE = ValueKind("a node with properties", iri=_always, blank=True)
 ACCEPTED_SHAPE = ValueKind("a shape in brackets", blank=True)

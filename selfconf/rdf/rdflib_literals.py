@@ -16,8 +16,9 @@ from xml.parsers import expat
 
 from rdflib import RDF, XSD, Literal, URIRef
 
+from selfconf.model.truth import TRUTH
+
 _MARKUP = frozenset((RDF.HTML, RDF.XMLLiteral))
-_BOOLEANS = frozenset(("true", "false", "1", "0"))
 
 
 def _worth_logging(record: logging.LogRecord) -> bool:
@@ -31,7 +32,7 @@ def literal(text: str, datatype: URIRef | None, language: str | None = None) -> 
     """A literal of a datatype or in a language."""
     if datatype in _MARKUP:
         return _literal(text, datatype, text, datatype == RDF.XMLLiteral and not _is_xml(text))
-    if datatype == XSD.boolean and text not in _BOOLEANS:
+    if datatype == XSD.boolean and text not in TRUTH:
         return _literal(text, datatype, False, True)
     found = Literal(text, lang=language, datatype=datatype, normalize=False)
     if isinstance(found.value, Decimal) and not found.value.is_finite():

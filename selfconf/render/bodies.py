@@ -19,11 +19,8 @@ from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Operation, Output
 from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import AddComponents, Relaxation
-from selfconf.model.term import IRI, XSD_NAMESPACE, Literal, Term
-
-_BOOLEAN = XSD_NAMESPACE + "boolean"
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
-"""The lexical forms of a truth value (XSD 1.1 part 2, section 3.3.2.2)."""
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.truth import BOOLEAN, TRUTH
 
 
 def configuration_body(configuration: Configuration) -> dict[str, Any]:
@@ -183,7 +180,7 @@ def value_body(value: Term) -> Any:
     """A term: IRIs and strings as text, numbers and truth values as such; JSON has no INF and no NaN."""
     if not isinstance(value, Literal):
         return str(value)
-    if value.datatype == _BOOLEAN:
-        return _TRUTH.get(value.lexical, value.lexical)
+    if value.datatype == BOOLEAN:
+        return TRUTH.get(value.lexical, value.lexical)
     number = plain_number(value)
     return value.lexical if number is None else number

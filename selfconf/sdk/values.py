@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from selfconf.model.number import DATATYPES, plain_number
-from selfconf.model.term import XSD_NAMESPACE, Literal, Term
-
-BOOLEAN = XSD_NAMESPACE + "boolean"
-TRUTH = {"true": True, "1": True, "false": False, "0": False}
-"""The lexical forms of a truth value (XSD 1.1 Part 2, section 3.3.2)."""
+from selfconf.model.term import Literal, Term
+from selfconf.model.truth import BOOLEAN, TRUTH
 
 
 def as_python(term: Term) -> bool | int | float | str:

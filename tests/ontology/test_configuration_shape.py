@@ -6,12 +6,14 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 
 import pyshacl
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from rdflib import Graph
 
 from selfconf import library
 from selfconf.rdf.linear_patterns import linear_patterns
+from selfconf.rdf.positions import parse_with_positions
 from tests.effort import examples
 
 SHAPES = Graph().parse(next(path for path in library.shapes() if path.stem == "configuration"))
@@ -136,6 +138,15 @@ def worlds(draw: st.DrawFn) -> World:
     if len(world.cast) > 1 and draw(st.integers(0, 3)) == 0:
         connections.add((world.cast[0][1], "x", world.cast[1][1], "i"))
     return replace(world, connections=frozenset(connections))
+
+
+@pytest.mark.parametrize(("optional", "conforms"), [("true", True), ("1", True), ("false", False), ("0", False)])
+def test_an_optional_input_need_not_be_fed_however_that_is_written(optional: str, conforms: bool) -> None:
+    alone = World(frozenset(), (), {"a": ()}, {"a": ()}, {"r": (None, None)}, (("r", "a"),))
+    said = f'"{optional}"^^<http://www.w3.org/2001/XMLSchema#boolean>'
+    wanting = f'\n:a sc:hasInput [ sc:name "i" ; sc:signalType :Text ; sc:optional {said} ] .'
+    data, _ = parse_with_positions(alone.turtle() + wanting, "")
+    assert pyshacl.validate(data, shacl_graph=SHAPES)[0] is conforms
 
 
 @settings(max_examples=examples(40), deadline=None, suppress_health_check=[HealthCheck.too_slow])

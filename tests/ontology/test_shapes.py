@@ -10,6 +10,7 @@ from rdflib.term import Node
 
 from selfconf import library
 from selfconf.model.codes import BY_SHAPE
+from selfconf.rdf.positions import parse_with_positions
 from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.validation.shape_violations import reported_violations
 from selfconf.rdf.validation.well_formedness import shape_of_shapes
@@ -162,3 +163,19 @@ TEMPLATE = """\
 @pytest.mark.parametrize("text", [ADVERTISEMENTS, TEMPLATE, *(path.read_text() for path in library.ontologies())])
 def test_what_is_right_conforms(text: str) -> None:
     assert not list(reported_violations(Graph().parse(data=text, format="turtle"), READ))
+
+
+@pytest.mark.parametrize(("text", "conforms"), [("1", True), ("0", True), ("TRUE", False)])
+@pytest.mark.parametrize(
+    "said",
+    [
+        "@prefix : <#> . :r a sc:Role ; sc:recruits VALUE .",
+        '[] rob:field ( [ rob:fieldName "on" ; rob:datatype xsd:boolean ; rob:optional VALUE ] ) .',
+        '[] rob:field ( [ rob:fieldName "on" ; rob:datatype xsd:boolean ; rob:repeated VALUE ] ) .',
+    ],
+)
+def test_a_truth_value_conforms_however_it_is_written(said: str, text: str, conforms: bool) -> None:
+    prefixes = TEMPLATE[: TEMPLATE.index("@prefix : ")]
+    data, _ = parse_with_positions(prefixes + said.replace("VALUE", f'"{text}"^^xsd:boolean'), "")
+    broken = {violation.shape.removeprefix(SHAPES) for violation in reported_violations(data, READ)}
+    assert conforms == broken.isdisjoint({"Recruits", "FieldOptional", "FieldRepeated"})

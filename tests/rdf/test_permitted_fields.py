@@ -90,7 +90,7 @@ ASKED: dict[int, set[tuple[str, object]]] = {
         ("minInclusive", 1),
         ("maxInclusive", MOST),
     },
-    id(TRUE_OR_FALSE): {("in", (Literal(True), Literal(False)))},
+    id(TRUE_OR_FALSE): {("datatype", XSD.boolean)},
     id(NODE): {("nodeKind", SH.BlankNodeOrIRI)},
     id(ACCEPTED_SHAPE): {("nodeKind", SH.BlankNode)},
     id(NAMED_OR_TEXT): {
@@ -233,11 +233,17 @@ COMPONENTS = {
     ":c a sc:Component, :L ; sc:grounding [ VALUE ] .": GROUNDING,
 }
 PLACES = [(field, text) for text, subject in COMPONENTS.items() for field in subject.fields]
+SHAREABLE, OPTIONAL = (
+    next(place for place in PLACES if place[0].predicate == field) for field in (SC.shareable, SC.optional)
+)
 
 
 @given(st.sampled_from(PLACES), VALUES)
 @example(PLACES[4], '"1_000"^^xsd:integer')
 @example(PLACES[4], '"true"^^xsd:boolean')
+@example(SHAREABLE, '"1"^^xsd:boolean')
+@example(SHAREABLE, '"TRUE"^^xsd:boolean')
+@example(OPTIONAL, '"0"^^xsd:boolean')
 def test_shape_and_careful_reader_agree_on_any_value_anywhere(place: tuple[Field, str], value: str) -> None:
     text = PREFIXES + place[1].replace("VALUE", f"<{place[0].predicate}> {value}")
     broken, refused = verdicts(text)

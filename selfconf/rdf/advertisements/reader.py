@@ -24,6 +24,7 @@ from selfconf.model.profile import (
     shared_ports,
 )
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.truth import truth
 from selfconf.rdf.advertisements.accepted_shapes import ShapeNotAccepted, accepted_shape
 from selfconf.rdf.advertisements.advertisement import (
     Advertisement,
@@ -187,8 +188,7 @@ class _Reader:
 
     def _needed(self, name: str, node: Term) -> Input:
         optional = self._field_of_port(node, name, NEEDED_OPERATION[SC.optional])
-        truth = isinstance(optional, Literal) and optional.lexical == "true"
-        return needed_operation(name, *self._types_of_call(name, node), truth)
+        return needed_operation(name, *self._types_of_call(name, node), truth(optional) is True)
 
     def _input(self, name: str, node: Term) -> Input:
         unit, frame = self._unit(node, name), self._field_of_port(node, name, INPUT[SC.frame])
@@ -199,7 +199,7 @@ class _Reader:
             name,
             self._signals(node, name),
             int(depth.lexical) if isinstance(depth, Literal) else None,
-            isinstance(optional, Literal) and optional.lexical == "true",
+            truth(optional) is True,
             Condition(unit, frame, accepts) if unit or frame or accepts else None,
         )
 
@@ -267,8 +267,7 @@ class _Reader:
         return NO_PREFERENCE if value is None else number(value) or NO_PREFERENCE
 
     def _shareable(self) -> bool | None:
-        value = self._setting(COMPONENT[SC.shareable])
-        return None if value is None else value.lexical == "true"
+        return truth(self._setting(COMPONENT[SC.shareable]))
 
     def _restarts(self) -> int | None:
         value = self._setting(COMPONENT[SC.restarts])

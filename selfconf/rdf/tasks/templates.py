@@ -15,6 +15,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.profile import Place
 from selfconf.model.template import MOST_PRIORITY, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.truth import truth
 from selfconf.rdf.shacl import ONLY_WITH_A_PATH, misfit
 from selfconf.rdf.tasks.costs import cost_of
 from selfconf.rdf.tasks.interactions import interactions_of
@@ -198,8 +199,8 @@ class _Reader(DocumentReader):
         if not values:
             return False
         value = values[0]
-        truth = isinstance(value, Literal) and value.datatype == XSD.boolean and value.lexical in ("true", "false")
-        if len(values) > 1 or (isinstance(value, Literal) and not truth):
+        said = truth(value)
+        if len(values) > 1 or (isinstance(value, Literal) and said is None):
             problem = f"sc:recruits of the role {worded(role)} is true, false, or one shape of its suppliers"
             raise self.mistake(problem, role, SC.recruits, values[-1])
         if not isinstance(value, Literal):
@@ -213,7 +214,7 @@ class _Reader(DocumentReader):
                 problem = f"the shape of what the role {worded(role)} recruits is not well-formed: {wrong[1]}"
                 raise self.mistake(problem, *wrong[0])
             return True
-        return value.lexical == "true"
+        return said is True
 
     def _shape(self, role: IRI) -> None:
         """Raises where the shape of a role is certainly no shape."""

@@ -53,7 +53,10 @@ CLAUSES = st.one_of(
         "sc:hasParameter [ sc:name {} ; sc:parameterType {} ]".format, NAMES, st.sampled_from((":Goal", "'Goal'"))
     ),
     st.builds("sc:preference {}".format, st.sampled_from(("1", "2.5", '"high"', "1 , 1", "1 , 2"))),
-    st.builds("sc:shareable {}".format, st.sampled_from(("true", "false", '"yes"', "true , false", "1"))),
+    st.builds(
+        "sc:shareable {}".format,
+        st.sampled_from(("true", "false", '"1"^^xsd:boolean', '"yes"', "true , false", "1")),
+    ),
     st.builds("sc:restarts {}".format, st.sampled_from(("0", "5", "-1", "2.5", "1 , 2", "9999999"))),
     st.builds(
         "sc:{} [ sc:value {} ; sc:unit {} ]".format,

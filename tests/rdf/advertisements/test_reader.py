@@ -96,6 +96,17 @@ def test_how_a_component_is_run_is_read() -> None:
     assert (profile.tolerates, profile.deadline, profile.restarts, profile.shareable) == (0.5, 3.0, 0, False)
 
 
+@pytest.mark.parametrize(("text", "value"), [("true", True), ("1", True), ("false", False), ("0", False)])
+def test_a_truth_value_is_read_however_it_is_written(text: str, value: bool) -> None:
+    said = f'"{text}"^^xsd:boolean'
+    profile = one(
+        f":x a sc:Component, :L ; sc:shareable {said} ; sc:hasInput {PORT} ; sc:optional {said} ] ;"
+        f' sc:needsOperation [ sc:name "light" ; sc:optional {said} ] .'
+    ).profile
+    assert profile.shareable is value
+    assert [port.optional for port in profile.inputs] == [value, value]  # what is needed of others is an input, too
+
+
 def test_operations_are_read_with_their_types() -> None:
     profile = one(
         ':x a sc:Component, :L ; sc:hasOperation [ sc:name "photo" ; sc:response :Image ] , [ sc:name "move" ;'

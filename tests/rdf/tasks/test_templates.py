@@ -56,6 +56,13 @@ def test_a_role_asks_for_exactly_one_unless_it_says_otherwise(counts: str, minim
     assert (role.minimum, role.maximum) == (minimum, maximum)
 
 
+@pytest.mark.parametrize(("text", "value"), [("true", True), ("1", True), ("false", False), ("0", False)])
+def test_a_role_says_that_it_recruits_by_a_truth_value_however_it_is_written(text: str, value: bool) -> None:
+    said = f'sc:recruits "{text}"^^xsd:boolean'
+    (role,) = read(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; {said} ; sh:class :L .").template.roles
+    assert role.recruits is value
+
+
 def test_the_long_form_of_an_interaction_names_ports() -> None:
     template = read(
         f":t a sc:Template ; sc:roles ( :r :s ) . {ROLE} :s a sc:Role . :r sc:feeds :s ."
