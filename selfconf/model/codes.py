@@ -409,8 +409,8 @@ CODES: tuple[Code, ...] = (
         ("TaskTyped", "TaskTemplateOnce", "TaskTemplateIri"),
     ),
     Code(
-        "SC-K02", "A binding has exactly one parameter and exactly one value.",
-        "To leave a parameter free, leave out its binding.",
+        "SC-K02", "A binding has exactly one parameter and exactly one value, which the parameter allows.",
+        "To leave a parameter free, leave out its binding. Values are judged where the parameter stands in the file.",
         f"{_BOUND}:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ] .",
         f"{_BOUND}:music a sc:Task ; sc:template :radio ; sc:binding [ sc:parameter :room ; sc:value :kitchen ] .",
         ("BindingNode", "BindingParameterOnce", "BindingParameterIri", "BindingValueOnce"),

@@ -8,7 +8,7 @@ import rdflib
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.rdflib_literals import literal
-from selfconf.rdf.turtle import Triple
+from selfconf.rdf.turtle import Document, Node, Triple
 
 
 def to_rdflib(triples: Iterable[Triple], store: str = "default") -> rdflib.Graph:
@@ -49,3 +49,13 @@ def from_rdflib(node: rdflib.term.Node) -> Term:
             datatype = IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString")
         return Literal(str(node), datatype, node.language)
     return BlankNode(f"_:{node}")
+
+
+def to_document(triples: Iterable[tuple[rdflib.term.Node, ...]], source: str) -> Document:
+    """The statements of an rdflib graph, in a given order, as the readers of Turtle take them."""
+    statements: dict[Node, list[tuple[IRI, Term]]] = {}
+    for subject, predicate, value in triples:
+        about = from_rdflib(subject)
+        assert not isinstance(about, Literal)
+        statements.setdefault(about, []).append((IRI(str(predicate)), from_rdflib(value)))
+    return Document(source, statements, {})

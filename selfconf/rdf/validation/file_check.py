@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from rdflib import Graph
 
-from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.model.immutable import immutable
 from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.positions import NotTurtleError, Positions, parse_with_positions
@@ -17,6 +17,7 @@ from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.terms import lint
 from selfconf.rdf.validation.shape_violations import Shapes, shape_violations
 from selfconf.rdf.validation.term_index import TermIndex
+from selfconf.rdf.validation.unfit_values import unfit_values
 from selfconf.rdf.validation.well_formedness import endless_lists, malformed_roles
 
 FILE_SECONDS = 120.0
@@ -65,5 +66,7 @@ class FileCheck:
                 *malformed_roles(graph, positions),
                 *unaccepted_shapes(graph, positions),
             ]
+            if not any(each.severity is Severity.ERROR for each in violations):  # else a parameter may be no shape
+                violations += unfit_values(graph, positions)
         file = LintedFile(graph, positions, self.index, elsewhere, self.shapes.all)
         return violations + lint(file, conforms=not violations)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import rdflib
 from rdflib import BNode, Graph, URIRef
 
 from selfconf.model.diagnostic import Diagnostic
-from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.advertisements import ShapeNotAccepted, statements_of_shape
 from selfconf.rdf.positions import Positions
-from selfconf.rdf.rdflib_terms import from_rdflib
+from selfconf.rdf.rdflib_terms import from_rdflib, to_document
 from selfconf.rdf.shacl import misfit
-from selfconf.rdf.turtle import Document, Node, Triple
+from selfconf.rdf.turtle import Triple
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.vocabulary import SC
 
@@ -26,7 +25,7 @@ def unaccepted_shapes(graph: Graph, positions: Positions) -> Iterator[Diagnostic
     }
     # In the order of the text, so that of two statements that do not go together the later one is blamed.
     said = sorted(graph, key=lambda one: _offset(positions, one)) if shapes else ()
-    document = _document(said, positions.file)
+    document = to_document(said, positions.file)
     wrong: tuple[Triple | None, str] | None
     for shape in shapes:
         try:
@@ -42,13 +41,3 @@ def _offset(positions: Positions, triple: tuple[rdflib.term.Node, rdflib.term.No
     """Where the object of a statement stands; the beginning, where that is not known."""
     offsets = positions.triples.get(triple)
     return 0 if offsets is None else offsets.object
-
-
-def _document(graph: Iterable[tuple[rdflib.term.Node, ...]], source: str) -> Document:
-    """The statements of a graph as the reader of advertisements takes them."""
-    statements: dict[Node, list[tuple[IRI, Term]]] = {}
-    for subject, predicate, value in graph:
-        about = from_rdflib(subject)
-        assert not isinstance(about, Literal)
-        statements.setdefault(about, []).append((IRI(str(predicate)), from_rdflib(value)))
-    return Document(source, statements, {})

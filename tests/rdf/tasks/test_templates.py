@@ -154,11 +154,12 @@ def test_what_cannot_be_read_is_one_sentence_that_names_the_file(text: str, sent
 def wrong_about_templates() -> list[Path]:
     """The bad files whose first line promises an error about a template or a task, or a list without an end.
 
-    Not those about what a composite binds, which stands in its advertisement.
+    Not those about what a composite binds, which stands in its advertisement, nor those about values that a parameter
+    does not allow by more than its datatype and kind: `complete` judges these.
     """
     files = sorted((Path(__file__).parents[2] / "bad").glob("*.ttl"))
     wrong = [file for file in files if re.search(r"error\[SC-([TK]|S06)", file.read_text("utf-8").partition("\n")[0])]
-    return [file for file in wrong if not file.stem.startswith("composite-")]
+    return [file for file in wrong if not file.stem.startswith(("composite-", "unfit-"))]
 
 
 @pytest.mark.parametrize("path", wrong_about_templates(), ids=lambda path: path.stem)
