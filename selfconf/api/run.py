@@ -249,6 +249,9 @@ class Run:
         """A refusal that says where its facts stand, which takes no time to find out."""
         return Places(self.task.document.task.template, self._described()).placed(refusal)
 
+    def __repr__(self) -> str:
+        return f"<run of {self.task_name}: {self._runner.state.phase.value}>"
+
     def _check(self) -> None:
         if self._rests_on():
             self._bus.later(CHECK, self._check)

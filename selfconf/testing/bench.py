@@ -201,6 +201,9 @@ class ComponentBench:
         if self._run is not None:
             self._run.stop()
 
+    def __repr__(self) -> str:
+        return f"<bench of {self.profile.component.short}, which {'acts' if self.active else 'does not act'}>"
+
     def _template(self, parameters: dict[str, str | int | float | bool]) -> str:
         """A template in which the component plays, fed by a probe for each input and heard by one for each output."""
         profile = self.profile

@@ -24,6 +24,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import Document, parse
+from selfconf.render import count
 from selfconf.sdk import Component, ComponentRuntime
 from selfconf.site import Shelf, Site
 
@@ -108,6 +109,9 @@ class MemoryRun:
         """Take the configuration down, and let the time pass that it takes."""
         self._runner.stop()
         self._ecology.until(lambda: self.ended)
+
+    def __repr__(self) -> str:
+        return f"<run of {self._task.task.template.iri.short}: {self.phase}>"
 
     def _report(self, event: RunEvent) -> None:
         self.events.append(answered_event(event, self._task))
@@ -217,6 +221,9 @@ class MemoryEcology:
     def until(self, condition: Callable[[], bool], seconds: float = UNTIL_SECONDS) -> bool:
         """Let simulated time pass until something holds; returns whether it does."""
         return self.network.run(condition, seconds)
+
+    def __repr__(self) -> str:
+        return f"<ecology in memory of {count(len(self.advertisements), 'component')} after {self.time:.1f} s>"
 
     def _advertised(self, component: Component, advertisement: str | Path | None) -> Advertisement:
         """What is advertised of a component that is to live."""

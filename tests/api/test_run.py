@@ -44,6 +44,7 @@ def test_events_are_values_in_the_order_in_which_things_happen(served: Home, clo
             for event in run.events():
                 seen.append(event)
                 if isinstance(event, TaskRunning):
+                    assert repr(run) == "<run of tell-the-time: running>"
                     assert run.configuration == event.configuration
                     assert event.configuration == would_be
                     assert run.configuration is not None

@@ -79,8 +79,10 @@ def test_a_failure_is_told_and_a_stop_brings_it_to_rest() -> None:
     thermostat = Thermostat()
     bench = ComponentBench(thermostat, ADVERTISEMENT)
     assert not bench.active
+    assert repr(bench) == "<bench of thermostat, which does not act>"
     bench.start()
     assert bench.active
+    assert repr(bench) == "<bench of thermostat, which acts>"
     assert bench.failure is None
     bench.send("temperature", {"celsius": 2000.0})
     assert bench.failure == "it burns"

@@ -113,6 +113,8 @@ def test_what_runs_is_read_by_role_as_an_answer_of_the_library_is() -> None:
     assert run.configuration is not None
     assert run.configuration == running.configuration
     assert run.configuration["source"] == ("urn:test:a",)
+    assert repr(run) == "<run of tell: running>"
+    assert repr(ecology).startswith("<ecology in memory of 2 components after ")
     assert run.configuration.to_mermaid()
 
 
