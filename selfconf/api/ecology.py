@@ -87,14 +87,22 @@ class Ecology(ABC):
     display    Display  text
     """
 
-    left_out: tuple[LeftOut, ...] = ()
-    """The advertisements that do not count, and why."""
-    complaints: tuple[str, ...] = ()
-    """What else was left out of the answers of a living ecology, a sentence each."""
+    _left_out: tuple[LeftOut, ...] = ()
+    _complaints: tuple[str, ...] = ()
     remote = False
     """Whether only what a task may want is fetched."""
     read_seconds = 0.0
     """How long its advertisements took to be read, where that was before any task."""
+
+    @property
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """The advertisements that do not count, and why."""
+        return self._left_out
+
+    @property
+    def complaints(self) -> tuple[str, ...]:
+        """What else was left out of the answers of a living ecology, a sentence each."""
+        return self._complaints
 
     def close(self) -> None:
         """Leave the ecology, where that means something."""
@@ -171,7 +179,7 @@ class LoadedEcology(Ecology):
     def __init__(
         self, index: AdvertisementIndex, left_out: tuple[LeftOut, ...] = (), names: Iterable[str] = ()
     ) -> None:
-        self._index, self.left_out, self.names = index, left_out, tuple(names)
+        self._index, self._left_out, self.names = index, left_out, tuple(names)
 
     def advertisements(self) -> AdvertisementIndex:
         """All advertisements by component, and by the types of the components."""
@@ -199,7 +207,7 @@ class EndpointEcology(Ecology):
         from selfconf.query import read_endpoint
 
         found, left_out = read_endpoint(self.url, (*partitioner.roles, *partitioner.suppliers.values()), wider)
-        self.left_out = tuple(left_out)
+        self._left_out = tuple(left_out)
         return found
 
     def asked(self, question: Question) -> Shown:

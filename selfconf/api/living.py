@@ -106,7 +106,7 @@ class LivingEcology(Ecology):
             f"site {site} lives, but did not answer in full; what it advertises may be missing"
             for site in self.discovery.missing
         )
-        self.complaints = (*self.discovery.complaints, *missing)
+        self._complaints = (*self.discovery.complaints, *missing)
         return self.discovery
 
     def advertisements(self) -> Mapping[IRI, Advertisement]:
@@ -149,7 +149,7 @@ class LivingEcology(Ecology):
             found.append(one)
         if silent and self._looks_on_only:
             silent = ["components do not tell those who may look on only how they are; that takes keys of conf.NAME"]
-        self.complaints = (*self.complaints, *silent)
+        self._complaints = (*self.complaints, *silent)
         return tuple(found)
 
     def out_of_control(self) -> Mapping[IRI, str]:
@@ -265,14 +265,14 @@ class LivingEcology(Ecology):
 
     def _complaining(self, found: _Result) -> _Result:
         """Take over what was wrong with what configurators have answered."""
-        self.complaints = self._tasks.complaints
+        self._complaints = self._tasks.complaints
         return found
 
     def access(self) -> tuple[SiteAccess, ...]:
         """Who may do what at the hub of each site that has keys, and what was refused there; sorted by site."""
         replies = self._synchronous.ask(self._view.keys.access())
         found, complaints = site_accesses(replies, self.discover().found)
-        self.complaints = complaints
+        self._complaints = complaints
         return found
 
     def other_logs(self, known: Collection[str], complain: Callable[[str], None]) -> list[LogSource]:
@@ -319,7 +319,7 @@ class LivingEcology(Ecology):
                 complaints.append(f"left out a configuration: {error}")
                 continue
             dataset.add(IRI(f"urn:selfconf:{sample.key}"), document.triples())
-        self.complaints = tuple(complaints)
+        self._complaints = tuple(complaints)
         return dataset
 
     def why(self, term: str, at: float | None = None) -> list[str]:
@@ -346,7 +346,7 @@ class LivingEcology(Ecology):
                 sentences += told_why(task_name(notices[0].task), events, term, at, passed_over.get(configurator, {}))
             except PeerError as error:
                 rejected.append(f"left out an answer: {error}")
-        self.complaints = tuple(rejected)
+        self._complaints = tuple(rejected)
         return sentences
 
     def _passed_over(self) -> dict[str, dict[str, list[str]]]:

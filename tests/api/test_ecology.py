@@ -30,6 +30,12 @@ def test_components_are_found_by_iri_with_their_profiles(home: sc.Ecology) -> No
     assert bool(sc.read("@prefix : <x:> ."))
 
 
+def test_what_is_said_of_an_ecology_cannot_be_changed(home: sc.Ecology) -> None:
+    for name in ("left_out", "complaints", "components"):
+        with pytest.raises(AttributeError):
+            setattr(home, name, ())
+
+
 def test_components_print_as_a_table(home: sc.Ecology) -> None:
     assert repr(home) == "<ecology of 6 components from examples/peis-home>"
     head, line, *rows = repr(home.components).splitlines()
