@@ -87,9 +87,8 @@ class Partitioner:
         self.free = free_parameters(given.task.template, given.task.bindings)
         self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
         self.roles = tuple(map(self._compiled, given.task.template.roles))
-        unbound = {iri: parameter.name for iri, parameter in self._parameters.items() if iri in self.free}
         self.suppliers = {
-            number: suppliers_of(self.document, role.iri, unbound)
+            number: suppliers_of(self.document, role.iri)
             for number, role in enumerate(given.task.template.roles)
             if role.recruits
         }

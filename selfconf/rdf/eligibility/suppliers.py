@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
-from selfconf.errors import TemplateError
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.eligibility.compiler import compile_role
 from selfconf.rdf.eligibility.role_tests import CompiledRole
-from selfconf.rdf.tasks import mentions
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC
 
@@ -33,16 +30,12 @@ def with_named_suppliers(document: Document) -> Document:
     return replace(document, statements=statements)
 
 
-def suppliers_of(document: Document, role: IRI, free: Mapping[IRI, str]) -> CompiledRole:
+def suppliers_of(document: Document, role: IRI) -> CompiledRole:
     """The tests that a supplier has to pass; none where a role recruits anybody.
 
-    `free` are the parameters without a value, with their names. Raises TemplateError where the shape mentions one, or
-    is none.
+    The parameters in its shape have values, by which they are replaced. Raises TemplateError where it is no shape.
     """
     shape = document.value(role, SC.recruits)
     if shape is None or isinstance(shape, Literal) or not isinstance(shape, IRI):
         return CompiledRole(role, (), complete=True)
-    for name in sorted(free[parameter] for parameter in mentions(document, shape, frozenset(free))):
-        problem = f"the shape of what the role {role!r} recruits mentions {name}, which has no value; bind {name}"
-        raise TemplateError(problem, file=document.source)
     return compile_role(document, shape, (), frozenset())

@@ -16,10 +16,10 @@ from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import LITERAL
 from selfconf.rdf.tasks.parameter_values import misfits
-from selfconf.rdf.tasks.role_shapes import shape_statements
+from selfconf.rdf.tasks.role_shapes import mentions, shape_statements
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import Document
-from selfconf.rdf.vocabulary import SH, XSD
+from selfconf.rdf.vocabulary import SC, SH, XSD
 
 _CURIE = re.compile(r"([A-Za-z][\w.-]*)?:[^\s\"'<>()]*")
 _LOCAL = re.compile(r"[A-Za-z]\w*")
@@ -111,7 +111,7 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
                 )
             elif place := _rigid(given, parameter):
                 raise BindingError(
-                    f"the parameter {parameter.name!r} cannot be left free, for it stands in sh:{place.short}; "
+                    f"the parameter {parameter.name!r} cannot be left free, for it stands in {place}; "
                     f"give it a value with --bind {parameter.name}=..."
                 )
         if parameter.iri in bindings:
@@ -119,14 +119,22 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
     return TaskDocument(replace(task, bindings=bindings), document)
 
 
-def _rigid(given: TaskDocument, parameter: Parameter) -> IRI | None:
-    """The property of a shape in which a parameter stands and which asks for a literal, or a path: none is searched."""
+def _rigid(given: TaskDocument, parameter: Parameter) -> str | None:
+    """The property by which a parameter stands where no value is searched, as it is written; None if there is none.
+
+    These are those properties of a role's shape that ask for a literal, paths, and `sc:recruits`.
+    """
+    document = given.document
     for role in given.task.template.roles:
-        for predicate, value in shape_statements(given.document, role.iri):
+        for predicate, value in shape_statements(document, role.iri):
             if predicate in LITERAL and value == parameter.iri:
-                return predicate
-            if predicate in _PATHS and parameter.iri in _steps(given.document, value):
-                return predicate
+                return f"sh:{predicate.short}"
+            if predicate in _PATHS and parameter.iri in _steps(document, value):
+                return f"sh:{predicate.short}"
+        if any(
+            mentions(document, shape, frozenset((parameter.iri,))) for shape in document.values(role.iri, SC.recruits)
+        ):
+            return "sc:recruits"
     return None
 
 

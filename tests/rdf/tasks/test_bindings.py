@@ -164,3 +164,27 @@ def test_a_limit_cannot_be_left_free(place: str) -> None:
     with pytest.raises(BindingError, match=rf"'x' cannot be left free, for it stands in sh:{place}; .*--bind x="):
         bindings.complete(task)
     assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings
+
+
+@pytest.mark.parametrize("recruits", ["[ sh:property [ sh:path :n ; sh:in ( :x ) ] ]", ":shape . :shape sh:class :x"])
+def test_a_shape_of_recruits_cannot_be_left_free(recruits: str) -> None:
+    text = (
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
+        " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ."
+        f" :shape a sh:NodeShape . :r a sc:Role ; sh:class :A ; sc:recruits {recruits} ."
+    )
+    task = templates.read_task(turtle.parse(text, "t.ttl"))
+    for later in ((), ("x",)):
+        with pytest.raises(BindingError, match=r"'x' cannot be left free, for it stands in sc:recruits; .*--bind x="):
+            bindings.complete(task, later)
+    assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings
+
+
+def test_a_shape_of_recruits_has_the_default_of_its_parameter_until_that_has_another_value() -> None:
+    text = (
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
+        " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ; sh:defaultValue 3 ."
+        " :r a sc:Role ; sh:class :A ; sc:recruits [ sh:property [ sh:path :n ; sh:in ( :x ) ] ] ."
+    )
+    task = templates.read_task(turtle.parse(text, "t.ttl"))
+    assert list(bindings.complete(task, ("x",)).task.bindings) == ["urn:x:x"]
