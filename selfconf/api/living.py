@@ -298,7 +298,7 @@ class LivingEcology(Ecology):
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
         """Whom each component of a deployed task hears, by what its configurator says; None if nobody runs it."""
-        names = {status.configurator for status in self.tasks if task_name(status.task) == task}
+        names = {status.configurator for status in self.tasks if status.name == task}
         if not names:
             return None
         heard: dict[IRI, set[IRI]] = {c: set() for s in self.tasks if s.configurator in names for c in s.components}

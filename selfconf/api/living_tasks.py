@@ -47,9 +47,8 @@ class LivingTask:
     @classmethod
     def of(cls, status: Status, detached: bool) -> LivingTask:
         """A task that a configurator runs."""
-        name = task_name(status.task)
         return cls(
-            name,
+            status.name,
             status.priority,
             status.beginning,
             status.phase,
@@ -170,7 +169,7 @@ class LivingTasks:
         Raises NetworkError if there is none of that name, or if one does not answer or does not end in time, or if a
         component was turned off and does not obey; of all tasks those are taken down first that answer.
         """
-        running = [s for s in self.running() if name in (None, s.configurator, task_name(s.task))]
+        running = [s for s in self.running() if name in (None, s.configurator, s.name)]
         kept = self.kept(name)
         silent = [one for one in self.silent if name in (None, one)]
         if name is not None:
@@ -183,7 +182,7 @@ class LivingTasks:
             lives = self._bus.living(self._keys.any_configurator_life())
             troubles += map(_said_of_silent, sorted({owner_of(key) for key in lives}.intersection(silent)))
         _raise_for(troubles)
-        names = {task_name(status.task) or status.configurator for status in running}
+        names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
     def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:

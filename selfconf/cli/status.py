@@ -81,14 +81,13 @@ def _holders(inside: Status, found: Sequence[Status]) -> list[Status]:
 
 def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> Iterator[str]:
     """A task for people: who runs it, what is deployed, and what is wrong."""
-    from selfconf.protocol.keys import task_name
     from selfconf.render import duration
 
     phase = paint(status.phase, STATE_COLOURS.get(status.phase, ""))
     lasts = duration(time.time() - status.since)
     of = "" if status.outside is None else f"inside of {names(status.outside)}: "
     yield f"{of}{names(status.template)}: {phase} for {lasts}, epoch {status.epoch}"
-    yield f"  task {task_name(status.task)}, priority {status.priority}"
+    yield f"  task {status.name}, priority {status.priority}"
     yield f"  configurator {status.configurator}, process {status.process} on {status.host}"
     for line in _held(status, names) if deployed is None else _configuration(deployed, status, names):
         yield f"  {line}"
@@ -128,8 +127,6 @@ def _value(value: Any, names: Names) -> str:
 
 
 def _body(status: Status, deployed: Mapping[str, Any] = MappingProxyType({})) -> dict[str, object]:
-    from selfconf.protocol.keys import task_name
-
     return {
         "configurator": status.configurator,
         "phase": status.phase,
@@ -141,7 +138,7 @@ def _body(status: Status, deployed: Mapping[str, Any] = MappingProxyType({})) ->
         "process": status.process,
         "components": list(status.components),
         "lost": dict(status.lost),
-        "task": task_name(status.task),
+        "task": status.name,
         "priority": status.priority,
         "beginning": status.beginning,
         "owed": list(status.owed),

@@ -15,6 +15,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, Term
 from selfconf.model.wants import Wants
+from selfconf.protocol.keys import task_name
 
 
 class Cause(str, Enum):
@@ -358,6 +359,11 @@ class Status:
     """The composite of which the task is the inside, if it is one."""
     wants: Mapping[IRI, Wants] = field(default_factory=dict)
     """What the task wants of those components that can be shared, where it wants anything of them."""
+
+    @property
+    def name(self) -> str:
+        """The name of the task, as its user knows it."""
+        return task_name(self.task)
 
 
 @immutable

@@ -64,7 +64,7 @@ def test_another_thread_sees_the_task_and_may_stop_it(served: Home, clock: sc.Ta
 
     def watch(run: sc.Run) -> None:
         with sc.join(served.ecology) as other:
-            seen.append(tuple(f"{status.configurator} {status.phase}" for status in other.tasks))
+            seen.append(tuple(f"{status.name} {status.configurator} {status.phase}" for status in other.tasks))
             assert other.query("ASK { ?c a sc:Configuration }") is True
             assert other.stop(run.name) == ("tell-the-time",)
 
@@ -76,7 +76,7 @@ def test_another_thread_sees_the_task_and_may_stop_it(served: Home, clock: sc.Ta
                 watcher.start()
         watcher.join(20)
         assert isinstance(last, TaskStopped)
-        assert seen == [(f"{run.name} running",)]
+        assert seen == [(f"tell-the-time {run.name} running",)]
 
 
 def test_leaving_the_block_by_an_error_takes_everything_down(served: Home, clock: sc.TaskSpecification) -> None:
