@@ -34,7 +34,7 @@ class ModelReferences:
         found = follower.thing(thing, source.name, 0)
         if follower.missed:
             reason = "what they refer to is not among the sources, is too far away, or is a circle; nothing is fetched"
-            self.ledger.leave_out("references to other models", reason, source, follower.missed)
+            self.ledger.leave_out("references to other models", reason, source, len(follower.missed))
         return found
 
 
@@ -43,7 +43,9 @@ class _Follower:
 
     def __init__(self, documents: Mapping[str, Any]) -> None:
         self.documents = documents
-        self.followed = self.missed = 0
+        self.followed = 0
+        self.missed: set[int] = set()
+        """By the identity of the link or affordance in which it stands, each reference that leads to nothing."""
 
     def thing(self, thing: dict[str, Any], name: str, depth: int) -> dict[str, Any]:
         """A thing with what its links and its affordances refer to."""
@@ -51,7 +53,7 @@ class _Follower:
         links = thing.get("links")
         for link in links if isinstance(links, list) else ():
             if isinstance(link, dict) and link.get("rel") == "tm:extends":
-                found = self._found(str(link.get("href")), thing, name, depth)
+                found = self._found(link, str(link.get("href")), thing, name, depth)
                 if found is not None:
                     base = self.thing(found[0], found[2], depth + 1)
                     inherited = _patched(inherited, {key: value for key, value in base.items() if key != "links"})
@@ -71,13 +73,13 @@ class _Follower:
         if not isinstance(affordance, dict) or not isinstance(affordance.get("tm:ref"), str):
             return affordance
         rest = {key: value for key, value in affordance.items() if key != "tm:ref"}
-        found = self._found(affordance["tm:ref"], thing, name, depth)
+        found = self._found(affordance, affordance["tm:ref"], thing, name, depth)
         return rest if found is None else _patched(self._referred(*found, depth + 1), rest)
 
     def _found(
-        self, reference: str, thing: dict[str, Any], name: str, depth: int
+        self, stated: dict[str, Any], reference: str, thing: dict[str, Any], name: str, depth: int
     ) -> tuple[dict[str, Any], dict[str, Any], str] | None:
-        """What a reference leads to, and the document that holds it with its name."""
+        """What a reference leads to that is stated in a link or affordance, and the document that holds it, by name."""
         path, _, pointer = reference.partition("#")
         holder: Any = thing
         if path:
@@ -90,7 +92,7 @@ class _Follower:
         self.followed += 1
         near = depth < DEEPEST_REFERENCE and self.followed <= MOST_REFERENCES
         if not near or not isinstance(target, dict) or not isinstance(holder, dict):
-            self.missed += 1
+            self.missed.add(id(stated))  # a circle comes to it again and again
             return None
         return target, holder, name
 

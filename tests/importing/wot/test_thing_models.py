@@ -55,9 +55,18 @@ def test_a_circle_of_references_ends() -> None:
     circle = {"properties": {"a": {"tm:ref": "#/properties/b"}, "b": {"tm:ref": "#/properties/a"}}}
     found, missing = resolved(circle)
     assert set(found["properties"]) == {"a", "b"}
-    assert missing > 0
+    assert missing == 2
     links = [{"rel": "tm:extends", "href": "lamp.json"}]
     assert resolved({"links": links}, {"rooms/lamp.json": {"title": "x", "links": links}})[1] > 0
+
+
+def test_each_reference_of_circles_is_counted_once() -> None:
+    thing = {
+        "links": [{"rel": "tm:extends", "href": "lamp.json"}],
+        "properties": {"a": {"tm:ref": "#/properties/b"}, "b": {"tm:ref": "#/properties/a"}},
+    }
+    _, missing = resolved(thing, {"rooms/lamp.json": thing})
+    assert missing == 3
 
 
 def test_a_model_may_extend_several_and_keeps_its_own_identifier() -> None:
