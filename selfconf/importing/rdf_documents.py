@@ -1,7 +1,8 @@
 """Advertisements in any format of RDF that Oxigraph reads: Turtle, N-Triples, N-Quads, TriG, RDF/XML and JSON-LD.
 
-Everything that a document says is kept, so it may hold templates and ontologies too; a component that does not conform
-is left out, because a file with it would not validate. Blank nodes are written where they are used, if that is once.
+Everything that a document with components says is kept, so it may hold templates and ontologies too; a component that
+does not conform is left out, because a file with it would not validate. Blank nodes are written where they are used, if
+that is once.
 """
 
 from __future__ import annotations
