@@ -19,7 +19,7 @@ from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.model.truth import BOOLEAN, TRUTH
 from selfconf.rdf.turtle import SKOLEM
-from selfconf.rdf.vocabulary import RDF, SC, SH, TYPE, UNIT, XSD
+from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
 
 NEXT = " ;\n\t"
 """What Oxigraph writes between two statements about one subject; no term has a line break in it."""
@@ -178,17 +178,20 @@ LISTS_OF_SHAPES = frozenset(SH[name] for name in ("and", "or", "xone"))
 """The predicates of SHACL Core whose values are lists of shapes."""
 SHAPE_VALUED = LISTS_OF_SHAPES | {SH[name] for name in _SHAPES}
 """The predicates of SHACL Core whose values are shapes, or lists of shapes."""
-PERMITTED_IN_SHAPES = frozenset((TYPE, RDF.first, RDF.rest)).union(
+SHAPE_ANNOTATIONS = frozenset((LABEL, RDFS.comment, RDFS.isDefinedBy, RDFS.seeAlso)).union(
+    SH[name] for name in ("name", "description", "message", "order", "group", "defaultValue")
+)
+"""What a shape says to those that read or show it; it constrains nothing (SHACL, section 2.3.2)."""
+PERMITTED_IN_SHAPES = SHAPE_ANNOTATIONS.union((TYPE, RDF.first, RDF.rest)).union(
     SH[name]
     for name in (
         *_SHAPES, *_LISTS, *_PATHS, "class", "datatype", "nodeKind", "hasValue", "minCount", "maxCount", "pattern",
         "flags", "minLength", "maxLength", "uniqueLang", "minInclusive", "maxInclusive", "minExclusive",
         "maxExclusive", "equals", "disjoint", "lessThan", "lessThanOrEquals", "closed", "qualifiedMinCount",
-        "qualifiedMaxCount", "qualifiedValueShapesDisjoint", "name", "description", "message", "severity", "order",
-        "group", "deactivated",
+        "qualifiedMaxCount", "qualifiedValueShapesDisjoint", "severity", "deactivated",
     )
 )  # fmt: skip
-"""What may be said in the shape of `sc:accepts`: SHACL Core, without targets."""
+"""What may be said in the shape of `sc:accepts`: SHACL Core, without targets, and annotations."""
 
 PORT_NAME = Field(SC.name, NAME_TEXT, least=1, distinct=True)
 SIGNAL_TYPE = Field(SC.signalType, RESOURCE, most=None)

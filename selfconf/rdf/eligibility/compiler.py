@@ -34,25 +34,12 @@ from selfconf.rdf.eligibility.role_tests import (
     RoleTest,
     SelfTest,
 )
-from selfconf.rdf.permitted_fields import STRUCTURE
+from selfconf.rdf.permitted_fields import SHAPE_ANNOTATIONS, STRUCTURE
 from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
 from selfconf.rdf.tasks import ROLE_STRUCTURE, mentions, substituted
 from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import LABEL, RDFS, SC, SH, TYPE
+from selfconf.rdf.vocabulary import SC, SH, TYPE
 
-SHAPE_ANNOTATIONS = frozenset(
-    (
-        LABEL,
-        RDFS.comment,
-        RDFS.isDefinedBy,
-        RDFS.seeAlso,
-        SH.name,
-        SH.description,
-        SH.message,
-        SH.order,
-        SH.group,
-    )
-)
 TARGETS = frozenset((SH.targetClass, SH.targetNode, SH.targetSubjectsOf, SH.targetObjectsOf, SH.target))
 _SILENT = SHAPE_ANNOTATIONS | TARGETS | {SH.severity, SH.deactivated, TYPE, SH.path}
 _SHAPES_OF_A_LIST = frozenset((SH["and"], SH["or"], SH.xone))

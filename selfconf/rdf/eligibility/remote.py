@@ -17,7 +17,7 @@ from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.permitted_fields import PERMITTED_IN_SHAPES
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.turtle import ox_term
-from selfconf.rdf.vocabulary import SC, TYPE
+from selfconf.rdf.vocabulary import RDFS, SC, TYPE
 
 _COMPONENT = str(ox_term(SC.Component))
 BLANK_NODE_DEPTH = 3
@@ -27,9 +27,11 @@ TYPES = f"""SELECT DISTINCT ?type WHERE {{
 }}"""
 """The types that the components of an endpoint have."""
 
+# Not rdfs:seeAlso and its like, which lead from the classes of a shape to anything.
+_STEPS = sorted(step for step in PERMITTED_IN_SHAPES - {TYPE} if step not in RDFS)
 _ACCEPTED = (
     f"?component <{SC.hasInput}>/<{SC.accepts}> ?shape . "
-    f"?shape ({'|'.join(f'<{step}>' for step in sorted(PERMITTED_IN_SHAPES - {TYPE}))})* ?subject . "
+    f"?shape ({'|'.join(f'<{step}>' for step in _STEPS)})* ?subject . "
     "?subject ?predicate ?object FILTER ( isBlank(?subject) )"
 )
 """The statements of the shapes that the inputs of a component accept, which are blank nodes at any depth."""

@@ -14,14 +14,14 @@ from typing import NamedTuple
 
 from selfconf.model.port_likeness import Types, WantedPorts
 from selfconf.model.term import IRI, BlankNode, Term
-from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_ANNOTATIONS, SHAPE_VALUED
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import RDF, RDFS, SC, SH
 
 _PORTS = frozenset((SC.hasInput, SC.hasOutput))
 _DEEPEST = 16
 """How many shapes within shapes are looked at."""
-_SAYS_NOTHING = frozenset((RDF.type, SH.name, SH.description, SH.message, SH.severity, SH.order, SH.group))
+_SAYS_NOTHING = SHAPE_ANNOTATIONS | {RDF.type, SH.severity}
 
 
 class _Want(NamedTuple):

@@ -38,6 +38,32 @@ def test_the_text_is_turtle_and_says_what_was_said() -> None:
 
 
 @pytest.mark.parametrize(
+    "said",
+    [
+        "sh:defaultValue 3",
+        'rdfs:comment "c"',
+        'rdfs:label "l"@en',
+        "rdfs:seeAlso <urn:x>",
+        "rdfs:isDefinedBy <urn:x>",
+        'sh:name "n"',
+        'sh:group [ a sh:PropertyGroup ; rdfs:label "g" ]',
+        'sh:description "d" ; sh:message "m" ; sh:order 1',
+    ],
+)
+def test_an_annotation_of_a_shape_keeps_no_component_out(said: str) -> None:
+    shape = f"[ sh:property [ sh:path sc:name ; sh:minCount 1 ; {said} ] ]"
+    text = PREFIXES + (
+        ':a a sc:Component, :A ; rdfs:seeAlso :b ; sc:hasInput [ sc:name "i" ; sc:signalType :S ;'
+        f" sc:accepts {shape} ] . :b a sc:Component, :B ."
+    )
+    good, left_out = read_advertisements(text.encode(), "x")
+    assert (len(good), left_out) == (2, [])
+    condition = next(one for one in good if one.profile.inputs).profile.inputs[0].condition
+    assert condition is not None
+    assert condition.accepts == text_of(shape)
+
+
+@pytest.mark.parametrize(
     ("shape", "problem"),
     [
         ("[ sh:targetNode :a ]", "sh:targetNode is not of SHACL Core"),

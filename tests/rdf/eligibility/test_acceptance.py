@@ -84,6 +84,13 @@ def shape_of(text: str) -> tuple[Document, str]:
     return document, accepted_shape(document, document.values(home("input"), SC.accepts)[0])
 
 
+@pytest.mark.parametrize("said", ["sh:defaultValue 3", "rdfs:comment 'c'", "rdfs:seeAlso <urn:x>", "sh:order 1"])
+def test_annotations_are_no_reason_to_ask_pyshacl(said: str) -> None:
+    document = parse(f"{PREFIXES}:i sc:accepts [ sh:property [ sh:path sc:name ; sh:minCount 1 ; {said} ] ] .", "test")
+    ((_, _, shape),) = (one for one in document.triples() if one[1] == SC.accepts)
+    assert OutputShape(accepted_shape(document, shape), NOTHING_ABOVE)._tests.complete
+
+
 @settings(max_examples=examples(150), deadline=None)
 @given(SHAPES, HIERARCHIES)
 def test_an_output_conforms_where_pyshacl_says_so(text: str, hierarchy: Hierarchy) -> None:
