@@ -736,6 +736,13 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L24", "An operation has types of its request and its response, and no signal type.",
+        "Operations are paired by what they take and what they answer; a signal type says neither.",
+        ':camera a sc:Component, :Camera ; sc:hasOperation [ sc:name "takePhoto" ; sc:signalType rob:Image ] .',
+        ':camera a sc:Component, :Camera ; sc:hasOperation [ sc:name "takePhoto" ; sc:response rob:Image ] .',
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

@@ -176,6 +176,19 @@ def untyped_ports(file: LintedFile) -> Iterator[Diagnostic]:
             yield at(file.positions, file.offset(node), "SC-L18", f"{called} has no signal type.", hint=hint)
 
 
+def typed_operations(file: LintedFile) -> Iterator[Diagnostic]:
+    """Operations that have a signal type, by which nothing is paired with them."""
+    signal = URIRef(_SC.signalType)
+    for link in (_SC.hasOperation, _SC.needsOperation):
+        for node in sorted(set(file.graph.objects(None, URIRef(link))), key=file.offset):
+            for kind in file.graph.objects(node, signal):
+                message = "An operation has no signal type, so this is passed over."
+                hint = "Say what it takes by sc:request, and what it answers by sc:response."
+                yield at(
+                    file.positions, file.positions.triples[node, signal, kind].predicate, "SC-L24", message, hint=hint
+                )
+
+
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
     """Literals where the property wants a thing."""
     for (_, predicate, value), offsets in file.positions.triples.items():
@@ -203,6 +216,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     undeclared_prefixes,
     ownerless_ports,
     untyped_ports,
+    typed_operations,
     literals_for_iris,
     local_components,
     misnamed_units,

@@ -134,3 +134,10 @@ def test_a_label_is_a_literal_and_stays_one() -> None:
 def test_what_is_wrong_with_a_template_hides_what_is_merely_strange_about_it() -> None:
     text = ":t a sc:Template ; sc:roles :r . :r a sc:Role ; sh:class rob:Lamp ."
     assert {each.code for each in lints(text)} == {"SC-T02"}
+
+
+def test_a_signal_type_of_an_operation_is_passed_over_and_that_of_a_port_is_not() -> None:
+    port = ':x a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name "a" ; sc:signalType rob:Audio ] ;'
+    for link in ("sc:hasOperation", "sc:needsOperation"):
+        assert lints(f'{port} {link} [ sc:name "b" ; sc:request rob:Audio ] .') == []
+        assert only(f'{port} {link} [ sc:name "b" ; sc:signalType rob:Audio ] .').code == "SC-L24"
