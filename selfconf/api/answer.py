@@ -253,6 +253,7 @@ class Inquiry:
             for component, why in sorted(self.composer.not_judged().items())
         )
         """The components that play no role, or feed nothing, as what they say cannot be judged, or not in time."""
+        ecology.note_not_judged(self.left_out)
 
     def _place(self, component: IRI) -> Place:
         """Where a component is described."""

@@ -88,6 +88,7 @@ class Ecology(ABC):
     """
 
     _left_out: tuple[LeftOut, ...] = ()
+    _not_judged: tuple[LeftOut, ...] = ()
     _complaints: tuple[str, ...] = ()
     remote = False
     """Whether only what a task may want is fetched."""
@@ -96,8 +97,12 @@ class Ecology(ABC):
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
-        """The advertisements that do not count, and why."""
-        return self._left_out
+        """The advertisements that do not count, and why; last those that the last question could not judge."""
+        return (*self._left_out, *self._not_judged)
+
+    def note_not_judged(self, left_out: tuple[LeftOut, ...]) -> None:
+        """Keep what a question has found that it cannot judge, or not in time, in place of that of the one before."""
+        self._not_judged = left_out
 
     @property
     def complaints(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from selfconf.cli.options import (
     add_endpoint_argument,
     add_task_arguments,
     complain_of,
+    complain_of_left_out,
     given_ecology,
     method_of,
     task_of,
@@ -46,7 +47,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 with a configuration, 1 with a refusal, 2 where the budget ended before it was decided."""
     from selfconf.api.answer import Answer, Inquiry
-    from selfconf.api.places import with_lines
     from selfconf.model.refusal import Undecided
     from selfconf.render import undecided_text
 
@@ -57,8 +57,8 @@ def run(given: argparse.Namespace) -> int:
         gc.freeze()  # the partition stays until the command ends, as the files do
         if given.ads is None:
             complain_of(ecology)
-    for one in with_lines(inquiry.left_out):
-        complain(str(one))
+        else:  # what does not conform was named when it was read
+            complain_of_left_out(inquiry.left_out)
     answer = inquiry.answer(given.what_if)
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
         complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from selfconf.api.ecology import Ecology
     from selfconf.api.living import LivingEcology
     from selfconf.api.task import TaskSpecification, Value
+    from selfconf.model.left_out import LeftOut
     from selfconf.project import Project
 
 MOST_DOMAIN = 232
@@ -224,9 +225,16 @@ def joined(given: argparse.Namespace) -> LivingEcology:
 
 def complain_of(ecology: Ecology) -> None:
     """Name on stderr what was left out of an ecology when it was last asked."""
+    complain_of_left_out(ecology.left_out)
+    for one in ecology.complaints:
+        complain(one)
+
+
+def complain_of_left_out(left_out: Iterable[LeftOut]) -> None:
+    """Name on stderr what was left out of an ecology, each with its line where its file can be read."""
     from selfconf.api.places import with_lines
 
-    for one in (*with_lines(ecology.left_out), *ecology.complaints):
+    for one in with_lines(left_out):
         complain(str(one))
 
 

@@ -14,10 +14,11 @@ from selfconf.cli.options import (
     add_endpoint_argument,
     add_task_arguments,
     complain_of,
+    complain_of_left_out,
     given_ecology,
     task_of,
 )
-from selfconf.cli.terminal import complain, display
+from selfconf.cli.terminal import display
 from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
@@ -58,7 +59,6 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.api.alternatives import alternatives
     from selfconf.api.answer import Inquiry, Method
     from selfconf.api.partition_table import PartitionTable
-    from selfconf.api.places import with_lines
 
     if given.show and given.format != "text":
         raise AuthorError(f"--show {given.show} writes what other tools read as it is; leave out --format")
@@ -69,8 +69,8 @@ def run(given: argparse.Namespace) -> int:
         gc.freeze()  # the partition stays until the command ends, as the files do
         if given.ads is None:
             complain_of(ecology)
-    for one in with_lines(inquiry.left_out):
-        complain(str(one))
+        else:  # what does not conform was named when it was read
+            complain_of_left_out(inquiry.left_out)
     if given.show:
         display(_exported(inquiry, given.show))
         return 0

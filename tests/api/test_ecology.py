@@ -36,6 +36,24 @@ def test_what_is_said_of_an_ecology_cannot_be_changed(home: sc.Ecology) -> None:
             setattr(home, name, ())
 
 
+def test_what_a_question_cannot_judge_is_left_out_and_named() -> None:
+    shape = '[ sh:property [ sh:path sc:name ; sh:pattern "(" ] ]'
+    home = sc.read(
+        f'{PREFIXES}:k a sc:Component, :K ; sc:hasInput [ sc:name "i" ; sc:signalType :S ; sc:accepts {shape} ] .\n'
+        ':s a sc:Component, :S ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ] .'
+    )
+    roles = ":t a sc:Template ; sc:roles ( :a :b ) . :a a sc:Role ; sh:class :S ; sc:feeds :b . :b a sc:Role ; sh:class"
+    assert home.left_out == ()
+    assert not sc.configure(sc.template(f"{PREFIXES}{roles} :K ."), home)
+    (left_out,) = home.left_out
+    assert left_out.component == iri("k")
+    assert left_out.reason.startswith("what its input accepts cannot be judged: ")
+    (obstacle,) = sc.partition(sc.template(f"{PREFIXES}{roles} :K ."), home)["b"].obstacles(iri("k"))
+    assert str(obstacle) == f"is not judged: {left_out.reason}"
+    sc.partition(sc.template(f"{PREFIXES}{roles} :S ."), home)
+    assert home.left_out == ()  # another question, which does not look at that
+
+
 def test_components_print_as_a_table(home: sc.Ecology) -> None:
     assert repr(home) == "<ecology of 6 components from examples/peis-home>"
     head, line, *rows = repr(home.components).splitlines()

@@ -369,6 +369,15 @@ def test_an_advertisement_that_does_not_conform_is_named_and_left_out(desk: Desk
     assert outcome.body["eligible"][iri("position")] == 2
 
 
+def test_a_component_whose_input_accepts_what_cannot_be_judged_is_named_once(desk: Desk) -> None:
+    shape = '[ sh:property [ sh:path sc:name ; sh:pattern "(" ] ]'
+    port = f'[ sc:name "i" ; sc:signalType rob:Text ; sc:accepts {shape} ]'
+    desk.advertise("odd", f":odd a sc:Component, rob:PositionSensor ; sc:hasInput {port} .")
+    outcome = desk.configure(*BOUND)
+    assert outcome.code == 0
+    assert outcome.err.count("what its input accepts cannot be judged") == 1
+
+
 def test_a_component_that_is_advertised_twice_is_named(desk: Desk) -> None:
     desk.advertise("z", ADVERTISEMENTS["tracker"])
     outcome = desk.configure(*BOUND)

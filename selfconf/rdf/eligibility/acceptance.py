@@ -272,14 +272,17 @@ class Acceptance:
         except AuthorError as error:
             return _cannot_be_judged(error)
 
+    def unjudged(self, profile: Profile) -> NotJudged | None:
+        """Why a component is kept out of which an input accepts what cannot be judged; None for any other."""
+        shapes = (self._shape(one.shape) for one in _asked(profile.ports))
+        return next((shape for shape in shapes if isinstance(shape, NotJudged)), None)
+
     def _can_be_judged(self, profile: Profile) -> bool:
         """Whether each shape that a component states can be judged; it is kept out otherwise, and named."""
-        for one in _asked(profile.ports):
-            shape = self._shape(one.shape)
-            if isinstance(shape, NotJudged):
-                self.not_judged[profile.component] = shape
-                return False
-        return True
+        why = self.unjudged(profile)
+        if why is not None:
+            self.not_judged[profile.component] = why
+        return why is None
 
 
 def _steps(document: Document, path: Term) -> Iterator[IRI]:

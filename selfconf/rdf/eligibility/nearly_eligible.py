@@ -62,7 +62,7 @@ def exclusions(
         outside |= {a: (outside[a][0], judged[a.component]) for a in passed if a.component in judged}
     return sorted(
         (
-            Exclusion(a.component, reasons or (NoCommonValue(),), of_its_class)
+            Exclusion(a.component, reasons or (partitioner.unjudged(a.profile) or NoCommonValue(),), of_its_class)
             for a, (of_its_class, reasons) in outside.items()
         ),
         key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),

@@ -145,6 +145,10 @@ class Partitioner:
         self.not_judged |= self._acceptance.not_judged
         return with_sent_requests(judged, self.hierarchy)
 
+    def unjudged(self, profile: Profile) -> NotJudged | None:
+        """Why a component plays no role, although it is eligible: what an input of it accepts cannot be judged."""
+        return self._acceptance.unjudged(profile)
+
     def unaccepted(self, ecology: AdvertisementIndex, component: IRI, output: str, shape: str) -> Obstacle | None:
         """What keeps an output of a component from conforming to the shape that an input accepts."""
         return self._acceptance.obstacle(shape, (component, output), lambda one: tuple(self.visible([ecology[one]])))

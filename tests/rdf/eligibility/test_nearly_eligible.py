@@ -159,6 +159,16 @@ def test_a_value_that_a_free_parameter_may_not_have_is_one_thing_that_keeps_out(
     assert [str(obstacle) for obstacle in first.obstacles] == ["wants room to be hall, which it may not be"]
 
 
+def test_what_an_input_accepts_and_cannot_be_judged_is_what_keeps_its_component_out() -> None:
+    text = f"{ROLE} sh:class :A ."
+    shape = '[ sh:property [ sh:path sc:name ; sh:pattern "(" ] ]'
+    odd = f':odd a sc:Component, :A ; sc:hasInput [ sc:name "i" ; sc:signalType :S ; sc:accepts {shape} ] .'
+    asked = partitioner(text)
+    (one,) = exclusions(asked, asked.roles[0], (), read((odd,)))
+    assert [obstacle.code for obstacle in one.obstacles] == ["not-judged"]
+    assert near(text, odd) == []
+
+
 def test_what_cannot_be_judged_in_time_is_no_near_miss() -> None:
     text = f'{ROLE} sh:class :A ; sh:property [ sh:path :model ; sh:pattern "^(?=(\\\\w+)+$)" ] .'
     assert near(text, f':slow a sc:Component, :A ; :model "{"ab" * 40}!" .') == []
