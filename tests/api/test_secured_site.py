@@ -45,6 +45,14 @@ def home(tmp_path: Path) -> Iterator[Home]:
     home.close()
 
 
+def _discovered(home: Home) -> str:
+    """What `discover` prints."""
+    found = home.selfconf("discover", "--ecology", home.ecology, "--format", "json")
+    told = found.rest()
+    found.ended()
+    return told
+
+
 def test_two_hosts_are_one_ecology(home: Home, tmp_path: Path) -> None:
     assert home.authority is not None
     (tmp_path / "attic").mkdir()
@@ -61,6 +69,8 @@ def test_two_hosts_are_one_ecology(home: Home, tmp_path: Path) -> None:
         attic.environment["SELFCONF_KEYS"] = str(attic.folder / "keys")
         home.site("home", "ads")
         attic.site("attic", "ads", connect=(home.endpoint("home"),), options=("--listen", "tls/127.0.0.2:0"))
+        # The site of the other host is there before the task looks for who may take over.
+        assert home.until(lambda: str(component_of("odometry")) in _discovered(home))
         task = home.run("--wait")
         task.act("running")
         (home.folder / "tracker.fail").touch()

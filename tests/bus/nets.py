@@ -58,7 +58,7 @@ class ZenohNet:
         self._nodes.append(bus)
         return bus
 
-    def until(self, condition: Callable[[], bool], seconds: float = 5.0) -> bool:
+    def until(self, condition: Callable[[], bool], seconds: float = 30.0) -> bool:
         """Real time passes, until the deadline at most."""
         deadline = time.monotonic() + seconds
         while not condition():

@@ -391,7 +391,7 @@ def test_a_watch_without_history_shows_what_begins_and_every_end(net: Net, top: 
     undo()
     assert net.until(lambda: heard[1:] == [(f"{top}/c/a/live/1", False)])
     called: list[tuple[str, ...]] = []
-    watching.roll_call(f"{top}/c/b/live/*", 3.0, called.append)
+    watching.roll_call(f"{top}/c/b/live/*", 20.0, called.append)
     assert net.until(lambda: called == [(f"{top}/c/b/live/1",)])
 
 
