@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, ShapeViolated
 from selfconf.model.template import Parameter
-from selfconf.model.term import IRI, Term
+from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SH, TYPE
@@ -77,13 +77,18 @@ def _without_names(message: str) -> str:
 
 
 def _constraints(parameter: IRI, document: Document) -> dict[IRI, list[Term]]:
-    """What a parameter asks of its value: the SHACL parameters that it states, each with its values."""
+    """What a parameter asks of its value: the SHACL parameters that it states, each with its values.
+
+    The kind of the value comes first, then the others by name: so the reason why one is wrong does not depend on the
+    order of statements, of which a graph has none.
+    """
     found: dict[IRI, list[Term]] = {}
     own = component_parameters(document)
     for predicate, value in document.statements.get(parameter, ()):
         if predicate in own or (predicate in SH and predicate != SH.defaultValue):
             found.setdefault(predicate, []).append(value)
-    return found
+    in_order = sorted(found, key=lambda predicate: (predicate not in (SH.nodeKind, SH.datatype), predicate))
+    return {predicate: sorted(found[predicate], key=sort_key) for predicate in in_order}
 
 
 def _judged(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:

@@ -65,6 +65,15 @@ def test_the_reason_is_in_words_without_the_names_of_our_own(asked: str, reason:
     assert list(misfits(LEVEL, (Literal("3", XSD.integer),), document).values()) == [reason]
 
 
+@pytest.mark.parametrize(
+    "asked", ["sh:maxInclusive 5 ; sh:datatype xsd:integer", "sh:datatype xsd:integer ; sh:maxInclusive 5"]
+)
+def test_the_reason_is_the_same_in_any_order_of_statements(asked: str) -> None:
+    document = parse(f"{PREFIXES}:level a sc:Parameter ; sc:name 'level' ; {asked} .", "t.ttl")
+    text = Literal("high")
+    assert misfits(LEVEL, (text,), document) == {text: 'it is "high", not an integer'}
+
+
 def test_a_pattern_that_takes_too_long_is_said_of_the_value_and_not_of_a_shape_of_our_own() -> None:
     document = parse(PREFIXES + ":level a sc:Parameter ; sc:name 'level' ; sh:pattern '^(?=(\\\\w+)+$)' .", "t.ttl")
     value = Literal("ab" * 40 + "!")
