@@ -59,18 +59,18 @@ def listed(names: Iterable[str]) -> str:
 
 def in_words(values: Iterable[Term]) -> str:
     """Values for people: `Astrid or Pippi`; of literals also what tells them from others, `"1"` from `1`."""
-    names = sorted(map(term_in_words, values))
+    names = sorted({term_in_words(value) for value in values})
     return " or ".join(names) if names else "nothing"
 
 
 def in_full(values: Iterable[Term]) -> str:
     """Values for people where local names do not tell them apart: IRIs as a whole."""
-    said = sorted(repr(value) if isinstance(value, IRI) else term_in_words(value) for value in values)
+    said = sorted({repr(value) if isinstance(value, IRI) else term_in_words(value) for value in values})
     return " or ".join(said) if said else "nothing"
 
 
 def term_in_words(value: Term) -> str:
-    """A term for people: an IRI by its local name, a literal as in Turtle."""
+    """A term for people: an IRI by its local name, a literal as in Turtle; a blank node has no name to be told."""
     if isinstance(value, Literal):
         return value.turtle(lambda datatype: datatype.short)
-    return value.short if isinstance(value, IRI) else str(value)
+    return value.short if isinstance(value, IRI) else "a blank node"

@@ -13,6 +13,7 @@ import pyoxigraph as ox
 from selfconf.errors import BindingError
 from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.wording import in_full
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import LITERAL
 from selfconf.rdf.tasks.parameter_values import misfits
@@ -152,7 +153,7 @@ def _steps(document: Document, path: Term) -> set[Term]:
 def _check(parameter: Parameter, value: Term, document: Document) -> None:
     for problem in misfits(parameter, (value,), document).values():
         name = partial(_curie, prefixes=document.prefixes)
-        said = value.turtle(name) if isinstance(value, Literal) else f"<{value}>"
+        said = value.turtle(name) if isinstance(value, Literal) else in_full([value])
         hint = ""
         if isinstance(value, Literal) and "IRI" in problem:
             hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
