@@ -9,8 +9,8 @@ result into the text of its report, which took a quarter of the time and is not 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from functools import lru_cache
 from types import ModuleType
 from typing import Any
@@ -19,6 +19,7 @@ from pyshacl.constraints import constraint_component
 from pyshacl.constraints.core import string_based_constraints
 from rdflib.plugins.sparql import operators, processor
 
+from selfconf.rdf.replacements import replaced
 from selfconf.rdf.shacl import pattern
 
 
@@ -80,14 +81,6 @@ _INSTEAD: tuple[tuple[ModuleType, str, object], ...] = (
 )
 
 
-@contextmanager
-def linear_patterns() -> Iterator[None]:
+def linear_patterns() -> AbstractContextManager[None]:
     """In the block, pySHACL and rdflib match patterns in linear time."""
-    before = [vars(module)[name] for module, name, _ in _INSTEAD]
-    for module, name, instead in _INSTEAD:
-        vars(module)[name] = instead
-    try:
-        yield
-    finally:
-        for (module, name, _), original in zip(_INSTEAD, before, strict=True):
-            vars(module)[name] = original
+    return replaced(_INSTEAD)

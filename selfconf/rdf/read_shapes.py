@@ -8,8 +8,7 @@ targets are asked for focus nodes, and each result is taken as pySHACL makes it,
 
 from __future__ import annotations
 
-from collections.abc import Container, Generator, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Container, Generator, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -22,6 +21,7 @@ from rdflib import Graph
 from rdflib.term import Node
 
 from selfconf.rdf.constraint_lookup import index_constraints
+from selfconf.rdf.replacements import replaced
 
 
 class ReadShapes:
@@ -43,7 +43,7 @@ class ReadShapes:
 
         `only` names the shapes with targets that are to be asked, where not all of them are. Raises ValidationFailure.
         """
-        with _nothing_in_vain():
+        with replaced(_NOTHING_IN_VAIN):
             return [
                 _properties(result, triples)
                 for shape in self._with_targets
@@ -72,23 +72,11 @@ def _undescribed(*_: object, **__: object) -> str:
     return ""
 
 
-_INSTEAD: tuple[tuple[type, str, object], ...] = (
+_NOTHING_IN_VAIN: tuple[tuple[type, str, object], ...] = (
     (SPARQLQueryHelper, "check_invalid_sparql", _checked_once),
     (ConstraintComponent, "make_v_result_description", _undescribed),
 )
-
-
-@contextmanager
-def _nothing_in_vain() -> Iterator[None]:
-    """In the block, pySHACL looks at the text of a query once, and describes no result in words."""
-    before = [vars(owner)[name] for owner, name, _ in _INSTEAD]
-    for owner, name, instead in _INSTEAD:
-        setattr(owner, name, instead)
-    try:
-        yield
-    finally:
-        for (owner, name, _), original in zip(_INSTEAD, before, strict=True):
-            setattr(owner, name, original)
+"""By which pySHACL looks at the text of a query once, and describes no result in words."""
 
 
 def _properties(result: Node, triples: list[tuple[Node, Node, Any]]) -> dict[Node, Node]:
