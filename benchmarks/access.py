@@ -30,6 +30,7 @@ from pathlib import Path
 import selfconf as sc
 from benchmarks import failover
 from benchmarks.machine import described, quantile, table
+from benchmarks.quiet import until_quiet
 from selfconf.access import KeysFolder, PrincipalKind
 from selfconf.api.local_site import SiteProcess
 from selfconf.bus.port import Urgency
@@ -40,7 +41,6 @@ from selfconf.protocol.keys import Keys
 SIZES = (100, 300_000)
 """Bytes of a signal."""
 PATIENCE = 20.0
-SETTLED = 0.2
 RATES = (1_000, 10_000)
 """Signals of 100 bytes a second."""
 PLAIN, KEYED, UNREAD = "without keys", "with keys", "with keys, log off"
@@ -170,10 +170,7 @@ def paced(
             sent += 1
         time.sleep(0.5 / rate)  # the rate of the signals
     taken = processor_seconds(hub) - before
-    arrived, deadline = -1, time.monotonic() + PATIENCE
-    while arrived != len(found) and time.monotonic() < deadline:
-        arrived = len(found)
-        time.sleep(SETTLED)  # what was sent last has arrived when nothing more does
+    until_quiet(lambda: len(found))
     if not found:
         raise SystemExit("no signal has arrived")
     return found, taken

@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from benchmarks.machine import described, quantile, table
+from benchmarks.quiet import until_quiet
 from selfconf import ros_messages
 from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.tokens import PUBLISHER, SUBSCRIPTION, RosEndpoint, RosNodeId, RosToken
@@ -122,15 +123,19 @@ def measured(load: Load, seconds: float) -> Relayed:
 
 
 def _publish_at(rate: float, seconds: float, publish: Callable[[int], None], *arrivals: Arrivals) -> None:
-    """Publish at a rate; a message that is late is published at once."""
-    time.sleep(0.5)  # for what was published while waiting to have arrived
+    """Publish at a rate, and wait until all has arrived; a message that is late is published at once."""
+
+    def arrived() -> list[int]:
+        return [len(each.moments) for each in arrivals]
+
+    until_quiet(arrived)
     for each in arrivals:
         each.moments.clear()
     began = time.monotonic()
     for number in range(1, int(rate * seconds) + 1):
         publish(number)
         time.sleep(max(0.0, began + number / rate - time.monotonic()))  # until the next one is due
-    time.sleep(0.5)  # for the last ones to arrive
+    until_quiet(arrived)
 
 
 def _node(stack: ExitStack, endpoint: str, name: str, end: RosEndpoint) -> ZenohBus:
