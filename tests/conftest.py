@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from selfconf.__main__ import COLLECTING
-from tests import schedule
+from tests import schedule, shares
 from tests.asked_here import ask_here
 from tests.effort import examples
 from tests.frozen import freeze_what_is_there
@@ -35,6 +35,12 @@ gc.set_threshold(*COLLECTING)  # as in the programs; what is collected of all te
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Spread the tests over processes so that those of a group share one."""
     return schedule.scheduler(config, log)
+
+
+def pytest_collection(session: pytest.Session) -> None:
+    """Where tests run in several processes, let each prepare a share of the modules for all."""
+    if hasattr(session.config, "workerinput"):
+        shares.prepare(session.config.args, session.config.workerinput)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
