@@ -20,8 +20,9 @@ Other tasks. Components that a task of the same or a higher priority holds do no
 shared does, until a configuration is found that wants something else of it than its holder. If the search fails for
 that reason, those of them that are eligible where candidates lack are named, and a patient task waits at each:
 whichever is free first may be what it takes, and those that wait for one are served in order only if they all wait
-there. A task of higher priority that asks for a component of this one makes it let go: everything comes to rest, sinks
-first, and is configured again without that component.
+there. A component that has obeyed a newer epoch of the task, by the clock of another configurator, does not remember
+one that waits in an older epoch: that one asks again in the newer. A task of higher priority that asks for a component
+of this one makes it let go: everything comes to rest, sinks first, and is configured again without that component.
 
 A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
 released again when it is seen again.
@@ -218,8 +219,7 @@ def _declined(state: State, event: Answered) -> Reaction:
     """A component has not done what it was asked: ask once more where that may help, else do without it."""
     repeats = state.repeats.get(event.component, 0)
     counted = replace(state, repeats={**state.repeats, event.component: repeats + 1})
-    ahead = event.newest - event.epoch
-    if event.verdict is Verdict.STALE and 0 < ahead < MOST_AHEAD and repeats < MOST_REPEATS:
+    if event.verdict is Verdict.STALE and _can_catch_up(event) and repeats < MOST_REPEATS:
         return deploying.deploy(replace(counted, epoch=max(state.epoch, event.newest)))
     if event.verdict is Verdict.NOT_HELD and repeats < MOST_REPEATS:
         return _reserve_anew(counted, event.component)
@@ -229,6 +229,11 @@ def _declined(state: State, event: Answered) -> Reaction:
         return _lose(state, event.component, Loss(Cause.CRASH, "it has begun another life", ""))
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
     return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life, False, event.verdict is not None))
+
+
+def _can_catch_up(event: Answered) -> bool:
+    """Whether a component that has obeyed a newer epoch may have it from a clock that was ahead."""
+    return 0 < event.newest - event.epoch < MOST_AHEAD
 
 
 def _busy(state: State, event: Answered) -> Reaction:
@@ -251,6 +256,8 @@ def _reserve_anew(state: State, component: IRI) -> Reaction:
 
 def _unasked(state: State, event: Answered) -> Reaction:
     """An answer that is not waited for: a component that is held now for nothing is released."""
+    if event.verdict is Verdict.STALE and event.component in state.queued and event.epoch == state.epoch:
+        return _queue_anew(state, event)
     unwanted = event.component not in state.held and not state.ended
     if unwanted and event.call is Call.RESERVE and event.verdict is Verdict.DONE:
         owed = {**state.owed, event.component: state.epoch}
@@ -375,6 +382,19 @@ def _queue(state: State) -> Reaction:
     queued = state.queued.union(component for component, loss in state.lost.items() if loss.busy)
     effects = tuple(QueueFor(component, state.epoch) for component in sorted(queued - state.owed.keys()))
     return replace(state, queued=queued), effects
+
+
+def _queue_anew(state: State, event: Answered) -> Reaction:
+    """Ask again for a component that does not remember this task, as it has obeyed a newer epoch of it.
+
+    That was another configurator of the task, by a clock that was ahead of this one's.
+    """
+    repeats = state.repeats.get(event.component, 0)
+    if state.phase is not Phase.REFUSED or not _can_catch_up(event) or repeats >= MOST_REPEATS:
+        return state, ()
+    counted = {**state.repeats, event.component: repeats + 1}
+    # All are asked: what one of them answers in the epoch that is over now would be passed over.
+    return _queue(replace(state, epoch=event.newest, repeats=counted))
 
 
 def _freed(state: State, component: IRI) -> Reaction:

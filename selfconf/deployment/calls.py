@@ -237,9 +237,16 @@ class Calls:
         self._call(component, Call.RESERVE, message)
 
     def queue(self, effect: QueueFor) -> None:
-        """Have a component remember that this task waits; what it answers is not waited for."""
-        message = Reserve(**self._claim(effect.component, effect.epoch), waits=True)
-        self.bus.ask(self.keys.call(effect.component, Call.RESERVE.value), encode(message), CALL, lambda replies: None)
+        """Have a component remember that this task waits; nothing waits for its answer, but it may be in vain."""
+        component = effect.component
+        message = Reserve(**self._claim(component, effect.epoch), waits=True)
+
+        def answered(replies: Replies) -> None:
+            answer = self._answer_in(replies, message.life)
+            if answer is not None:
+                self._answered(component, Call.RESERVE, message, answer)
+
+        self.bus.ask(self.keys.call(component, Call.RESERVE.value), encode(message), CALL, answered)
 
     def decline(self, effect: Decline) -> None:
         """Let a component that is kept for this task go to the next that waits; nothing depends on the answer."""

@@ -459,6 +459,35 @@ def test_a_patient_task_waits_for_nothing_where_all_that_others_hold_would_not_d
     assert not history.state.queued
 
 
+def test_a_task_waits_for_a_component_that_has_obeyed_a_newer_epoch_of_it_by_asking_in_that() -> None:
+    """Another configurator of the task had a clock that was ahead."""
+    history = waiting()
+    epoch = history.state.epoch
+    stale = Answered(TRACKER, Call.RESERVE, epoch, Verdict.STALE, "1", newest=epoch + 300_000)
+    assert history.hear(stale) == [QueueFor(TRACKER, epoch + 300_000)]
+    assert history.hear(stale) == []  # it is of an epoch that is over
+    assert history.hear(Freed(TRACKER)) == [Discover()]
+    history.hear(Discovered())
+    history.composed(navigation())
+    assert history.state.epoch > epoch + 300_000
+
+
+def test_a_component_that_says_without_end_that_it_has_obeyed_a_newer_epoch_is_asked_a_few_times() -> None:
+    history = waiting()
+    for _ in range(MOST_REPEATS + 1):
+        epoch = history.state.epoch
+        effects = history.hear(Answered(TRACKER, Call.RESERVE, epoch, Verdict.STALE, "1", newest=epoch + 1))
+    assert effects == []
+    assert history.state.phase is Phase.REFUSED
+
+
+def test_an_epoch_that_no_clock_comes_to_is_not_waited_in() -> None:
+    history = waiting()
+    epoch = history.state.epoch
+    assert history.hear(Answered(TRACKER, Call.RESERVE, epoch, Verdict.STALE, "1", newest=(1 << 63) - 1)) == []
+    assert history.state.epoch == epoch
+
+
 def test_a_component_that_says_that_it_is_free_is_believed_more_than_its_last_holder() -> None:
     history = waiting()
     history.hear(Freed(TRACKER))

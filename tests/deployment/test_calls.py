@@ -17,7 +17,7 @@ from selfconf.deployment.runner import TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk
-from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Reserve, Verdict
+from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Release, Reserve, Verdict
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk.component import Refused
@@ -554,3 +554,20 @@ def test_what_runs_is_changed_only_to_a_source_that_delivers(lab: Lab, mute: boo
     assert lab.components["odometry"].said == [("started",)] + ([] if mute else [("stopped",)])
     assert lab.components["tracker"].said == [("started",)] + ([("stopped",)] if mute else [])
     assert lab.components["drive"].said.count(("stopped",)) == 0
+
+
+def test_a_task_waits_where_another_configurator_of_it_has_run_it_by_a_clock_that_was_ahead(lab: Lab) -> None:
+    """Each component orders the calls of a task by their epochs, and remembers the newest that it has obeyed."""
+    other = lab.agent()
+    assert lab.running(other)
+    agent = lab.agent(patient=True)
+    before = lab.keys.configurator_life("before", "1")
+    released = encode(Release(agent.state.epoch + 300_000, before, agent.identity.task))
+    for name in ("thinking-cap", "astrid-drive"):
+        lab.network.node().ask(lab.keys.call(iri(name), "release"), released, CALL, lambda replies: None)
+    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
+    lab.let_pass(1.0)
+    for name in ("control", "drive"):
+        assert [claim.task for claim in lab.runtimes[name].activation.waiting] == [agent.identity.task]
+    other.stop()
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 1.0)

@@ -77,6 +77,12 @@ def test_a_history_that_was_broken_once_is_not_any_more(seed: int, ecology: Faul
     assert not history.broken, account(history)
 
 
+def test_a_task_whose_clock_is_behind_waits_where_it_has_run_before(folder: Path) -> None:
+    """What it asks for is slow to start, so that tasks take turns."""
+    history = played(replace(with_busy_code(write(31003940, ecology=PAPER)), large=True), folder / PAPER.name)
+    assert not history.broken, account(history)
+
+
 def test_a_history_is_replayed_by_its_seed(folder: Path) -> None:
     one, other = (played(write(7), folder) for _ in range(2))
     assert account(one) == account(other)
