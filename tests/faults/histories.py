@@ -29,6 +29,7 @@ from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
+from selfconf.deployment.runner import LONGEST_PAUSE
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
@@ -50,10 +51,9 @@ SPOKEN = 1.0
 ASKED = "asked"
 """What a component writes down when it calls an operation at the end of a history."""
 LOOKED_AGAIN = 1.0
-"""Seconds that a task which waits may take to look again, as it does from time to time: it is undecided meanwhile.
-
-Components with slow code have it take longer: they start and are stopped once more.
-"""
+"""Seconds that a task which waits may take to look again, as it does from time to time: it is undecided meanwhile."""
+TURNS = 3
+"""How often everybody speaks at most in the end, until every task is decided meanwhile."""
 
 
 def startable(advertisement: str) -> str:
@@ -148,13 +148,25 @@ class History:
                 self.told.append(str(action))
         self._cease()
         self.lab.let_pass(SETTLED)
-        self._speak()
-        self.lab.let_pass(SPOKEN)
-        self._ask_all()
-        self.lab.let_pass(SPOKEN)
-        slowest = max((life.recorder.slow for life in self.lives), default=0.0)
-        self.lab.until(self.watch.all_decided, LOOKED_AGAIN + 2 * slowest)
+        for _ in range(TURNS):
+            self._let_be_decided()
+            self._speak()
+            self.lab.let_pass(SPOKEN)
+            self._ask_all()
+            self.lab.let_pass(SPOKEN)
+            if self.watch.all_decided():
+                break
         self.watch.end()
+
+    def _let_be_decided(self) -> None:
+        """Let time pass until no task is being started, as long as that may take.
+
+        What takes too long to start is tried again by each task that waits, in turns, and after longer and longer
+        pauses: there is not always one after the other before these have grown.
+        """
+        slowest = max((life.recorder.slow for life in self.lives), default=0.0)
+        turns = LONGEST_PAUSE + 2 * slowest * len(self.living()) if slowest else 0.0
+        self.lab.until(self.watch.all_decided, LOOKED_AGAIN + turns)
 
     def _speak(self) -> None:
         """Let every source that acts say something."""

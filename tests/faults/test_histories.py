@@ -77,9 +77,15 @@ def test_a_history_that_was_broken_once_is_not_any_more(seed: int, ecology: Faul
     assert not history.broken, account(history)
 
 
-def test_a_task_whose_clock_is_behind_waits_where_it_has_run_before(folder: Path) -> None:
-    """What it asks for is slow to start, so that tasks take turns."""
-    history = played(replace(with_busy_code(write(31003940, ecology=PAPER)), large=True), folder / PAPER.name)
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(31003940, id="a task waits whose clock is behind, for what is slow to start"),
+        pytest.param(51000070, id="two tasks take turns with an actuator that takes too long to start"),
+    ],
+)
+def test_a_large_history_with_busy_code_that_was_broken_once_is_not_any_more(seed: int, folder: Path) -> None:
+    history = played(replace(with_busy_code(write(seed)), large=True), folder / PAPER.name)
     assert not history.broken, account(history)
 
 
