@@ -7,10 +7,8 @@ sites and configurators die and come back; several tasks compete. At every step 
 `tests/faults/invariants.py` are looked at. Then the faults cease, every node reaches every other, and after a while the
 ecology must be in order.
 
-A history that breaks an invariant fails its test, and the message shows what happened, in order. To play it again, and
-to have every action dropped that is not needed:
-
-    python -m tests.faults.replay SEED --shrink
+A history that breaks an invariant fails its test, and the message shows what happened, in order, and the command that
+plays it again and drops every action that is not needed (`tests.faults.replay`).
 """
 
 from __future__ import annotations

@@ -4,8 +4,9 @@
     python -m tests.faults.replay SEED --shrink     drop whatever is not needed for it to go wrong
     python -m tests.faults.replay SEED --log        show what sites, components and configurators log
 
-`--ecology composed` plays it where there are operations and a composite, `--large` as if the ecology were so large
-that not all lives are followed.
+`--ecology composed` plays it where there are operations and a composite, `--busy` with code that is busy while it acts,
+`--large` as if the ecology were so large that not all lives are followed. A test that fails prints the command that
+plays its history again.
 
 The exit code is 1 if an invariant was broken.
 """
@@ -16,14 +17,17 @@ import argparse
 import logging
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from selfconf.bus.memory import Faults
 from tests.faults.ecologies import ECOLOGIES
 from tests.faults.histories import History
-from tests.faults.script import Script, write
+from tests.faults.script import Recipe, Script
+
+
+PROGRAM = "python -m tests.faults.replay"
 
 
 def played(script: Script, folder: Path) -> History:
@@ -68,19 +72,41 @@ def account(history: History) -> str:
     return "\n".join([*lines, "", *(history.broken or ["nothing was wrong"])])
 
 
-def main() -> int:
-    """Play the history of a seed."""
-    parser = argparse.ArgumentParser(prog="python -m tests.faults.replay", description=__doc__.partition("\n")[0])
+def told(recipe: Recipe, history: History) -> str:
+    """What a test says of a history that went wrong: the command that plays it again, and what happened."""
+    return f"{command(recipe)}\n{account(history)}"
+
+
+def command(recipe: Recipe) -> str:
+    """The command that plays a history again, with what is not needed left out."""
+    options = [f"--{name}" for name in ("busy", "large") if getattr(recipe, name)]
+    return " ".join([PROGRAM, str(recipe.seed), "--ecology", recipe.ecology.name, *options, "--shrink"])
+
+
+def options() -> argparse.ArgumentParser:
+    """The parser of the options of this program."""
+    parser = argparse.ArgumentParser(prog=PROGRAM, description=__doc__.partition("\n")[0])
     parser.add_argument("seed", type=int)
     parser.add_argument("--shrink", action="store_true", help="drop whatever is not needed for it to go wrong")
     parser.add_argument("--log", action="store_true", help="show what sites, components and configurators log")
+    parser.add_argument("--busy", action="store_true", help="code is also busy while it acts, and hangs on")
     parser.add_argument("--large", action="store_true", help="only selected lives are followed")
     parser.add_argument("--ecology", choices=ECOLOGIES, default="paper", help="where it happens (default: %(default)s)")
-    arguments = parser.parse_args()
-    logging.basicConfig(level=logging.DEBUG if arguments.log else logging.CRITICAL, format="%(name)s: %(message)s")
+    return parser
+
+
+def recipe_of(given: argparse.Namespace) -> Recipe:
+    """The recipe that the options of this program name."""
+    return Recipe(given.seed, ECOLOGIES[given.ecology], given.busy, given.large)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Play the history of a seed; without arguments, with those of the process."""
+    given = options().parse_args(arguments)
+    logging.basicConfig(level=logging.DEBUG if given.log else logging.CRITICAL, format="%(name)s: %(message)s")
     with tempfile.TemporaryDirectory() as folder:
-        script = replace(write(arguments.seed, ecology=ECOLOGIES[arguments.ecology]), large=arguments.large)
-        if arguments.shrink:
+        script = recipe_of(given).script
+        if given.shrink:
             logging.disable(logging.CRITICAL)
             script = shrink(script, Path(folder))
             logging.disable(logging.NOTSET)

@@ -156,3 +156,21 @@ def with_busy_code(script: Script) -> Script:
         more.append(Action(time, "busy", who, seconds=chance.choice(BUSYNESS)))
     actions = sorted((*script.actions, *more), key=lambda action: action.time)
     return replace(script, actions=tuple(actions), hangs_on=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """All that a script is made of, by the options of `tests.faults.replay`."""
+
+    seed: int
+    ecology: FaultyEcology = PAPER
+    busy: bool = False
+    """Whether code is also busy while it acts, and hangs on."""
+    large: bool = False
+    """Whether the ecology counts as so large that not all lives are followed."""
+
+    @property
+    def script(self) -> Script:
+        """The script that is made."""
+        written = write(self.seed, ecology=self.ecology)
+        return replace(with_busy_code(written) if self.busy else written, large=self.large)

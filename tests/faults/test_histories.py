@@ -5,7 +5,6 @@ How to play one again is said at the head of `tests/faults/replay.py`.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,15 +13,13 @@ from tests.effort import NIGHTLY, examples
 from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import History
 from tests.faults.invariants import ENDS, STEPS
-from tests.faults.replay import account, played, shrink
-from tests.faults.script import KINDS, Action, Script, with_busy_code, write
+from tests.faults.replay import account, played, shrink, told
+from tests.faults.script import KINDS, Action, Recipe, Script, write
 
 HISTORIES = 10_000 if NIGHTLY else examples(750)  # 300 for every push
 BUSY = HISTORIES // 5
 """In so many of these, code is busy or hangs on; at night so many more."""
 BATCH = 20
-NOT_YET: tuple[str, ...] = ()
-"""Kinds of faults that the programs do not stand yet."""
 
 
 @pytest.fixture(scope="module")
@@ -31,16 +28,17 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("advertisements")
 
 
+def play_well(recipe: Recipe, folder: Path) -> None:
+    """Play a history in which nothing may be wrong; else say how to play it again."""
+    history = played(recipe.script, folder / recipe.ecology.name)
+    assert not history.broken, told(recipe, history)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("batch", range(0, HISTORIES if NIGHTLY else HISTORIES - BUSY, BATCH))
 def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
     for seed in range(batch, batch + BATCH):
-        ecology = COMPOSED if seed % 4 == 3 else PAPER
-        script = replace(write(seed, NOT_YET, ecology), large=seed % 3 == 2)
-        history = played(script, folder / ecology.name)
-        large = " --large" if script.large else ""
-        replay = f"python -m tests.faults.replay {seed} --ecology {ecology.name}{large} --shrink"
-        assert not history.broken, f"{replay}\n{account(history)}"
+        play_well(Recipe(seed, COMPOSED if seed % 4 == 3 else PAPER, large=seed % 3 == 2), folder)
 
 
 @pytest.mark.slow
@@ -48,9 +46,7 @@ def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
 def test_no_history_in_which_code_is_busy_or_hangs_on_breaks_an_invariant(batch: int, folder: Path) -> None:
     """As components do that somebody has started by hand: nothing ends them."""
     for seed in range(batch, batch + BATCH):
-        ecology = COMPOSED if seed % 4 == 3 else PAPER
-        history = played(with_busy_code(write(seed, NOT_YET, ecology)), folder / ecology.name)
-        assert not history.broken, account(history)
+        play_well(Recipe(seed, COMPOSED if seed % 4 == 3 else PAPER, busy=True), folder)
 
 
 @pytest.mark.parametrize(
@@ -73,8 +69,7 @@ def test_no_history_in_which_code_is_busy_or_hangs_on_breaks_an_invariant(batch:
     ],
 )
 def test_a_history_that_was_broken_once_is_not_any_more(seed: int, ecology: FaultyEcology, folder: Path) -> None:
-    history = played(write(seed, ecology=ecology), folder / ecology.name)
-    assert not history.broken, account(history)
+    play_well(Recipe(seed, ecology), folder)
 
 
 @pytest.mark.parametrize(
@@ -85,8 +80,7 @@ def test_a_history_that_was_broken_once_is_not_any_more(seed: int, ecology: Faul
     ],
 )
 def test_a_large_history_with_busy_code_that_was_broken_once_is_not_any_more(seed: int, folder: Path) -> None:
-    history = played(replace(with_busy_code(write(seed)), large=True), folder / PAPER.name)
-    assert not history.broken, account(history)
+    play_well(Recipe(seed, busy=True, large=True), folder)
 
 
 def test_a_history_is_replayed_by_its_seed(folder: Path) -> None:
@@ -116,9 +110,9 @@ def test_an_action_that_is_not_possible_does_nothing(folder: Path) -> None:
 def test_a_history_that_goes_wrong_is_shrunk_to_what_is_needed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A component that is deaf to the end of its supervisor acts for nobody."""
     monkeypatch.setattr("selfconf.sdk.supervision.GRACE", 1e9)
-    seed = next(seed for seed in range(100) if played(write(seed, NOT_YET), folder).watch.names)
-    script = shrink(write(seed, NOT_YET), folder)
-    assert 1 < len(script.actions) < len(write(seed, NOT_YET).actions)
+    seed = next(seed for seed in range(100) if played(write(seed), folder).watch.names)
+    script = shrink(write(seed), folder)
+    assert 1 < len(script.actions) < len(write(seed).actions)
     history = played(script, folder)
     assert "nobody acts for nobody" in history.watch.names
     for number in range(len(script.actions)):
