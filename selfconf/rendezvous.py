@@ -19,6 +19,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, field, replace
 from pathlib import Path
+from typing import IO
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import client
@@ -136,6 +137,59 @@ def _locked(descriptor: int, deadline: float) -> bool:
             time.sleep(0.005)  # flock has no time-out, and nothing tells when a lock is free
         else:
             return True
+
+
+class ClaimedName:
+    """The name of a task that a program of this machine has, until it is released or the program has ended."""
+
+    def __init__(self, name: str, file: IO[str] | None = None) -> None:
+        self.name = name
+        self._file = file
+        """The file that is locked; None where the runtime folder cannot be written in."""
+
+    def __enter__(self) -> ClaimedName:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+    def release(self) -> None:
+        """Let others have the name; may be called again."""
+        file, self._file = self._file, None
+        if file is not None:
+            Path(file.name).unlink(missing_ok=True)  # while it is locked, so that it is nobody else's
+            file.close()
+
+
+def claim(ecology: str, name: str) -> ClaimedName | None:
+    """Claim the name of a task of an ecology; None if another program of this machine has it, or is about to.
+
+    Programs that begin in the same moment do not see each other in the ecology yet.
+    """
+    try:
+        with _writing() as root:
+            folder = root / "tasks"
+            folder.mkdir(mode=0o700, exist_ok=True)
+            file = _locked_file(folder / f"{ecology}@{name}")
+    except NetworkError:
+        return ClaimedName(name)
+    return None if file is None else ClaimedName(name, file)
+
+
+def _locked_file(path: Path) -> IO[str] | None:
+    """Open and lock a file that is removed before it is unlocked; None if another process has locked it."""
+    while True:
+        file = path.open("w")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                return file
+        except BlockingIOError:
+            file.close()
+            return None
+        except FileNotFoundError:
+            pass  # it was removed after it was opened, by the one who had it
+        file.close()
 
 
 def announce(site: LocalSite) -> Path:

@@ -243,3 +243,33 @@ def test_a_process_of_components_has_keys_that_speak_for_each_of_them(tmp_path: 
         rendezvous.component_credentials(tmp_path / "lamp", [lamp, bell])
     with pytest.raises(ProgrammerError, match="has to say which components it is"):
         rendezvous.component_credentials(authority.path, [])
+
+
+def test_a_name_that_is_claimed_is_free_again_when_it_is_released_or_its_process_ends(runtime_folder: Path) -> None:
+    program = "from selfconf.rendezvous import claim; claimed = claim('home', 'patrol'); print(claimed.name); input()"
+    with subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "patrol\n"
+        assert rendezvous.claim("home", "patrol") is None
+        with rendezvous.claim("office", "patrol") or pytest.fail("none"):
+            assert sorted(path.name for path in (runtime_folder / "tasks").iterdir()) == [
+                "home@patrol",
+                "office@patrol",
+            ]
+        other.kill()
+    claimed = rendezvous.claim("home", "patrol")
+    assert claimed is not None
+    assert rendezvous.claim("home", "patrol") is None
+    claimed.release()
+    claimed.release()
+    assert list((runtime_folder / "tasks").iterdir()) == []
+
+
+def test_where_nothing_can_be_written_every_name_can_be_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "file" / "runtime"))
+    for _ in range(2):
+        with rendezvous.claim("home", "patrol") or pytest.fail("none") as claimed:
+            assert claimed.name == "patrol"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from itertools import count
+from itertools import chain, count
 
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.port import Replies
@@ -15,6 +15,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
+from selfconf.rendezvous import ClaimedName, claim
 
 COMING_TO_REST = 5.0
 """Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""
@@ -140,28 +141,30 @@ class LivingTasks:
         found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
         return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
 
-    def check_unused(self, name: str) -> None:
-        """Raises NetworkError if a task of that name lives already."""
-        if any(task.name == name for task in self.all()):
-            raise NetworkError(f"a task {name!r} lives already; give another name, or `selfconf stop {name}`")
+    def claim(self, wanted: str, numbered: bool = False) -> ClaimedName:
+        """Claim a name for a task: the wanted one, or with `numbered` that with the first number from 2 on: `patrol-2`.
 
-    def unused(self, wanted: str) -> str:
-        """The wanted name, or if a task has it, that with the first number from 2 on which is free: `patrol-2`."""
+        No task of the ecology has it, and none of this machine begins under it in the same moment. Raises NetworkError
+        if that cannot be.
+        """
         taken = {task.name for task in self.all()}
-        numbered = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2))
-        return wanted if wanted not in taken else next(name for name in numbered if name not in taken)
+        further = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2)) if numbered else ()
+        for name in chain([wanted], further):
+            claimed = None if name in taken else claim(self._keys.ecology, name)
+            if claimed is not None:
+                return claimed
+        raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
 
     def detach(self, record: TaskRecord) -> str:
         """Hand a task to the sites; returns its name. Raises NetworkError if none keeps it, or if its name is taken."""
-        wanted = task_name(record.task)
-        self.check_unused(wanted)
-        try:
-            self._keep(record)
-        except NetworkError:
-            with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
-                self._end_record(record)
-            raise
-        return wanted
+        with self.claim(task_name(record.task)) as claimed:
+            try:
+                self._keep(record)
+            except NetworkError:
+                with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
+                    self._end_record(record)
+                raise
+            return claimed.name
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them; returns their names.

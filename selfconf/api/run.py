@@ -27,6 +27,7 @@ from selfconf.model.run_event import RunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, task_name
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rendezvous import ClaimedName
 from selfconf.termination import Termination
 
 TASKS_CALL = 0.5
@@ -90,7 +91,8 @@ class Run:
         self._bus = member(ecology, endpoints, credentials)
         self.wanted_name = task_name(record.task)
         """The name that was given to the task, or that of its template."""
-        self.task_name = self._unused_name(Keys(ecology), given=bool(name))
+        self._claimed = self._claimed_name(Keys(ecology), given=bool(name))
+        self.task_name = self._claimed.name
         """The name that the task has in the ecology."""
         self._runner = TaskRunner(
             self._bus,
@@ -117,15 +119,11 @@ class Run:
             configurator_name(credentials),
         )
 
-    def _unused_name(self, keys: Keys, given: bool) -> str:
+    def _claimed_name(self, keys: Keys, given: bool) -> ClaimedName:
         """A name that no other task of the ecology has: `stop` goes by it. Raises NetworkError for a given one."""
         patience = ROLL_CALL if given else TASKS_CALL
-        tasks, wanted = LivingTasks(SynchronousBus(self._bus, patience), keys), self.wanted_name
         try:
-            if not given:
-                return tasks.unused(wanted)
-            tasks.check_unused(wanted)
-            return wanted
+            return LivingTasks(SynchronousBus(self._bus, patience), keys).claim(self.wanted_name, numbered=not given)
         except BaseException:
             self._bus.close()
             raise
@@ -146,6 +144,7 @@ class Run:
             while not self._ended and self._bus.now() < deadline:
                 self._work.next(CHECK)
         finally:
+            self._claimed.release()
             self._bus.close()
 
     def events(self) -> Iterator[RunEvent]:
@@ -221,6 +220,7 @@ class Run:
 
     def _settle(self, refusal: Refusal | Undecided | None) -> None:
         self._refusal, self._ended = refusal, True
+        self._claimed.release()
         self._work.wake_up()
 
     def _with_explanation(self, event: RunEvent) -> RunEvent:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import replace
 
 import pytest
@@ -210,13 +211,31 @@ def test_a_task_is_handed_over_once(tasks: Tasks) -> None:
 def test_a_name_that_a_task_has_gets_the_first_number_that_is_free(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1")
     tasks.site(replace(TIDY, task="patrol-2~1"), TIDY)
-    assert [tasks.asked.unused(name) for name in ("watch", "tidy", "patrol")] == ["watch", "tidy-2", "patrol-3"]
+
+    def claimed(wanted: str) -> str:
+        with tasks.asked.claim(wanted, numbered=True) as claim:
+            return claim.name
+
+    assert list(map(claimed, ("watch", "tidy", "patrol"))) == ["watch", "tidy-2", "patrol-3"]
     tasks.configurator("c2", f"{'x' * 64}~1")
-    assert checked_name(tasks.asked.unused("x" * 64), "a task").endswith("x-2")
-    tasks.asked.check_unused("watch")
-    for taken in ("patrol", "tidy"):
-        with pytest.raises(NetworkError, match=f"a task '{taken}' lives already"):
-            tasks.asked.check_unused(taken)
+    assert checked_name(claimed("x" * 64), "a task").endswith("x-2")
+
+
+def test_a_name_that_must_be_the_wanted_one_is_refused_where_a_task_has_it(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    with tasks.asked.claim("watch") as claimed:
+        assert claimed.name == "watch"
+        for taken in ("patrol", "watch"):
+            with pytest.raises(NetworkError, match=f"a task '{taken}' lives already"):
+                tasks.asked.claim(taken)
+
+
+def test_tasks_that_begin_before_they_see_each_other_have_names_of_their_own(tasks: Tasks) -> None:
+    with ExitStack() as stack:
+        claims = [stack.enter_context(tasks.asked.claim("patrol", numbered=True)) for _ in range(3)]
+        assert [claim.name for claim in claims] == ["patrol", "patrol-2", "patrol-3"]
+    with tasks.asked.claim("patrol") as claimed:
+        assert claimed.name == "patrol"
 
 
 def test_a_task_that_no_site_can_keep_is_refused_and_called_off(tasks: Tasks) -> None:

@@ -59,6 +59,18 @@ def test_two_runs_of_one_template_have_names_of_their_own(house: Home, capsys: p
     assert second.ended() == 0
 
 
+def test_runs_of_one_template_that_begin_at_once_have_names_of_their_own(
+    house: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    house.site("kitchen", CLOCK)
+    where = house.arguments()
+    runs = [house.selfconf("run", TEMPLATE, *where, "--format", "json", "--wait") for _ in range(3)]
+    for program in runs:
+        program.act("query")
+    named = sorted(task["task"] for task in run(capsys, "tasks", "--format", "json", *where).body)
+    assert named == ["tell-the-time", "tell-the-time-2", "tell-the-time-3"]
+
+
 def test_a_detached_task_runs_without_the_command_that_began_it(
     house: Home, capsys: pytest.CaptureFixture[str]
 ) -> None:
