@@ -26,7 +26,6 @@ from tests.faults.ecologies import ECOLOGIES
 from tests.faults.histories import History
 from tests.faults.script import Recipe, Script
 
-
 PROGRAM = "python -m tests.faults.replay"
 
 
