@@ -83,6 +83,8 @@ def test_every_cell_that_ends_with_a_value_shows_it(shown: dict[str, dict[str, s
         ("sc.partition(task, home)\n", [":person-tracker", ":absolute-odometry"]),
         ('sc.partition(task, home)["position"]', ["is no PositionSensor"]),
         ("home.query(", ["person-tracker", "living-room"]),
+        ("living.components\n", ["clock", "display"]),
+        ("living.query(", ["display", "kitchen"]),
     ],
 )
 def test_a_table_is_shown_as_html(beginning: str, words: list[str], shown: dict[str, dict[str, str]]) -> None:
@@ -104,3 +106,12 @@ def test_the_refusal_is_shown_with_its_near_miss_and_its_places(shown: dict[str,
     assert "display would fit, but its place is kitchen, not cellar" in html
     assert "display.ttl:5" in html
     assert "(../clock/display.ttl:5)" in of(shown, "    print(")["stream"]
+
+
+def test_a_task_runs_in_a_living_ecology_that_ends_with_the_notebook(shown: dict[str, dict[str, str]]) -> None:
+    assert "endpoint='tcp/127.0.0.1:" in of(shown, "sc.sites(ecology)")["text/plain"]
+    run = of(shown, "deployed\n")
+    acts = [line.split()[0] for line in run["stream"].splitlines()]
+    assert [act for act in acts if act in {"discovered", "running", "stopped"}] == ["discovered", "running", "stopped"]
+    assert run["text/html"].count("<rect ") == 2
+    assert of(shown, "site.wait(), sc.sites(ecology)")["text/plain"] == "(0, ())"
