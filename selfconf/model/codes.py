@@ -373,7 +373,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-T13", "The shape of a role is well-formed SHACL.",
-        "A shape that cannot be evaluated would let nobody play the role, or everybody.",
+        "A shape that cannot be evaluated would let no component play the role, or all.",
         f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount \"one\" ] .",
         f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:minCount 1 ] .",
     ),
@@ -560,7 +560,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L02", "Terms of a loaded ontology are spelt as they are declared.",
-        "A type that nobody declares matches nothing but itself.",
+        "A type that no ontology declares matches nothing but itself.",
         ":tuner a sc:Component, rob:Tuneer .", f"{_TUNER} .",
         severity=Severity.WARNING,
     ),
@@ -583,7 +583,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L06", "A namespace is written exactly as it is declared.",
-        "With http for https, or / for #, all its terms are other terms, and the file says nothing to anybody. "
+        "With http for https, or / for #, all its terms are other terms, and the file says nothing to any reader. "
         "An error for sh: and for what begins with https://w3id.org/selfconf, a warning for others.",
         "@prefix old: <http://w3id.org/selfconf#> .\n:tuner a old:Component, rob:Tuner .",
         f"{_TUNER} .",
@@ -603,7 +603,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L09", "A role stands in the list of roles of a template.",
-        "A role that no template lists is played by nobody.",
+        "A role that no template lists is played by no component.",
         f"{_PAIR}\n:spare a sc:Role ; sh:class rob:Speaker .", _PAIR,
         severity=Severity.WARNING,
     ),
@@ -617,7 +617,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L11", "A role asks for nothing impossible.",
-        "If what its shapes ask for cannot hold at once, or holds of no advertisement, nobody can ever play the role. "
+        "If what its shapes ask for cannot hold at once, or holds of no advertisement, no component can play the role. "
         "What is reported is certain; not all that is impossible can be found.",
         f"{_PAIR}\n:sink sh:property [ sh:path rob:place ; sh:hasValue :kitchen ] ,\n"
         "    [ sh:path rob:place ; sh:in ( :bedroom :hall ) ] .",
@@ -650,7 +650,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L14", "What a role asks its component to be stands in sh:class.",
-        "The type of a role says what the role is, a sc:Role; it asks nothing of anybody, so any component would fit.",
+        "The type of a role says what the role is, a sc:Role; it asks nothing of a component, so any would fit.",
         f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role, rob:Speaker .", _PAIR,
         severity=Severity.WARNING,
     ),
@@ -688,7 +688,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L19", "What a role recruits is possible.",
-        "If the shape of its suppliers contradicts itself, or holds of no advertisement, nobody can ever be recruited.",
+        "If the shape of its suppliers contradicts itself, or holds of no advertisement, none can be recruited.",
         f"{_PAIR}\n:source sc:recruits [ sh:property [ sh:path rob:place ; sh:hasValue :kitchen ] ,\n"
         "    [ sh:path rob:place ; sh:in ( :bedroom :hall ) ] ] .",
         f"{_PAIR}\n:source sc:recruits [ sh:property [ sh:path rob:place ; sh:minCount 1 ] ,\n"
@@ -696,7 +696,7 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
-        "SC-L20", "A role that asks for nobody feeds another, or is fed.",
+        "SC-L20", "A role that asks for no component feeds another, or is fed.",
         "Components of a role with sc:minCount 0 join where they feed or are fed.",
         ":radio a sc:Template ; sc:roles ( :source :sink ) .\n"
         ":source a sc:Role ; sh:class rob:Tuner .\n:sink a sc:Role ; sh:class rob:Speaker ; sc:minCount 0 .",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Term
@@ -59,6 +60,9 @@ class Configuration:
     bindings: Mapping[str, Term] = field(default_factory=dict, hash=False)
     recruits: tuple[IRI, ...] = field(default=(), repr=False)
     """The components that feed players or each other without playing a role, in the order of preference."""
+
+    def __bool__(self) -> Literal[True]:
+        return True  # also one without roles; by `Literal`, type checkers tell it from a refusal, which is false
 
     @property
     def players(self) -> tuple[IRI, ...]:

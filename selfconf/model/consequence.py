@@ -36,7 +36,7 @@ class Consequence:
             return "NONE, a single point of failure"
         changes = [", ".join(map(name, self.started))] if self.started else []
         changes += [f"{name(one)} as {name(role)}" for one, role in self.moved]
-        instead = ", ".join(changes) or "nobody needed"
+        instead = ", ".join(changes) or "no component needed"
         return f"{instead}, and {', '.join(map(name, self.stopped))} would stop" if self.stopped else instead
 
     def __str__(self) -> str:

@@ -40,7 +40,7 @@ class Diagnostic:
     severity: Severity = Severity.ERROR
     width: int = 1
     hint: str | None = None
-    """What to try, where that can be told."""
+    """What to try, where that is known."""
     shape: str | None = None
     """The IRI of the SHACL shape that is violated, if it was one."""
     source: str = field(default="", compare=False)

@@ -1,4 +1,4 @@
-"""The partition F1 ... Fn: for each role, in order, who is eligible (section 3.2 of the paper).
+"""The partition F1 ... Fn: for each role, in order, the eligible components (section 3.2 of the paper).
 
 A parameter that is left unbound is a variable shared by the roles that mention it. What a candidate allows the
 variable to be is a bit mask over the variable's domain. A negative mask, with infinitely many bits set, also allows

@@ -3,7 +3,7 @@
 Each wanted signal is paired with at most one that is offered, the most alike first (a greedy matching, at least half as
 good as the best one). Outputs and inputs count alike, as in LOG4SWS (Schulte et al., 2010): of the outputs, how well
 what is wanted is issued; of the inputs, how well what the component requires is given. Ports that are left over on the
-offering side harm nobody, and count against it a little: the nearest is what is wanted and nothing else.
+offering side do no harm, and count against it a little: the nearest is what is wanted and nothing else.
 """
 
 from __future__ import annotations

@@ -173,12 +173,12 @@ class Input(NamedTuple):
 
     @property
     def request(self) -> IRI | None:
-        """Of an operation: the type of what is sent along."""
+        """The request type of an operation; None for other ports."""
         return None if self.condition is None or self.condition.sent is None else self.condition.sent.type
 
     @property
     def response(self) -> IRI | None:
-        """Of an operation: the type of what is answered."""
+        """The response type of an operation; None for other ports."""
         return _response(self.signals)
 
     @property
@@ -203,7 +203,7 @@ class Output(NamedTuple):
     conforms: frozenset[str] = frozenset()
     """Of the shapes that inputs ask outputs to conform to, those that it is known to conform to."""
     request: IRI | None = None
-    """Of an operation: the type of what is sent along."""
+    """The request type of an operation; None for other ports."""
 
     @property
     def is_operation(self) -> bool:
@@ -212,7 +212,7 @@ class Output(NamedTuple):
 
     @property
     def response(self) -> IRI | None:
-        """Of an operation: the type of what is answered."""
+        """The response type of an operation; None for other ports."""
         return _response(self.signals)
 
     def __str__(self) -> str:
@@ -248,7 +248,7 @@ NO_PREFERENCE = Decimal(0)
 
 @lru_cache(maxsize=10_000)
 def shared_ports(inputs: tuple[Input, ...], outputs: tuple[Output, ...]) -> Ports:
-    """Ports as one object for all who have the same, so that a search tells by identity who is alike."""
+    """Ports as one object for all components that have the same, so that a search tells by identity which are alike."""
     return Ports(inputs, outputs)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
@@ -112,7 +112,7 @@ class DerivationStep:
     def __str__(self) -> str:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
         issues = _issues(self.input, self.wanted)
-        none_issues, port = f"nobody left in {{}} {issues}", port_in_words(self.input).removeprefix("the ")
+        none_issues, port = f"no component left in {{}} {issues}", port_in_words(self.input).removeprefix("the ")
         no_role = f"no recruit {issues}" if self.recruits else f"no interaction feeds its {port}"
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
@@ -127,7 +127,7 @@ def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str,
     """Why an input is not fed: `none_issues` is said of the sources that ask for at least one component."""
     asked = [source.short for source in sources if source not in optional]
     said = [none_issues.format(listed(asked))] if asked else [] if optional else [no_role]
-    said += [f"the role {role.short} asks for nobody (sc:minCount 0)" for role in optional]
+    said += [f"the role {role.short} asks for no component (sc:minCount 0)" for role in optional]
     return ", and ".join([*said, *(["no recruit does"] if recruits and sources else [])])
 
 
@@ -271,7 +271,7 @@ class Refusal:
         )
         return replace(self, reasons=tuple(reasons))
 
-    def __bool__(self) -> bool:
+    def __bool__(self) -> Literal[False]:
         return False
 
 
@@ -279,19 +279,24 @@ class Refusal:
 class Undecided:
     """What was allowed is used up, and there is neither a configuration nor a proof that there is none.
 
+    It has no reasons, near misses or repairs, so that a program can ask whatever is false for them.
+
     >>> answer = configure(template("examples/watch.ttl"), read("examples/watch"), steps=1)
-    >>> isinstance(answer, Undecided), bool(answer)
-    (True, False)
+    >>> isinstance(answer, Undecided), bool(answer), answer.reasons
+    (True, False, ())
     """
 
     code: ClassVar[str] = "undecided"
+    reasons: ClassVar[tuple[Reason, ...]] = ()
+    near_misses: ClassVar[tuple[NearMiss, ...]] = ()
+    repairs: ClassVar[tuple[Relaxation, ...]] = ()
     steps: int = 0
     seconds: float | None = None
     """The time that was allowed, if it was time that ended the search."""
     unaided: bool = False
     """Whether there was no clause-learning solver at hand."""
 
-    def __bool__(self) -> bool:
+    def __bool__(self) -> Literal[False]:
         return False
 
     def __str__(self) -> str:
@@ -300,6 +305,9 @@ class Undecided:
         steps = "1 step" if self.steps == 1 else f"{self.steps} steps"
         solver = ", or install the extra `solvers`" if self.unaided else ""
         return f"not decided within {steps}; allow more by --steps{solver}"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{self}</pre>"  # words and numbers of selfconf: nothing in it has to be escaped
 
 
 Outcome = Configuration | Refusal | Undecided

@@ -19,7 +19,7 @@ class RolePlayed:
 
 @immutable
 class InputFed:
-    """Whoever plays a role gets a signal.
+    """The components that play a role get a signal.
 
     Where an interaction into the role names an input, `input` is the first that the same interactions may feed.
     """
@@ -48,7 +48,7 @@ class OneRoleEach:
     """No component plays two roles."""
 
     def __str__(self) -> str:
-        return "nobody plays two parts"
+        return "no component plays two roles"
 
 
 Requirement = RolePlayed | InputFed | OneValue | OneRoleEach

@@ -99,7 +99,7 @@ class ComponentAwaited(RunEvent):
 
 @immutable
 class InputConnected(RunEvent):
-    """Act 4: an input of a component was told to follow an output of another."""
+    """Act 4: an input of a component was asked to follow an output of another."""
 
     act: ClassVar[str] = "connecting"
     source: IRI
@@ -110,7 +110,7 @@ class InputConnected(RunEvent):
 
 @immutable
 class ActivationSent(RunEvent):
-    """Act 4: a component was told to act."""
+    """Act 4: a component was asked to act."""
 
     act: ClassVar[str] = "activating"
     component: IRI
@@ -147,7 +147,7 @@ class ComponentReleased(CallAnswered):
 
 @immutable
 class CallDeclined(CallAnswered):
-    """A component does not do what it was told, and why."""
+    """A component does not do what it was asked, and why."""
 
     act: ClassVar[str] = "declined"
 

@@ -1,4 +1,4 @@
-"""A template: the roles of a task, who feeds whom, and the parameters that tailor it (section 3.1 of the paper).
+"""A template: its roles, which role feeds which, and the parameters that tailor it (section 3.1 of the paper).
 
 A role is a SHACL node shape, and a component is eligible for it iff it conforms. The shape itself stays in RDF;
 what is here is all that a search needs to know of a role.

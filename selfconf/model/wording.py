@@ -29,7 +29,7 @@ def one_line(text: str, most: int = LONGEST_REMARK) -> str:
 
 
 def sayable(said: object, most: int = LONGEST_REMARK) -> str:
-    """What somebody says as a text that can travel: cut to a length, and with what is no character replaced."""
+    """What a program says as a text that can travel: cut to a length, and with what is no character replaced."""
     return str(said)[:most].encode(errors="replace").decode()
 
 
@@ -70,7 +70,7 @@ def in_full(values: Iterable[Term]) -> str:
 
 
 def term_in_words(value: Term) -> str:
-    """A term for people: an IRI by its local name, a literal as in Turtle; a blank node has no name to be told."""
+    """A term for people: an IRI by its local name, a literal as in Turtle; a blank node has no name to show."""
     if isinstance(value, Literal):
         return value.turtle(lambda datatype: datatype.short)
     return value.short if isinstance(value, IRI) else "a blank node"

@@ -26,7 +26,7 @@ def test_what_comes_instead_is_told_with_what_moves_and_stops() -> None:
 
 
 def test_a_component_that_nothing_replaces_was_not_needed() -> None:
-    assert str(Consequence(A, ROLE, AFTER)) == "a (role): nobody needed"
+    assert str(Consequence(A, ROLE, AFTER)) == "a (role): no component needed"
 
 
 def test_names_are_as_they_are_asked_for() -> None:

@@ -55,7 +55,7 @@ WORDED: list[tuple[Reason, str]] = [
     ),
     (
         InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,), optional=(EYE,)),
-        "the input 'picture' (Image) of cap cannot be fed: the role eye asks for nobody (sc:minCount 0)",
+        "the input 'picture' (Image) of cap cannot be fed: the role eye asks for no component (sc:minCount 0)",
     ),
     (
         InputUnfed(MIND, CAP, "photo()", needed_operation("photo", None, IMAGE).wanted, (EYE,)),
@@ -122,7 +122,7 @@ def test_a_reason_about_several_roles_belongs_to_the_first() -> None:
 @pytest.mark.parametrize(("more", "who"), [(0, "cap"), (1, "cap and one other"), (5, "cap and 5 others")])
 def test_what_follows_is_told_with_how_many_leave_for_it(more: int, who: str) -> None:
     step = DerivationStep(MIND, CAP, more, "picture", WantedSignal((IMAGE,)), (EYE,))
-    assert str(step) == f"{who} cannot play the role mind, as nobody left in eye issues a Image"
+    assert str(step) == f"{who} cannot play the role mind, as no component left in eye issues a Image"
     told = InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,), consequences=(step, step))
     assert str(told).split("; so ") == [str(UNFED), str(step), str(step)]
 
@@ -146,6 +146,11 @@ def test_no_answer_is_true() -> None:
 )
 def test_what_is_not_decided_says_what_to_allow(undecided: Undecided, said: str) -> None:
     assert str(undecided) == said
+
+
+def test_what_is_not_decided_is_asked_for_reasons_as_a_refusal_is_and_has_none() -> None:
+    assert (Undecided(1).reasons, Undecided(1).near_misses, Undecided(1).repairs) == ((), (), ())
+    assert Undecided(1)._repr_html_() == "<pre>not decided within 1 step; allow more by --steps</pre>"
 
 
 def test_a_reason_counts_the_components_that_other_tasks_hold() -> None:

@@ -14,7 +14,7 @@ WORDED: dict[Requirement, str] = {
     InputFed(ROLE, WantedSignal((SIGNAL,))): "mind gets the Image that it needs",
     InputFed(ROLE, WantedSignal((SIGNAL,)), "left"): "mind gets the Image that it needs at 'left'",
     OneValue("room"): "there is one room for all",
-    OneRoleEach(): "nobody plays two parts",
+    OneRoleEach(): "no component plays two roles",
 }
 
 

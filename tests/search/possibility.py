@@ -50,7 +50,7 @@ def _holds(world: World, players: Players, wanted: Collection[Requirement]) -> b
 
 
 def _recruited(world: World, players: Players, needs: Collection[Need], distinct: bool) -> bool:
-    """Whether recruits feed what no role does; they are no players where nobody may play two parts."""
+    """Whether recruits feed what no role does; they are no players where no component may play two roles."""
     if not isinstance(world, RecruitingWorld):
         return False
     numbered = [(world.place[role], wanted) for role, wanted, _ in needs]

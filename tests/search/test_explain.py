@@ -128,7 +128,7 @@ def test_components_that_cannot_play_for_the_same_cause_are_counted(caps: list[s
     assert isinstance(answer, Refusal)
     (reason,) = answer.reasons
     cause = "the input 'scan' (RangeScan) of gps cannot be fed: no candidate of sonar issues a RangeScan for it"
-    assert str(reason) == f"{cause}; so {words}, as nobody left in position issues a Pose"
+    assert str(reason) == f"{cause}; so {words}, as no component left in position issues a Pose"
 
 
 def test_a_component_that_cannot_play_for_another_cause_is_not_counted() -> None:
@@ -147,7 +147,7 @@ def test_a_component_that_cannot_play_for_another_cause_is_not_counted() -> None
     answer = first.search(given_)
     assert isinstance(answer, Refusal)
     (reason,) = answer.reasons
-    assert "b and one other cannot play the role control, as nobody left in position issues a Pose" in str(reason)
+    assert "b and one other cannot play the role control, as no component left in position issues a Pose" in str(reason)
 
 
 def test_a_source_with_a_minimum_of_zero_is_not_said_to_issue_nothing() -> None:
@@ -161,7 +161,7 @@ def test_a_source_with_a_minimum_of_zero_is_not_said_to_issue_nothing() -> None:
         {"sonar": (0, 1)},
     )
     (reason,) = first.search(given_).reasons
-    cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for nobody (sc:minCount 0)"
+    cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for no component (sc:minCount 0)"
     assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"
 
 

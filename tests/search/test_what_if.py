@@ -48,6 +48,6 @@ def test_a_component_that_would_play_another_role_is_named_with_it() -> None:
     assert isinstance(running, Configuration)
     assert [str(loss) for loss in consequences(given_, running)] == [
         "a (first): x as first",
-        "b (second): nobody needed",
-        "x (second): nobody needed",
+        "b (second): no component needed",
+        "x (second): no component needed",
     ]
