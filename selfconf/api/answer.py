@@ -137,9 +137,6 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     def __len__(self) -> int:
         return len(self.assignments)
 
-    def __bool__(self) -> bool:
-        return True  # also where it has no roles: there is a configuration
-
     def __contains__(self, role: object) -> bool:
         return any(role in (one, one.short, self.names(one)) for one in self.roles)
 

@@ -1,0 +1,49 @@
+"""Programs that use the library as its pages show it pass a strict type checker."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("mypy", reason="mypy, which checks types, is not installed")
+
+ROOT = Path(__file__).resolve().parents[2]
+ANSWERS = """
+answer = sc.configure(sc.template("t.ttl"), sc.read("ads"), seconds=5)
+if answer:
+    print(answer["position"], answer.connections, answer.to_turtle(), answer.to_mermaid())
+else:
+    print([str(reason.place) for reason in answer.reasons], answer.near_misses, answer.repairs)
+"""
+
+
+def from_readme() -> str:
+    """The lines by which the README introduces the library."""
+    text = (ROOT / "README.md").read_text("utf-8")
+    return text.partition("```python\nimport selfconf as sc\n")[2].partition("```")[0]
+
+
+PROGRAMS = {"answers": ANSWERS, "readme": from_readme()}
+
+
+@pytest.fixture(scope="module")
+def errors(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """What mypy finds in all programs: in one run, and with the cache of the tree, without which it takes a minute."""
+    folder = tmp_path_factory.mktemp("programs")
+    for name, text in PROGRAMS.items():
+        (folder / f"{name}.py").write_text(f"import selfconf as sc\n{text}", "utf-8")
+    files = [str(folder / f"{name}.py") for name in PROGRAMS]
+    command = [sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", *files]
+    said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert said.returncode in (0, 1), said.stderr
+    return [line for line in said.stdout.splitlines() if ": error: " in line]
+
+
+@pytest.mark.slow
+@pytest.mark.process
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_a_program_is_typed(program: str, errors: list[str]) -> None:
+    assert [line for line in errors if f"/{program}.py:" in line] == []
