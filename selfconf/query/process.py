@@ -24,7 +24,7 @@ from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfE
 from selfconf.model.immutable import immutable
 from selfconf.query.endpoint import asked
 from selfconf.query.results import shown
-from selfconf.rdf.eligibility import ANYBODY, prefaced
+from selfconf.rdf.eligibility import ANY_COMPONENT, prefaced
 from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, only_reads, says
 from selfconf.render import Names
 
@@ -125,7 +125,7 @@ def _remark(question: Question) -> str:
     """What explains an answer that is emptier than expected: an endpoint has its own idea of the default graph."""
     if question.endpoint is None or any(says(question.text, word) for word in ("GRAPH", "FROM")):
         return ""
-    with contextlib.suppress(NetworkError), asked(question.endpoint, ANYBODY, patience=1.0) as found:
+    with contextlib.suppress(NetworkError), asked(question.endpoint, ANY_COMPONENT, patience=1.0) as found:
         if isinstance(found, ox.QueryBoolean) and not found:
             return (
                 f"the default graph of {question.endpoint} holds no component; if each advertisement is a graph of its "

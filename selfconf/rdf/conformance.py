@@ -171,8 +171,8 @@ class _Shares:
 
     The share is twice what the slowest node takes that conforms: what cannot play is not to hold up what can. Once the
     time beyond the shares is used up, a node is not tried if it says more than any that kept to its share, and as much
-    as one that took too long. So nodes are judged in the order of their size, and who says little is judged whatever
-    others say.
+    as one that took too long. So nodes are judged in the order of their size, and one that says little is judged
+    whatever others say.
     """
 
     def __init__(self, least: float) -> None:

@@ -4,9 +4,10 @@ SHACL and SPARQL on rdflib are Python, and Python's regular expressions look for
 (`setitimer`, POSIX) ends both without a process or a thread of its own. An alarm reaches only the main thread, in which
 every program of selfconf does its work; elsewhere there is no limit. What is raised inside a destructor or a callback
 of the garbage collector is lost, so the alarm goes on ringing until the block is left, and Python's report of lost
-exceptions (`sys.unraisablehook`) leaves it out.
+exceptions (`sys.unraisablehook`) leaves it out. It also rings in vain while the block imports a module: a library that
+is imported by half stays so, as Python forgets its package and keeps its modules, and no code can import it ever again.
 
-What nobody waits for any more is ended in the same way, by another thread (`abandonable`).
+What no caller waits for any more is ended in the same way, by another thread (`abandonable`).
 
 A verdict must not depend on what else the machine is doing. So what decides about files and shapes is limited in
 processor time (`processor_limit`); the time of the clock (`deadline`) is for what a user waits for.
@@ -40,7 +41,7 @@ class ProcessorTimeUp(TimeUp):
 
 
 class Abandoned(BaseException):
-    """Nobody waits any more for what is being done; no `TimeUp`, after which something else may be tried."""
+    """No caller waits any more for what is being done; no `TimeUp`, after which something else may be tried."""
 
 
 class _Timer(NamedTuple):
@@ -80,9 +81,10 @@ def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
         yield
         return
     began, entered, report = timer.clock(), True, sys.unraisablehook
+    imports = _imports_under_way(sys._getframe())
 
     def ring(number: int, frame: FrameType | None) -> None:
-        if entered:
+        if entered and _imports_under_way(frame) == imports:
             raise ProcessorTimeUp if number == signal.SIGPROF else TimeUp
 
     handler = signal.signal(timer.signal, ring)
@@ -106,7 +108,7 @@ def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
 def abandonable() -> Iterator[Callable[[], None]]:
     """Give a function by which any thread ends the block, which then raises Abandoned; later it does nothing.
 
-    Its alarm is a timer of the processor time in Python and libraries (ITIMER_VIRTUAL), which is nobody else's here,
+    Its alarm is a timer of the processor time in Python and libraries (ITIMER_VIRTUAL), which nothing else uses here,
     and passes while there is something to end. In another thread than the main one the block goes on to its end.
     """
     if threading.current_thread() is not threading.main_thread():
@@ -114,9 +116,10 @@ def abandonable() -> Iterator[Callable[[], None]]:
         return
     entered, left, report = True, False, sys.unraisablehook
     lock = threading.RLock()  # the thread that is ended may be the one that calls, in a handler of a signal
+    imports = _imports_under_way(sys._getframe())
 
     def ring(number: int, frame: FrameType | None) -> None:
-        if entered:
+        if entered and _imports_under_way(frame) == imports:
             raise Abandoned
 
     def abandon() -> None:
@@ -137,6 +140,15 @@ def abandonable() -> Iterator[Callable[[], None]]:
         signal.setitimer(signal.ITIMER_VIRTUAL, 0)
         signal.signal(signal.SIGVTALRM, handler)
         sys.unraisablehook = report
+
+
+def _imports_under_way(frame: FrameType | None) -> int:
+    """Count the frames of an import, from a frame outwards."""
+    count = 0
+    while frame is not None:
+        count += frame.f_code.co_filename.startswith("<frozen importlib")
+        frame = frame.f_back
+    return count
 
 
 def _report_unless_ringing(report: Callable[[sys.UnraisableHookArgs], object], lost: sys.UnraisableHookArgs) -> None:

@@ -1,7 +1,7 @@
 """Literals as rdflib has them, with their text as it is written, and without surprises for what judges them.
 
 rdflib makes a value of each literal as soon as there is one. What strangers write must not cost much thereby, nor be
-commented on stderr, as that a literal is none of its datatype is told by selfconf where it matters:
+commented on stderr: selfconf itself reports a literal that is none of its datatype, where it matters. So
 
 * markup stays text, as its value would be a document that nothing compares;
 * a decimal is finite: Python's decimals have infinity and not-a-number, which raise in comparisons;

@@ -12,7 +12,7 @@ import pytest
 
 from selfconf.errors import NetworkError
 from selfconf.query.endpoint import asked
-from selfconf.rdf.eligibility.remote import ANYBODY
+from selfconf.rdf.eligibility.remote import ANY_COMPONENT
 from tests.cli.command import Outcome, run
 from tests.cli.endpoints import Scripted, http, oxigraph
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, write_advertisements
@@ -202,7 +202,7 @@ def test_what_the_server_is_sent_is_the_query_and_the_prefixes_it_uses(capsys: p
 def test_the_urls_on_the_page_are_those_that_are_tried(server: str) -> None:
     page = (Path(__file__).parents[2] / "docs" / "endpoint.md").read_text()
     assert "/query?union-default-graph`" in page
-    with asked(f"{server}?union-default-graph", ANYBODY) as found:
+    with asked(f"{server}?union-default-graph", ANY_COMPONENT) as found:
         assert found
-    with asked(server, ANYBODY) as found:
+    with asked(server, ANY_COMPONENT) as found:
         assert not found

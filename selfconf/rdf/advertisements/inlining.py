@@ -130,7 +130,7 @@ def labelled(text: bytes, base: str | None, statements: StatementTable) -> dict[
         except NotInlinableError:
             return None
         except (SyntaxError, MemoryError):
-            pass  # it may be Turtle that begins like N-Triples; or else somebody else says where it is wrong
+            pass  # it may be Turtle that begins like N-Triples; or else the careful reader says where it is wrong
     return None
 
 

@@ -172,7 +172,7 @@ def inlined_document(
 ) -> dict[str, list[Statement]] | None:
     """What a document says of each named subject, from its segments where much is known.
 
-    None where that cannot be told without the careful reader.
+    None where that cannot be found without the careful reader.
 
     Blank nodes with labels have the names of `selfconf.rdf.turtle.SKOLEM`. Raises TurtleError.
     """

@@ -11,7 +11,7 @@ from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.compiler import bound_shape
 from selfconf.rdf.eligibility.nearly_eligible import Exclusion, exclusions, near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
-from selfconf.rdf.eligibility.remote import ANYBODY, TYPES, prefaced, statements, wanted
+from selfconf.rdf.eligibility.remote import ANY_COMPONENT, TYPES, prefaced, statements, wanted
 from selfconf.rdf.eligibility.role_tests import (
     ClassTest,
     CompiledRole,
@@ -26,7 +26,7 @@ from selfconf.rdf.eligibility.similar_types import near_misses_by_type
 from selfconf.rdf.eligibility.unlike_ports import kept_out_by_ports, ports_asked, words_of_role
 
 __all__ = [
-    "ANYBODY",
+    "ANY_COMPONENT",
     "TYPES",
     "AdvertisementIndex",
     "ClassTest",

@@ -158,7 +158,7 @@ class OutputShape:
         for port in outputs:
             own.setdefault(port[0], {})[port] = seen.node(port)
         for component, nodes in own.items():
-            # What another component says is not seen, so that nobody judges others.
+            # What another component says is not seen, so that no shape judges other components.
             data = to_rdflib(seen.triples(component))
             wrong = violations(data, shapes, _SHAPE, list(nodes.values()), "sc:accepts", "the shape")
             found |= {port for port, node in nodes.items() if node not in wrong}

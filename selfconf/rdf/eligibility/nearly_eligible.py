@@ -43,7 +43,7 @@ def exclusions(
 ) -> list[Exclusion]:
     """What keeps each component out that does not play a role: first those of its class, and those with few obstacles.
 
-    What only pySHACL can judge is told of the components that pass all tests.
+    What only pySHACL can judge is reported of the components that pass all tests.
     """
     ecology = AdvertisementIndex.of(advertisements)
     akin = set(partitioner.akin(role, ecology))

@@ -92,7 +92,7 @@ class Partitioner:
             for number, role in enumerate(given.task.template.roles)
             if role.recruits
         }
-        """For each role that recruits, by number, the tests of who may supply its players."""
+        """For each role that recruits, by number, the tests of what may supply its players."""
         self._above = ClassClosure(hierarchy)
         self.not_judged: dict[IRI, NotJudged] = {}
         """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""

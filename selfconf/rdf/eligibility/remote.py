@@ -35,7 +35,7 @@ _ACCEPTED = (
     "?subject ?predicate ?object FILTER ( isBlank(?subject) )"
 )
 """The statements of the shapes that the inputs of a component accept, which are blank nodes at any depth."""
-ANYBODY = f"ASK {{ ?component a {_COMPONENT} }}"
+ANY_COMPONENT = f"ASK {{ ?component a {_COMPONENT} }}"
 """Whether the default graph of an endpoint has a component at all."""
 
 

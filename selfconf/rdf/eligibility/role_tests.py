@@ -114,7 +114,7 @@ class PropertyTest:
                 faults.append(ConstraintFailed(wrong, pair.constraint, pair.other))
         return PropertyUnmet(self.path, tuple(faults)) if faults else None
 
-    # complexity: one case for each field of the test, in the order in which faults are told
+    # complexity: one case for each field of the test, in the order in which faults are reported
     def faults(self, values: frozenset[Term]) -> Iterator[Fault]:
         """All that is wrong with some values: one property is one obstacle, with all that it takes to remove it."""
         asked = self.minimum or self.required or self.free_required or any(one.minimum for one in self.qualified)
@@ -168,7 +168,7 @@ class ParameterTest:
 
 @immutable
 class Count:
-    """Of several groups of tests, at least and at most so many are passed: `sh:or`, `sh:xone`, `sh:not`, `sh:and`."""
+    """Between `minimum` and `maximum` groups of tests pass: `sh:or`, `sh:xone`, `sh:not`, `sh:and`."""
 
     groups: tuple[tuple[RoleTest, ...], ...]
     minimum: int

@@ -20,8 +20,8 @@ def with_sent_requests(partition: Partition, hierarchy: Hierarchy) -> Partition:
     if hierarchy.flat:
         return partition
     # One look at each candidate in C, then one at each choice of ports that they share.
-    everybody = (*(one for some in partition.candidates for one in some), *partition.recruits)
-    distinct = {id(ports): ports for ports in map(_PORTS, everybody)}
+    components = (*(one for some in partition.candidates for one in some), *partition.recruits)
+    distinct = {id(ports): ports for ports in map(_PORTS, components)}
     changed = {key: _raised(ports, hierarchy) for key, ports in distinct.items() if _sends(ports)}
     if not changed:
         return partition

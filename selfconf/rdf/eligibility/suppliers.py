@@ -1,4 +1,4 @@
-"""Who may supply the players of a role that recruits (`sc:recruits`): anybody, or who conforms to a shape."""
+"""Which components may supply the players of a role that recruits (`sc:recruits`): all, or those of a shape."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def with_named_suppliers(document: Document) -> Document:
 
 
 def suppliers_of(document: Document, role: IRI) -> CompiledRole:
-    """The tests that a supplier has to pass; none where a role recruits anybody.
+    """The tests that a supplier has to pass; none where a role recruits any component.
 
     The parameters in its shape have values, by which they are replaced. Raises TemplateError where it is no shape.
     """

@@ -3,7 +3,7 @@
 Python's `re` tries one way after another, so that `^(\\w+\\s?)*$` takes years for forty letters and an exclamation
 mark. Here the expression, as `re` parses it, becomes a nondeterministic automaton (Thompson's construction), and the
 sets of its states become the states of a deterministic one, made when a text first leads there. Which characters a
-class stands for is asked of `re`, so the two agree; only whether there is a match is told, so greed and groups do not
+class stands for is asked of `re`, so the two agree; only whether there is a match is found, so greed and groups do not
 matter.
 
 What is no regular language has no automaton: references to groups, looking ahead and behind, atomic groups.

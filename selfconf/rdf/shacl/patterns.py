@@ -1,6 +1,6 @@
 """Whether a regular expression is found in a text of a stranger, at a cost that the text cannot choose.
 
-Most expressions meet most texts at a cost that can be told beforehand: then `re` is asked. Where its backtracking could
+Most expressions meet most texts at a cost that is known beforehand: then `re` is asked. Where its backtracking could
 go on for long, an automaton is (`selfconf.rdf.shacl.automaton`), which says the same in linear time. What is left are
 expressions beyond regular languages, and texts of megabytes: `re` may try them for a moment of processor time, which
 becomes shorter the more such texts there are, and then they are not decided.

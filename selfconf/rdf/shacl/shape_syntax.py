@@ -49,7 +49,7 @@ DEEPEST_PATH = 50
 """How deep paths within paths are looked at: one that leads back to itself is none."""
 
 ILL_FORMED = "This is not a well-formed shape."
-"""What is said of a shape where no more can be told."""
+"""What is said of a shape where no more is known."""
 WANTED: dict[IRI, str] = {
     **dict.fromkeys(COUNTS, "a whole number"),
     **dict.fromkeys(SWITCHES, "true or false"),

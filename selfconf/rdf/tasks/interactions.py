@@ -32,7 +32,7 @@ class _InteractionReader(DocumentReader):
         known = frozenset(role.iri for role in roles)
         found = {*self._short(roles, known), *self._long(known)}
         number = {role.iri: position for position, role in enumerate(roles)}
-        # Which of several reasons or changes is told first depends on this order, and must not on that of the triples.
+        # Which of several reasons or changes comes first depends on this order, and must not on that of the triples.
         return tuple(sorted(found, key=lambda one: (number[one.source], number[one.sink], *_names(one))))
 
     def _short(self, roles: tuple[Role, ...], known: frozenset[IRI]) -> Iterator[Interaction]:

@@ -82,7 +82,7 @@ def worded(term: Term) -> str:
 
 
 def placed(error: TemplateError, text: str, base: str) -> TemplateError:
-    """The error with the line and column of what it speaks of, where that can be told from the text of the file."""
+    """The error with the line and column of what it speaks of, where that can be found in the text of the file."""
     from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # loads rdflib
 
     if error.subject is None and not error.steps:

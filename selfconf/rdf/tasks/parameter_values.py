@@ -42,7 +42,7 @@ def suitable(parameter: Parameter, values: frozenset[Term], document: Document) 
 
 
 def _passes(tests: Iterable[ValueTest], value: Term) -> bool:
-    """Whether a value passes all tests, and that can be told in time."""
+    """Whether a value passes all tests, and that is found in time."""
     try:
         return all(test.passes(value) for test in tests)
     except MatchTooCostly:

@@ -206,7 +206,7 @@ class _Reader(DocumentReader):
         if not isinstance(value, Literal):
             if not self.document.about(value) or self.document.value(value, FIRST) is not None:
                 problem = (
-                    f"the role {worded(role)} recruits who conforms to {worded(value)}, which is no shape of this file"
+                    f"the role {worded(role)} recruits what conforms to {worded(value)}, which is no shape of this file"
                 )
                 raise self.mistake(problem, role, SC.recruits, value)
             wrong = misfit(self.document, shape_triples(self.document, value), self._variables)

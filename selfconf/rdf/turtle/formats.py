@@ -23,7 +23,7 @@ from selfconf.rdf.turtle.document import Document, document_of
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _HEAD = 1 << 16
-"""Bytes at the head of a file by which its format is told, where the ending of its name does not tell it."""
+"""Bytes at the head of a file by which its format is recognised, where the ending of its name does not say it."""
 
 
 @immutable

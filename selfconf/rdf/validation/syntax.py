@@ -26,7 +26,7 @@ _TO_THE_END = "Line jumps are not allowed"
 
 
 def hint(message: str) -> str | None:
-    """What to try after a message of the parser, if that can be told."""
+    """What to try after a message of the parser, if that is known."""
     undeclared = _UNDECLARED.search(message)
     if undeclared is not None:
         prefix = undeclared["prefix"]

@@ -1,6 +1,6 @@
 """Signal types that no loaded ontology declares: one warning for each namespace of a run, where it is first used.
 
-Nothing else about a file is wrong because of them. So they are told by what the prefilter has seen, and a file is not
+Nothing else about a file is wrong because of them. So they are found in what the prefilter has seen, and a file is not
 checked in full for their sake, however large it is.
 """
 

@@ -5,7 +5,7 @@ wrong, and knows where. Patterns have to be regular expressions and queries SPAR
 at. What is left shows in a trial run: each role is asked about a component of no properties.
 
 A parameter stands where its value will stand, so both look at the template with a sample in its place:
-one of the parameter's datatype. What a parameter of no particular datatype does in a shape cannot be told
+one of the parameter's datatype. What a parameter of no particular datatype does in a shape is not known
 beforehand.
 """
 

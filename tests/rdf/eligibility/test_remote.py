@@ -6,7 +6,7 @@ import pyoxigraph as ox
 
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import read_advertisements
-from selfconf.rdf.eligibility.remote import ANYBODY, TYPES, prefaced, statements
+from selfconf.rdf.eligibility.remote import ANY_COMPONENT, TYPES, prefaced, statements
 from tests.lab import PREFIXES, iri
 
 STORE = ox.Store()
@@ -35,7 +35,7 @@ def test_the_shape_that_an_input_accepts_is_handed_out_whole_however_deep_it_is(
 
 
 def test_an_endpoint_tells_whether_it_has_components_and_of_which_types() -> None:
-    assert STORE.query(ANYBODY)
+    assert STORE.query(ANY_COMPONENT)
     assert {str(row[0].value) for row in STORE.query(TYPES)} >= {iri("A"), iri("B")}
 
 

@@ -38,7 +38,7 @@ class RoleLink(NamedTuple):
 
 
 class Ask(NamedTuple):
-    """A port that a component has to have to play a role: its name and its signal type, where they are told."""
+    """A port that a component has to have to play a role: its name and its signal type, where they are stated."""
 
     name: Node | None
     signal: Node | None
@@ -52,13 +52,13 @@ def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
             inside = [link for link in links if link.source in loop]
             if all(link.sink in loop for link in inside) and not any(_acts(file, role) for role in loop):
                 names = listed([file.short(str(role)) for role in roles if role in loop])
-                who = (
+                which = (
                     f"The role {names} feeds only itself"
                     if len(loop) == 1
                     else f"The roles {names} feed only each other"
                 )
                 closing = [link.offset for link in inside if roles.index(link.sink) <= roles.index(link.source)]
-                message = f"{who}, without an actuator: nothing comes of this loop."
+                message = f"{which}, without an actuator: nothing comes of this loop."
                 hint = "Let it feed a role outside, or a kind of rob:Actuator."
                 yield at(file.positions, max(closing), "SC-L12", message, hint=hint)
 

@@ -24,22 +24,20 @@ def unlisted_roles(file: LintedFile) -> Iterator[Diagnostic]:
     """Roles that stand in no list of roles."""
     listed = {role for roles in file.graph.objects(None, URIRef(SC.roles)) for role in file.items(roles)}
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))) - listed:
-        message = "This role stands in the list of roles of no template, so nobody will play it."
+        message = "This role stands in the list of roles of no template, so no component plays it."
         yield at(file.positions, file.offset(role), "SC-L09", message)
 
 
 def useless_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
-    """Roles that ask for nobody (`sc:minCount 0`) and that no interaction joins to another."""
+    """Roles that ask for no component (`sc:minCount 0`) and that no interaction joins to another."""
     graph = file.graph
     feeding = {*graph.subjects(URIRef(SC.feeds)), *graph.objects(None, URIRef(SC["from"]))}
     fed = {*graph.objects(None, URIRef(SC.feeds)), *graph.objects(None, URIRef(SC.to))}
     for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - feeding - fed:
         for least in graph.objects(role, URIRef(SC.minCount)):
             if isinstance(least, Literal) and least.value == 0:
-                message = (
-                    "This role asks for nobody, feeds nobody and is fed by nobody, so whoever plays it helps nobody."
-                )
-                hint = "Say whom it feeds (sc:feeds), or ask for one."
+                message = "This role asks for no component, feeds none and is fed by none, so it has no effect."
+                hint = "Say which role it feeds (sc:feeds), or ask for a component."
                 offset = file.positions.triples[role, URIRef(SC.minCount), least].predicate
                 yield at(file.positions, offset, "SC-L20", message, hint=hint)
 
@@ -108,16 +106,17 @@ def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
         short = file.short(str(role))
         for conflict in contradictions(NormalForm(file.source, (role, *always))):
-            yield _contradiction(file, role, conflict, f"nobody can play the role {short}", "SC-L11")
+            yield _contradiction(file, role, conflict, f"no component can play the role {short}", "SC-L11")
         for shape in file.graph.objects(role, URIRef(SC.recruits)):
             for conflict in (
                 () if isinstance(shape, Literal) else contradictions(NormalForm(file.source, (shape, *always)))
             ):
-                yield _contradiction(file, shape, conflict, f"nobody can be recruited for the role {short}", "SC-L19")
+                effect = f"no component can be recruited for the role {short}"
+                yield _contradiction(file, shape, conflict, effect, "SC-L19")
 
 
-def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, nobody: str, code: str) -> Diagnostic:
-    """The later of two statements, with the place of the earlier; `nobody` says what follows."""
+def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, effect: str, code: str) -> Diagnostic:
+    """The later of two statements, with the place of the earlier; `effect` is what follows from both."""
     places = {one: file.positions.triples[one].predicate for one in conflict if one in file.positions.triples}
     later = max(places, key=lambda one: places[one], default=conflict.one)
     earlier = conflict.other if later == conflict.one else conflict.one
@@ -125,14 +124,14 @@ def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, 
     hint = None
     if later == earlier:
         what = "No alternative of this can hold" if later[1] in (SH["or"], SH.xone) else "This cannot hold"
-        message = f"{what} beside what else is asked for, so {nobody}."
+        message = f"{what} beside what else is asked for, so {effect}."
     elif earlier in places:
         there, here = file.positions.place(places[earlier]), file.positions.place(offset)
         where = f"line {there.line}" if there.line != here.line else f"column {there.column}"
-        message = f"{file.said(later)} and {file.said(earlier)} ({where}) exclude each other, so {nobody}."
+        message = f"{file.said(later)} and {file.said(earlier)} ({where}) exclude each other, so {effect}."
     else:
         always = next(iter(file.source.values(earlier[0], SH.message)), "All advertisements differ from this.")
-        message = f"{file.said(later)} cannot hold of any advertisement, so {nobody}. {always}"
+        message = f"{file.said(later)} cannot hold of any advertisement, so {effect}. {always}"
     if SH.closed in (later[1], earlier[1]):
         hint = "List what else a component may say in sh:ignoredProperties, at least rdf:type."
     return at(file.positions, offset, code, message, hint=hint)

@@ -3,8 +3,8 @@
 SHACL checks what it finds and passes over what it does not know: `sh:minCnt` asks for nothing, and a
 component whose prefix has https where http belongs is no component at all. Each lint is a function from
 one file to what it finds there. Only terms of sc: and sh: are errors, since there no one else can have
-declared them; all else warns. Here are the lints about words; `template_lints` and `flow_lints` have those about
-templates.
+declared them; all else warns. Here are the lints about words; `templates` and `flow` have those about templates, and
+the tables at the end say which lints run when.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def _unknown(file: LintedFile, iri: str, offset: int, meant: str | None) -> Diag
 def _elsewhere(iri: str, file: LintedFile) -> str | None:
     """The term with that very name in another known namespace, for which this one has the wrong prefix.
 
-    Between vocabularies of others and the standard ones nobody confuses prefixes: `spec:class` is not `sh:class`.
+    Between vocabularies of others and the standard ones no prefixes are confused: `spec:class` is not `sh:class`.
     """
     home = namespace(iri)
     name = iri[len(home) :]
@@ -221,7 +221,8 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     local_components,
     misnamed_units,
 )
-TEMPLATES = (
+"""The lints that run on every file."""
+TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unlisted_roles,
     typed_roles,
     unused_parameters,
@@ -234,3 +235,4 @@ TEMPLATES = (
     incommensurable_units,
     unmet_shapes,
 )
+"""The lints that run on a file only where its templates conform: the others would say what SHACL has said."""

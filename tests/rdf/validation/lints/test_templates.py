@@ -1,4 +1,4 @@
-"""Lints about templates: roles that nobody lists or nobody can play, parameters that nobody uses."""
+"""Lints about templates: roles that are not listed or cannot be played, parameters that are not used."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_a_contradiction_is_shown_at_its_second_side_and_names_the_place_of_the_
     found = only(TEMPLATE + first + ":r sh:node [ sh:property [ sh:path rob:place ; sh:minCount 2 ] ] .")
     assert (found.line - HEAD, found.column) == (3, 48)
     assert found.message == (
-        f"sh:minCount 2 and sh:maxCount 1 (line {HEAD + 2}) exclude each other, so nobody can play the role :r."
+        f"sh:minCount 2 and sh:maxCount 1 (line {HEAD + 2}) exclude each other, so no component can play the role :r."
     )
 
 
