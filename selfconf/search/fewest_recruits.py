@@ -99,7 +99,7 @@ class _Fewest:
         place = {number: at for at, number in enumerate(order)}
         fixed: list[int] = []
         settled = 0
-        """Up to which place of the order it is known who is chosen."""
+        """Up to which place of the order it is known what is chosen."""
         while len(fixed) < len(self.met):
             following = min(place[number] for number in self.met if place[number] >= settled)
             # One question for all that come before the next that is chosen: mostly none of them can be.

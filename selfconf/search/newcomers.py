@@ -3,8 +3,8 @@
 A component that states no value of a parameter suits any, and a trial supposes that of one that does not exist yet,
 unless the shape of its role asks for a value. But one that is made for a role whose shape mentions the parameter will
 mostly state one. Where what else plays leaves a few values, it should be one of these, if the shape permits that, and
-none otherwise. Where any are left, several such components have to share one. For the latter a parameter that nobody
-has stated a value for has to be a variable as well, and so have all values that shapes list.
+none otherwise. Where any are left, several such components have to share one. For the latter a parameter that no
+component states a value of has to be a variable as well, and so have all values that shapes list.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def impossible(problem: Problem) -> set[int]:
 
 
 def with_mentioned_variables(problem: Problem) -> Problem:
-    """Return a problem in which each free parameter that a shape mentions is a variable, though nobody states a value.
+    """Return a problem in which every free parameter that a shape mentions is a variable, stated or not.
 
     All values that shapes list for it are in its domain. But what roles also set something to keeps the values that are
     stated, and has to have one; and what lists its values itself has all of them already.

@@ -37,7 +37,7 @@ from selfconf.search.supply import Supply
 Playing = Sequence[Sequence[Candidate]]
 """For each role, in order, the candidates that play it so far."""
 Issuing = defaultdict[int, list[Candidate]]
-"""By role, candidates that issue a signal; nobody where a role is not named."""
+"""By role, candidates that issue a signal; none where a role is not named."""
 
 
 class Feeder(NamedTuple):
@@ -346,13 +346,13 @@ class Problem:
 
     def _connections(self, playing: Playing) -> tuple[Connection, ...]:
         issuing = self._issuing(playing)
-        nobody: Issuing = defaultdict(list)
+        none_of_any: Issuing = defaultdict(list)
         connections = {
             Connection(source.component, output.name, candidate.profile.component, wanted.name)
             for position, role in enumerate(playing)
             for candidate in role
             for wanted in candidate.profile.inputs
-            for few in (issuing.get(wanted.signals[0], nobody) if len(wanted.signals) == 1 else playing,)
+            for few in (issuing.get(wanted.signals[0], none_of_any) if len(wanted.signals) == 1 else playing,)
             for source, output in self.feeders(position, wanted, few)
         }
         return ordered_connections(connections, (c.profile.component for role in playing for c in role))
@@ -420,7 +420,7 @@ class _Extension:
         # Ascending pairs are a heap already.
         self.trying = [(role, number) for role in roles for number in range(len(self.candidates[role]))]
         full = {role for role in roles if self._is_full(role)}
-        # Thousands may be left when the last role is full, and where those who joined are of no use, again and again.
+        # Thousands may be left when the last role is full, and again and again where what joined is of no use.
         while self.trying and len(full) < len(roles):
             role, number = heappop(self.trying)
             candidate = self.candidates[role][number]

@@ -1,4 +1,4 @@
-"""The recruits among which there is a choice: who is usable, what leads to a need, and what some are enough for."""
+"""The recruits among which there is a choice: which are usable, what leads to a need, and what some are enough for."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ UNSAID = Input("", ())
 
 
 class Suppliers:
-    """Those of whom one has to be chosen to feed an input; one object for all inputs that want the same."""
+    """The components of which one has to feed an input; one object for all inputs that want the same."""
 
     __slots__ = ("consumers", "issuers")
 
@@ -78,7 +78,7 @@ class RecruitChoice:
         self.players = dict(players_of(problem, configuration))
         self.recruits: Sequence[Recruit] = problem.supply.recruits
         outputs = [output for _, profile in self.players.values() for output in profile.outputs]
-        # Without the players, who issue the same as recruits, so that they make nobody usable.
+        # Without the players, which issue the same as recruits, so that they make no recruit usable.
         usable = (one for one in problem.supply.usable(outputs) if self.recruits[one].component not in self.players)
         if among is None:
             looked_at = self._undominated(self.ordered(usable))
@@ -87,11 +87,11 @@ class RecruitChoice:
         self._issued = problem.supply.issued(looked_at)
         self._known: dict[tuple[WantedSignal, int | None], Suppliers] = {}
         self._served: dict[Issuers, list[Suppliers]] = {}
-        """For those who issue the same, whose suppliers they are among."""
+        """For the components that issue the same, the choices of suppliers that they are among."""
         self._from_players: dict[WantedSignal, tuple[IRI, Output] | None] = {}
         self.wanted = list(self._wanted())
         self.needs = dict(self._needs_of_recruits())
-        """For each recruit that matters, of whom one has to be chosen to feed it, for each input no player feeds."""
+        """For each recruit that matters, the suppliers of each input that no player feeds."""
         self._place = {number: at for at, number in enumerate(self.ordered(self.needs))}
         self._lacking = {number: len(needs) for number, needs in self.needs.items()}
         for number, needs in self.needs.items():
@@ -122,7 +122,7 @@ class RecruitChoice:
                 yield number
 
     def _suppliers(self, wanted: WantedSignal, role: int | None = None) -> Suppliers:
-        """Those who could feed an input, of a player of a role or of a recruit; one object for equals."""
+        """The components that could feed an input, of a player of a role or of a recruit; one object for equals."""
         key = wanted, role
         known = self._known.get(key)
         if known is None:
@@ -132,11 +132,11 @@ class RecruitChoice:
         return known
 
     def _fed_by(self, number: int) -> Iterator[Suppliers]:
-        """Yield whose suppliers a recruit is among, perhaps again."""
+        """Yield each choice of suppliers that a recruit is among, perhaps again."""
         return chain.from_iterable(self._served.get(issuers, ()) for issuers in self._issued.by_recruit[number])
 
     def _served_by(self, issuers: Iterable[Issuers], known: Container[Suppliers]) -> list[Suppliers]:
-        """Return the suppliers, but for those known, among whom some who issue the same are."""
+        """Return the choices of suppliers, but for those known, that some components which issue the same are among."""
         found = dict.fromkeys(chain.from_iterable(self._served.get(one, ()) for one in issuers))
         return [suppliers for suppliers in found if suppliers not in known]
 
@@ -289,7 +289,7 @@ class RecruitChoice:
     def reduced(self) -> tuple[ReducedProblem, list[int]]:
         """The choice as options of a role without slots, in the order in which they are chosen, and needs of players.
 
-        Each need stands for suppliers, of whom one has to be chosen.
+        Each need stands for suppliers, of which one has to be chosen.
         """
         every = chain((need.suppliers for need in self.wanted), *self.needs.values())
         number = {suppliers: place for place, suppliers in enumerate(dict.fromkeys(every))}

@@ -59,7 +59,7 @@ def recruited(
 def first_recruited(
     problem: Problem, steps: int = RECRUIT_STEPS, running: Configuration | None = None
 ) -> Configuration | Undecided | None:
-    """Return the configuration of the first players for whom there are recruits, or None.
+    """Return the configuration of the first players that recruits can feed, or None.
 
     For when the first solution is not one of them: recruits may need what a player issues, or play a role themselves.
     With a configuration that runs they are the first of those that keep the most of its players in their roles.
@@ -95,7 +95,7 @@ def founded(
 def _by_clauses(
     problem: Problem, budget: Budget, running: Configuration | None
 ) -> list[list[Candidate]] | Undecided | None:
-    """Return the first players for whom there are recruits, by clause learning."""
+    """Return the first players that recruits can feed, by clause learning."""
     with founded(problem, pruned(with_recruits(problem, () if running is None else running.players))) as clauses:
         found = clauses.solve((), budget)
         if isinstance(found, Undecided) or not found:
@@ -122,7 +122,7 @@ def _staying(clauses: FoundedSolver, running: Configuration) -> list[int]:
 def _by_enumeration(
     problem: Problem, budget: Budget, running: Configuration | None
 ) -> list[list[Candidate]] | Undecided | None:
-    """Return the first players for whom there are recruits, by depth-first search; those that run come first."""
+    """Return the first players that recruits can feed, by depth-first search; those that run come first."""
     search = CandidateSearch(problem if running is None else _running_first(problem, running), budget)
     relevant = _relevant_roles(problem)
     search.matters = max((place for place, role in enumerate(search.slots) if role in relevant), default=-1)
@@ -136,7 +136,7 @@ def _relevant_roles(problem: Problem) -> set[int]:
     """Return the roles on whose players it depends whether there are recruits.
 
     These are the roles that recruit, those that feed them, and those with a candidate that issues what their players
-    need, or what somebody needs who could be recruited for that: as it plays a role, it cannot be recruited.
+    need, or what a component needs that could be recruited for that: as it plays a role, it cannot be recruited.
     """
     recruiting = {number for number, role in enumerate(problem.roles) if role.recruits}
     needed = needed_signals(problem, [c.profile for number in recruiting for c in problem.candidates[number]])

@@ -36,7 +36,7 @@ class Issued:
     def __init__(self, hierarchy: Hierarchy) -> None:
         self.hierarchy = hierarchy
         self.by_recruit: dict[int, tuple[Issuers, ...]] = {}
-        """For each recruit, by number, those among whom its outputs make it."""
+        """For each recruit, by number, the groups of issuers that its outputs make it one of."""
         self._known: dict[tuple[Output, frozenset[int]], Issuers] = {}
         self._by_signal: dict[IRI, list[Issuers]] = {}
 
@@ -78,7 +78,7 @@ class Supply:
         self.required = [recruit.profile.required for recruit in recruits]
         """The inputs of each recruit that must be fed."""
         self._usable: dict[frozenset[Output], list[int]] = {}
-        """What was answered: a search asks again beside the players that it chose, who are mostly all candidates."""
+        """What was answered: a search asks again beside the players that it chose, which are mostly all candidates."""
         self._outputs: dict[int, tuple[Output, ...]] = {}
         self._alike: dict[Output, Output] = {}
         """One of all outputs among which no input tells a difference."""

@@ -1,6 +1,6 @@
 """What interactions ask of the ports of a role: what the roles that it feeds lack, and what it is given itself.
 
-It depends on who plays the other roles, so that there are several *ways*: one for each choice of ports that their
+It depends on the players of the other roles, so that there are several *ways*: one for each choice of ports that their
 candidates have. Of an input that other roles could feed as well nothing is asked.
 """
 

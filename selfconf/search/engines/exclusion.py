@@ -2,7 +2,7 @@
 
 *Conflicts.* Where a need can be fed by one role alone, which has one slot, an option with the need excludes the options
 of that role which do not support it. So do two options that are one component, and two of a role that has one slot. A
-*group* is a set of options that exclude each other pairwise (a clique of the graph of conflicts): "nobody shares a
+*group* is a set of options that exclude each other pairwise (a clique of the graph of conflicts): "no two share a
 frequency" may be wired by port names, pair by pair, and is a group for each frequency in the end. Groups are
 grown greedily until each conflict that is counted here is in one of them, so that they say all that these needs say;
 one constraint with many options propagates like all of its pairs, in a fraction of the space.

@@ -9,10 +9,10 @@ CaDiCaL with the counting written as clauses, on a third clasp, which decides in
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
 begins; after `BRIEF` steps clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a
 process of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits for longer
-(`ALONE_OF_TWO`), and takes the place of clasp, which comes back when nobody has ended for long. Where there is one
+(`ALONE_OF_TWO`), and takes the place of clasp, which comes back when no engine has ended for long. Where there is one
 processor, they take turns, each twice as long as before. With a budget of steps it is always in turns, as a step has to
 mean the same on every machine. What one engine has settled the others take over, since the least solution is unique: so
-the answer is the same whoever finds it, and the time is that of the better one at each question.
+the answer is the same whichever engine finds it, and the time is that of the better one at each question.
 """
 
 from __future__ import annotations

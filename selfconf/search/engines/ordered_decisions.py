@@ -1,9 +1,9 @@
 """Clause learning that decides on options in order, so that the first model it meets is the least solution.
 
-*Which library.* clingo (MIT; Gebser, Kaminski, Kaufmann and Schaub, TPLP 2019): its solver clasp can be told by a
-domain heuristic which atoms to decide on before others, and to make them true (Gebser, Kaufmann, Romero, Otero, Schaub
-and Wanko, AAAI 2013). The clauses are handed over as they are; nothing is grounded. What comes in the extra `solvers`
-beside it is known by `clause_learning`; without clingo the other engines find the same.
+*Which library.* clingo (MIT; Gebser, Kaminski, Kaufmann and Schaub, TPLP 2019): its solver clasp follows a domain
+heuristic that says which atoms to decide on before others, and to make them true (Gebser, Kaufmann, Romero, Otero,
+Schaub and Wanko, AAAI 2013). The clauses are handed over as they are; nothing is grounded. What comes in the extra
+`solvers` beside it is known by `clause_learning`; without clingo the other engines find the same.
 
 *Least.* Each option has a level of its own, which falls from slot to slot and from option to option. Let m be the model
 that is met, m' another one, and o the first option in order on which they differ. Were o played in m' alone, m would
@@ -135,7 +135,7 @@ class OrderedDecisions:
         def found(_: object) -> None:
             ended()
 
-        # A model is told of when it is met, that there is none at the end.
+        # A model is reported when it is met, that there is none at the end.
         return self._control.solve(yield_=True, async_=True, on_model=found, on_finish=found)
 
     def _take(self, handle: clingo.SolveHandle) -> None:

@@ -8,7 +8,7 @@ can be added together, as each holds in one and the same solution.
 
 *Roles.* Two roles with one slot each are interchangeable if they have the same components as options in the same
 order, with equal values admitted, equal needs supported, and needs that want the same of the same sources; and if
-neither feeds the other, or itself. Exchanging who plays them then takes solutions to solutions. The image of a solution
+neither feeds the other, or itself. Exchanging their players then takes solutions to solutions. The image of a solution
 differs from it first in the first of both slots, where it has the option that the solution has in the second. So in the
 least solution the first one has the option that comes first; an earlier one for sure, as components are distinct.
 """
@@ -39,7 +39,7 @@ def interchangeable(reduced: ReducedProblem) -> Iterator[tuple[int, int]]:
 
 
 def _use(reduced: ReducedProblem, role: int) -> Hashable:
-    """Return all that matters of a role, but for who it is."""
+    """Return all that matters of a role, but for its identity."""
     return tuple(
         (
             option.kind.admits,

@@ -7,7 +7,7 @@
 * `in_order` has the options of each role in the order of its candidates.
 * `assigned` gives the candidates for each role that chosen options stand for.
 * `with_recruits` is a problem whose recruits are options as well, those of one role more that has no slots, without a
-  component (`NO_COMPONENT`). `recruits_that_matter` are those that could be fed, and feed somebody. `needed_signals`
+  component (`NO_COMPONENT`). `recruits_that_matter` are those that can be fed and feed a component. `needed_signals`
   are those that some components and their suppliers need, `signals_served` those that a component serves.
 * `pruned` removes options by arc consistency; `consistent` does so for classes, and says why each was removed.
 * A `Constraint` is one of `Played` (a role), `Fed` (a need), `Shared` (the value of a variable) and `Distinct` (the

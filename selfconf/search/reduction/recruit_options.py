@@ -97,7 +97,7 @@ def _undominated(problem: Problem, ranked: Iterable[int], candidates: set[IRI]) 
 
 
 class _Joined:
-    """Numbers what recruits need beside what players need, and finds who supports it."""
+    """Numbers what recruits need beside what players need, and finds what supports it."""
 
     def __init__(self, given: Problem, part: ReducedProblem, recruits: list[int]) -> None:
         self.given, self.part, self.recruits = given, part, recruits
