@@ -8,7 +8,7 @@ from typing import overload
 from selfconf.api.answer import Answer, ExplainedRefusal
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome, Refusal, Undecided
-from selfconf.model.run_event import RunEvent, SearchEnded, TaskRefused, TaskRunning, TaskWaiting
+from selfconf.model.run_event import AnyRunEvent, SearchEnded, TaskRefused, TaskRunning, TaskWaiting
 from selfconf.rdf.tasks import TaskDocument
 
 
@@ -27,7 +27,7 @@ def answered(found: Outcome | None, task: TaskDocument) -> Outcome | None:
     return found
 
 
-def answered_event(event: RunEvent, task: TaskDocument) -> RunEvent:
+def answered_event(event: AnyRunEvent, task: TaskDocument) -> AnyRunEvent:
     """An event whose configuration or refusal, if it has one, is as `answered` gives it."""
     if isinstance(event, TaskRunning):
         return replace(event, configuration=answered(event.configuration, task))

@@ -23,7 +23,7 @@ from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
-from selfconf.model.run_event import RunEvent, TaskRefused, TaskWaiting
+from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, task_name
 from selfconf.rdf.advertisements import Advertisement
@@ -147,7 +147,7 @@ class Run:
             self._claimed.release()
             self._bus.close()
 
-    def events(self) -> Iterator[RunEvent]:
+    def events(self) -> Iterator[AnyRunEvent]:
         """What happens, in order, until the task has ended; does the work of the run while it waits for the next event.
 
         Raises SelfconfError where the shapes of the task cannot be judged, once everything is taken down.
@@ -223,7 +223,7 @@ class Run:
         self._claimed.release()
         self._work.wake_up()
 
-    def _with_explanation(self, event: RunEvent) -> RunEvent:
+    def _with_explanation(self, event: AnyRunEvent) -> AnyRunEvent:
         """An event with what else its refusal can tell; that is found out now, when nothing waits for act 4.
 
         A task that waits may have something to do any moment: then the refusal gets the places of its facts alone.

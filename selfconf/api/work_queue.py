@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from selfconf.rdf.deadline import Abandoned, abandonable
 
 if TYPE_CHECKING:
-    from selfconf.model.run_event import RunEvent
+    from selfconf.model.run_event import AnyRunEvent
 
 
 class _Work(NamedTuple):
@@ -29,7 +29,7 @@ class WorkQueue:
         """For whom something is being done, and what ends it."""
         self._until_more: Callable[[], None] | None = None
         """What ends that which is done only until there is something else."""
-        self._events: deque[RunEvent] = deque()
+        self._events: deque[AnyRunEvent] = deque()
         self._more = threading.Condition()
         self._woken = False
 
@@ -49,7 +49,7 @@ class WorkQueue:
             self._woken = True
             self._notify()
 
-    def report(self, event: RunEvent) -> None:
+    def report(self, event: AnyRunEvent) -> None:
         """Hand an event over."""
         with self._more:
             self._events.append(event)
@@ -87,7 +87,7 @@ class WorkQueue:
         finally:
             self._until_more = None
 
-    def next(self, seconds: float) -> RunEvent | None:
+    def next(self, seconds: float) -> AnyRunEvent | None:
         """Do all the work there is, and return the next event; None if none has come after that long."""
         with self._more:
             if not (self._works or self._events or self._woken) and seconds > 0:

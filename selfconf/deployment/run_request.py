@@ -11,7 +11,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Outcome, Refusal, Undecided
-from selfconf.model.run_event import RunEvent
+from selfconf.model.run_event import AnyRunEvent
 from selfconf.model.template import Task
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import TaskRecord, Wire
@@ -20,7 +20,7 @@ from selfconf.rdf.advertisements import Advertisement
 ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
 
-EventListener = Callable[[RunEvent], None]
+EventListener = Callable[[AnyRunEvent], None]
 """Receives an event of a run."""
 
 Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]

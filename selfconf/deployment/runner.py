@@ -63,12 +63,12 @@ from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import (
     AnswerRejected,
+    AnyRunEvent,
     ComponentLeftOut,
     ComponentLost,
     EcologyAsked,
     EcologyDiscovered,
     FailWatched,
-    RunEvent,
     SearchEnded,
     TaskRefused,
     TaskRunning,
@@ -147,7 +147,7 @@ class TaskRunner:
         self._left_out: set[IRI] = set()
         self._events: deque[Event] = deque()
         self._stepping = False
-        self._unreported: list[RunEvent] = []
+        self._unreported: list[AnyRunEvent] = []
         self._asked = 0
         """How often the ecology was asked."""
         self._look_again: Undo = lambda: None
@@ -343,7 +343,7 @@ class TaskRunner:
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self._report(ComponentLost(component, loss.cause.value, loss.detail))
 
-    def _report(self, event: RunEvent) -> None:
+    def _report(self, event: AnyRunEvent) -> None:
         """Note an event with its time, and report it when there is nothing more urgent to do."""
         if not self._unreported:
             self.bus.later(AT_LEISURE, self._report_all)

@@ -1,6 +1,7 @@
 """What happens while a task runs, as values: what `run` reports, line by line or as JSON, and `Run.events` yields.
 
-Each event has an `act`, a name that is stable for programs, and a time in seconds of the Unix epoch.
+Each event has an `act`, a name that is stable for programs, and a time in seconds of the Unix epoch. Type checkers know
+the facts of an event after `event.act == "running"`, `isinstance` or `match`.
 `selfconf.render` words them.
 """
 
@@ -8,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field, fields
-from typing import ClassVar
+from typing import ClassVar, Literal, TypeAlias
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
@@ -33,14 +34,14 @@ class RunEvent:
 class EcologyAsked(RunEvent):
     """Act 1: the ecology was asked what it has."""
 
-    act: ClassVar[str] = "query"
+    act: ClassVar[Literal["query"]] = "query"
 
 
 @immutable
 class EcologyDiscovered(RunEvent):
     """Act 2: the ecology has answered; `missing` are the sites that live and did not answer in full."""
 
-    act: ClassVar[str] = "discovered"
+    act: ClassVar[Literal["discovered"]] = "discovered"
     components: int
     sites: tuple[str, ...]
     missing: tuple[str, ...] = ()
@@ -50,7 +51,7 @@ class EcologyDiscovered(RunEvent):
 class AnswerRejected(RunEvent):
     """Something in an answer of the ecology was left out, and why."""
 
-    act: ClassVar[str] = "complaint"
+    act: ClassVar[Literal["complaint"]] = "complaint"
     detail: str
 
 
@@ -58,7 +59,7 @@ class AnswerRejected(RunEvent):
 class ComponentLeftOut(RunEvent):
     """Act 3: what a component says cannot be judged, or not in time, so it plays no role; reported once."""
 
-    act: ClassVar[str] = "left out"
+    act: ClassVar[Literal["left out"]] = "left out"
     component: IRI
     reason: str
 
@@ -67,7 +68,7 @@ class ComponentLeftOut(RunEvent):
 class SearchEnded(RunEvent):
     """Act 3: the search has ended, after so many seconds."""
 
-    act: ClassVar[str] = "composed"
+    act: ClassVar[Literal["composed"]] = "composed"
     outcome: Outcome
     seconds: float
 
@@ -76,7 +77,7 @@ class SearchEnded(RunEvent):
 class FailWatched(RunEvent):
     """Act 4: the configurator listens to the FAIL of a component."""
 
-    act: ClassVar[str] = "watching"
+    act: ClassVar[Literal["watching"]] = "watching"
     component: IRI
 
 
@@ -84,7 +85,7 @@ class FailWatched(RunEvent):
 class ComponentWoken(RunEvent):
     """Act 4: a site was asked to start a dormant component."""
 
-    act: ClassVar[str] = "waking"
+    act: ClassVar[Literal["waking"]] = "waking"
     component: IRI
     site: str
 
@@ -93,7 +94,7 @@ class ComponentWoken(RunEvent):
 class ComponentAwaited(RunEvent):
     """Act 4: another task holds a component, and it is waited for."""
 
-    act: ClassVar[str] = "awaiting"
+    act: ClassVar[Literal["awaiting"]] = "awaiting"
     component: IRI
 
 
@@ -101,7 +102,7 @@ class ComponentAwaited(RunEvent):
 class InputConnected(RunEvent):
     """Act 4: an input of a component was asked to follow an output of another."""
 
-    act: ClassVar[str] = "connecting"
+    act: ClassVar[Literal["connecting"]] = "connecting"
     source: IRI
     output: str
     sink: IRI
@@ -112,7 +113,7 @@ class InputConnected(RunEvent):
 class ActivationSent(RunEvent):
     """Act 4: a component was asked to act."""
 
-    act: ClassVar[str] = "activating"
+    act: ClassVar[Literal["activating"]] = "activating"
     component: IRI
 
 
@@ -128,35 +129,35 @@ class CallAnswered(RunEvent):
 class ComponentActivated(CallAnswered):
     """Act 4: a component acts."""
 
-    act: ClassVar[str] = "activated"
+    act: ClassVar[Literal["activated"]] = "activated"
 
 
 @immutable
 class ParametersSet(CallAnswered):
     """Act 4: a component has its operational parameters."""
 
-    act: ClassVar[str] = "set"
+    act: ClassVar[Literal["set"]] = "set"
 
 
 @immutable
 class ComponentReleased(CallAnswered):
     """A component was turned off."""
 
-    act: ClassVar[str] = "released"
+    act: ClassVar[Literal["released"]] = "released"
 
 
 @immutable
 class CallDeclined(CallAnswered):
     """A component does not do what it was asked, and why."""
 
-    act: ClassVar[str] = "declined"
+    act: ClassVar[Literal["declined"]] = "declined"
 
 
 @immutable
 class ComponentUnreachable(RunEvent):
     """A component did not answer a call."""
 
-    act: ClassVar[str] = "unreachable"
+    act: ClassVar[Literal["unreachable"]] = "unreachable"
     component: IRI
     call: str
     detail: str
@@ -166,7 +167,7 @@ class ComponentUnreachable(RunEvent):
 class ComponentLost(RunEvent):
     """A component was given up: it failed, crashed, went silent, or refused."""
 
-    act: ClassVar[str] = "lost"
+    act: ClassVar[Literal["lost"]] = "lost"
     component: IRI
     cause: str
     detail: str
@@ -176,7 +177,7 @@ class ComponentLost(RunEvent):
 class TaskRunning(RunEvent):
     """A configuration is complete and runs."""
 
-    act: ClassVar[str] = "running"
+    act: ClassVar[Literal["running"]] = "running"
     configuration: Configuration
     epoch: int
 
@@ -185,7 +186,7 @@ class TaskRunning(RunEvent):
 class TaskWaiting(RunEvent):
     """There is no configuration now, and the task waits for the ecology to change; `lost` by component, and why."""
 
-    act: ClassVar[str] = "waiting"
+    act: ClassVar[Literal["waiting"]] = "waiting"
     refusal: Refusal | Undecided | None
     lost: Mapping[IRI, str] = field(default_factory=dict)
 
@@ -194,7 +195,7 @@ class TaskWaiting(RunEvent):
 class TaskRefused(RunEvent):
     """The task has ended as there is no configuration, or none was found in time."""
 
-    act: ClassVar[str] = "refused"
+    act: ClassVar[Literal["refused"]] = "refused"
     refusal: Refusal | Undecided
     lost: Mapping[IRI, str] = field(default_factory=dict)
     owed: tuple[IRI, ...] = ()
@@ -205,7 +206,7 @@ class TaskRefused(RunEvent):
 class TaskStopped(RunEvent):
     """The task was taken down as wanted."""
 
-    act: ClassVar[str] = "stopped"
+    act: ClassVar[Literal["stopped"]] = "stopped"
     refusal: None = None
     lost: Mapping[IRI, str] = field(default_factory=dict)
     owed: tuple[IRI, ...] = ()
@@ -216,7 +217,7 @@ class TaskStopped(RunEvent):
 class TaskDetached(RunEvent):
     """The task was handed to the sites of the ecology, which go on with it."""
 
-    act: ClassVar[str] = "detached"
+    act: ClassVar[Literal["detached"]] = "detached"
     task: str
 
 
@@ -224,14 +225,42 @@ class TaskDetached(RunEvent):
 class EcologyUnreachable(RunEvent):
     """The configurator has lost its link to the ecology, and believes nothing until it is back."""
 
-    act: ClassVar[str] = "cut off"
+    act: ClassVar[Literal["cut off"]] = "cut off"
 
 
 @immutable
 class EcologyReachable(RunEvent):
     """The configurator is linked to the ecology again."""
 
-    act: ClassVar[str] = "connected"
+    act: ClassVar[Literal["connected"]] = "connected"
+
+
+AnyRunEvent: TypeAlias = (
+    EcologyAsked
+    | EcologyDiscovered
+    | AnswerRejected
+    | ComponentLeftOut
+    | SearchEnded
+    | FailWatched
+    | ComponentWoken
+    | ComponentAwaited
+    | InputConnected
+    | ActivationSent
+    | ComponentActivated
+    | ParametersSet
+    | ComponentReleased
+    | CallDeclined
+    | ComponentUnreachable
+    | ComponentLost
+    | TaskRunning
+    | TaskWaiting
+    | TaskRefused
+    | TaskStopped
+    | TaskDetached
+    | EcologyUnreachable
+    | EcologyReachable
+)
+"""An event of a run, told apart from the others by its `act` or its class."""
 
 
 def _brief(value: object) -> str:

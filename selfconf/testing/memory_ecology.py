@@ -19,7 +19,7 @@ from selfconf.configurator import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.run_event import RunEvent
+from selfconf.model.run_event import AnyRunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import Advertisement
@@ -60,7 +60,7 @@ class MemoryRun:
 
     def __init__(self, ecology: MemoryEcology, task: TaskSpecification, method: Method, policy: Policy, wait: bool):
         self._ecology, self._task = ecology, task.document
-        self.events: list[RunEvent] = []
+        self.events: list[AnyRunEvent] = []
         """What has happened, in order; the same values as those of `Run.events`."""
         self.refusal: Refusal | Undecided | None = None
         self.ended = False
@@ -113,7 +113,7 @@ class MemoryRun:
     def __repr__(self) -> str:
         return f"<run of {self._task.task.template.iri.short}: {self.phase}>"
 
-    def _report(self, event: RunEvent) -> None:
+    def _report(self, event: AnyRunEvent) -> None:
         self.events.append(answered_event(event, self._task))
 
     def _ended(self, refusal: Refusal | Undecided | None) -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import doctest
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from selfconf.api.run import Run
 
 pytest.importorskip("mypy", reason="mypy, which checks types, is not installed")
 
@@ -19,6 +22,25 @@ else:
     print([str(reason.place) for reason in answer.reasons], answer.near_misses, answer.repairs)
 """
 
+EVENTS = """
+from selfconf import values
+
+def told(event: values.AnyRunEvent) -> str:
+    match event:
+        case values.TaskRunning(configuration=configuration):
+            return f"{configuration.components} in epoch {event.epoch}"
+        case values.TaskWaiting() | values.TaskRefused():
+            return f"{event.refusal and event.refusal.reasons}"
+        case values.ComponentLost():
+            return event.detail
+    if event.act == "left out":
+        return event.reason
+    return event.act
+
+with sc.join() as living, living.run(sc.template("t.ttl"), seconds=5) as run:
+    lines = [told(event) for event in run.events()]
+"""
+
 
 def from_readme() -> str:
     """The lines by which the README introduces the library."""
@@ -26,7 +48,13 @@ def from_readme() -> str:
     return text.partition("```python\nimport selfconf as sc\n")[2].partition("```")[0]
 
 
-PROGRAMS = {"answers": ANSWERS, "readme": from_readme()}
+def from_docstring(documented: type) -> str:
+    """The example of a docstring, as a program."""
+    lines = (example.source for example in doctest.DocTestParser().get_examples(documented.__doc__ or ""))
+    return "from selfconf import join, template\n" + "".join(lines)
+
+
+PROGRAMS = {"answers": ANSWERS, "events": EVENTS, "readme": from_readme(), "run": from_docstring(Run)}
 
 
 @pytest.fixture(scope="module")

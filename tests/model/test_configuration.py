@@ -19,6 +19,10 @@ def test_a_configuration_knows_its_components_and_their_roles() -> None:
     assert configuration.role_of(IRI("urn:x")) is None
 
 
+def test_a_configuration_is_true_also_without_roles() -> None:
+    assert Configuration(IRI("urn:t"), ())
+
+
 def test_connections_have_an_order_that_does_not_depend_on_where_they_came_from() -> None:
     a, b = IRI("urn:a"), IRI("urn:b")
     first, second, third = Connection(a, "x", b, "y"), Connection(a, "y", b, "x"), Connection(b, "x", a, "y")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import FrozenInstanceError
+from typing import get_args
 
 import pytest
 
 from selfconf.model import run_event
 from selfconf.model.configuration import Assignment, Configuration
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.run_event import CallAnswered, ComponentActivated, RunEvent, TaskStopped, TaskWaiting
+from selfconf.model.run_event import AnyRunEvent, CallAnswered, ComponentActivated, RunEvent, TaskStopped, TaskWaiting
 from selfconf.model.term import IRI
 
 EVENTS = [one for one in vars(run_event).values() if isinstance(one, type) and issubclass(one, RunEvent) and one.act]
@@ -19,6 +20,10 @@ EVENTS = [one for one in vars(run_event).values() if isinstance(one, type) and i
 def test_an_act_is_of_one_class() -> None:
     assert max(Counter(kind.act for kind in EVENTS).values()) == 1
     assert len(EVENTS) == 23
+
+
+def test_any_event_is_one_of_those_that_have_an_act() -> None:
+    assert list(get_args(AnyRunEvent)) == EVENTS
 
 
 def test_only_what_says_more_than_its_subclasses_has_no_act() -> None:
