@@ -9,6 +9,8 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 
@@ -198,3 +200,34 @@ def test_outside_of_the_main_thread_what_is_abandoned_goes_on_to_its_end() -> No
     thread.start()
     thread.join()
     assert done
+
+
+@pytest.mark.parametrize("limit", [deadline, processor_limit, None])
+def test_no_module_is_imported_by_half(limit: Limit | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "by_half"
+    package.mkdir()
+    (package / "__init__.py").write_text("from by_half import inner\n")
+    work = "import time\nbegan = time.process_time()\nwhile time.process_time() < began + 0.2:\n    pass\n"
+    (package / "inner.py").write_text(work)
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def imported() -> None:
+        with limit(0.05) if limit is not None else abandonable() as abandon:
+            if abandon is not None:
+                abandon()
+            import_module("by_half")
+            endless()
+
+    with pytest.raises(Abandoned if limit is None else TimeUp):
+        imported()
+    assert {"by_half", "by_half.inner"} <= sys.modules.keys()
+
+
+@LIMITS
+def test_a_limit_is_kept_in_what_an_import_runs(limit: Limit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name = limit.__name__
+    program = f"from selfconf.rdf.deadline import {name}\nwith {name}(0.05):\n    while True:\n        pass\n"
+    (tmp_path / f"endless_{name}.py").write_text(program)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(TimeUp):
+        import_module(f"endless_{name}")
