@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from selfconf.cli.options import (
     add_budget_arguments,
@@ -28,7 +28,7 @@ from selfconf.cli.options import (
 )
 from selfconf.cli.run_lines import TextLines
 from selfconf.cli.terminal import complain, silence
-from selfconf.errors import AuthorError, NetworkError
+from selfconf.errors import AuthorError, NetworkError, reason
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Method
@@ -131,7 +131,8 @@ def run(given: argparse.Namespace) -> int:
         if running.task_name != running.wanted_name:
             complain(f"a task {running.wanted_name!r} lives already, so this one is {running.task_name!r}")
         lines = TextLines(task)
-        printer = LinePrinter(json_lines if given.format == "json" else lines, running.stop)
+        report, stream = (json_lines, sys.stdout) if given.format == "json" else (lines, sys.stderr)
+        printer = LinePrinter(report, stream, running.stop)
         for event in running.events():
             printer.put(event)
         printer.end()
@@ -139,7 +140,7 @@ def run(given: argparse.Namespace) -> int:
     if site is not None and site.exit_code_before_end is not None:
         raise NetworkError(f"its own site has ended with code {site.exit_code_before_end}; everything is taken down")
     if printer.trouble is not None:
-        raise NetworkError(f"its lines cannot be written ({printer.trouble}); everything is taken down")
+        raise NetworkError(f"its lines cannot be written ({reason(printer.trouble)}); everything is taken down")
     if isinstance(running.refusal, Undecided):
         complain(undecided_text(running.refusal, task.iri, task.names))
         return 2
@@ -271,9 +272,9 @@ class LinePrinter:
     END = 2.0
     """Seconds for which the lines that are left are waited for at the end."""
 
-    def __init__(self, report: Callable[[RunEvent], None], broken: Callable[[], None]) -> None:
-        """`broken` is called when a line cannot be written."""
-        self._report, self._broken = report, broken
+    def __init__(self, report: Callable[[RunEvent], None], stream: TextIO, broken: Callable[[], None]) -> None:
+        """The report of an event is written to the stream; `broken` is called when that cannot be."""
+        self._report, self._stream, self._broken = report, stream, broken
         self.trouble: OSError | None = None
         """Why a line could not be written; None also where only the reader of the lines has gone."""
         self._events: queue.SimpleQueue[RunEvent | None] = queue.SimpleQueue()
@@ -294,9 +295,11 @@ class LinePrinter:
             try:
                 self._report(event)
             except OSError as error:  # the reader of the lines is gone, or the disk is full: end rather than run unseen
-                self.trouble = None if isinstance(error, BrokenPipeError) else error
-                for stream in (sys.stdout, sys.stderr):
-                    silence(stream)
+                silence(self._stream)
+                if isinstance(error, BrokenPipeError):  # whoever has gone may have read both
+                    silence(sys.stderr)
+                else:
+                    self.trouble = error
                 self._broken()
                 return
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -42,6 +44,23 @@ def test_people_are_told_which_configurator_holds_what_they_need(inhabited: Home
     assert "start it again" not in refused.complaints
     assert "run again when it is free" in refused.complaints
     assert holder.end(signal.SIGINT) == 0
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+@pytest.mark.parametrize(("form", "stream"), [("json", "stdout"), ("text", "stderr")])
+def test_a_run_whose_lines_cannot_be_written_takes_everything_down(inhabited: Home, form: str, stream: str) -> None:
+    words = ("run", "navigate.ttl", "--bind", "robot=:Astrid", "--bind", "goal=x", "--ecology", inhabited.ecology)
+    command = [sys.executable, "-m", "selfconf", *words, "--format", form]
+    with Path("/dev/full").open("w") as full:
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: full}
+        done = subprocess.run(
+            command, cwd=inhabited.folder, env=inhabited.environment, text=True, check=False, **streams
+        )
+    assert done.returncode == 2
+    if form == "json":
+        said = "its lines cannot be written (No space left on device); everything is taken down"
+        assert done.stderr == f"selfconf run: {said}\n"
+    assert inhabited.active(*EVERYBODY) == set()
 
 
 def test_a_run_that_was_suspended_goes_on_with_those_that_turned_themselves_off_meanwhile(inhabited: Home) -> None:
