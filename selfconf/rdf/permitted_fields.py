@@ -11,7 +11,8 @@ the fast loader recognises without looking closer. The last may accept less than
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from decimal import Decimal
 
 from selfconf.model.immutable import immutable
 from selfconf.model.number import number_of
@@ -249,15 +250,30 @@ COMPONENT = Subject(
 
 PORTS = tuple(COMPONENT[link] for link in (SC.hasInput, SC.hasOutput, SC.hasParameter))
 """The fields of a component that lead to what most components have: inputs, outputs, operational parameters."""
-SETTINGS = {
-    SC.preference: "preference",
-    SC.shareable: "shareable",
-    SC.tolerates: "tolerates",
-    SC.deadline: "deadline",
-    SC.restarts: "restarts",
-    SC.grounding: "command",
+
+
+@immutable
+class SingleValue:
+    """How the profile of a component holds a field that says one thing."""
+
+    member: str
+    """The name of the member of the profile."""
+    value: Callable[[str, str], Decimal | float | bool | None]
+    """Its value, from the text and the datatype of a literal that the kind of the field allows."""
+
+
+def _seconds(lexical: str, datatype: str) -> float:
+    return float(number_of(lexical, datatype) or 0)
+
+
+SETTINGS: Mapping[IRI, SingleValue] = {
+    SC.preference: SingleValue("preference", number_of),
+    SC.shareable: SingleValue("shareable", lambda lexical, _: TRUTH[lexical]),
+    SC.tolerates: SingleValue("tolerates", _seconds),
+    SC.deadline: SingleValue("deadline", _seconds),
+    SC.restarts: SingleValue("restarts", lambda lexical, _: int(lexical)),
 }
-"""The fields of a component that say one thing each, with the member of its profile that holds it."""
+"""The fields of a component that say one thing each. The careful reader and the fast loader both read them by this."""
 LINKS = frozenset(field.predicate for subject in COMPONENT.walk() for field in subject.fields if field.into.fields)
 """What leads from a component to what else its profile is made of."""
 SHAPE_LINKS = PERMITTED_IN_SHAPES - {TYPE} | {SC.accepts}

@@ -17,7 +17,7 @@ from selfconf import library
 from selfconf.model import number as numbers
 from selfconf.model import term as model
 from selfconf.model.profile import Profile
-from selfconf.rdf.advertisements import reader
+from selfconf.rdf.advertisements import read_advertisements, reader
 from selfconf.rdf.permitted_fields import (
     ACCEPTED_SHAPE,
     COMMAND_LINE,
@@ -168,8 +168,22 @@ def test_every_field_of_a_component_is_a_type_a_port_or_a_member_of_its_profile(
         SC.needsOperation,
         *(link.predicate for link in PORTS),
         *SETTINGS,
+        SC.grounding,
     }
-    assert set(SETTINGS.values()) <= set(Profile.__dataclass_fields__)
+    assert {setting.member for setting in SETTINGS.values()} <= set(Profile.__dataclass_fields__)
+
+
+@pytest.mark.parametrize("predicate", SETTINGS)
+def test_a_field_of_one_value_is_read_as_its_member_by_the_careful_reader_and_by_the_fast_loader(
+    predicate: model.IRI,
+) -> None:
+    field, member = COMPONENT[predicate], SETTINGS[predicate].member
+    samples = {NUMBER.words: "7", COUNT.words: "7", TRUE_OR_FALSE.words: "true"}
+    value = "[ sc:value 7 ; sc:unit unit:SEC ]" if field.into.fields else samples[field.kind.words]
+    text = f"{PREFIXES} :a a sc:Component , :Lamp ; <{predicate}> {value} ."
+    (careful,), _ = reader.read_document(parse(text, "a.ttl"))
+    (fast,), _ = read_advertisements(text.encode(), "a.ttl")
+    assert getattr(careful.profile, member) == getattr(fast.profile, member) == (True if value == "true" else 7)
 
 
 def test_the_number_of_a_cost_is_the_number_of_an_advertisement() -> None:

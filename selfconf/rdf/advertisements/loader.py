@@ -37,7 +37,8 @@ from selfconf.rdf.vocabulary import SC, TYPE
 
 Keyed = tuple[tuple[str, tuple[int, str, str, str]], tuple[IRI, Term]]
 _NAME, _PREDICATE = attrgetter("name"), attrgetter("predicate")
-_SETTINGS = {f"<{predicate}>": member for predicate, member in SETTINGS.items()}
+_SETTINGS = {f"<{predicate}>": setting.member for predicate, setting in SETTINGS.items()}
+_GROUNDING = f"<{SC.grounding}>"
 _LINKS = LINKS | SHAPE_LINKS
 _FIELDS = {f"<{predicate}>" for predicate in advertisements.FIELDS}
 _NONE: frozenset[IRI] = frozenset()
@@ -155,8 +156,8 @@ def _merged(component: IRI, types: frozenset[IRI], statements: tuple[Statement, 
         elif statement.predicate in _SETTINGS:
             member = _SETTINGS[statement.predicate]
             settings[member] = getattr(part, member)
-            if part.inside is not None:
-                settings["inside"] = part.inside
+        elif statement.predicate == _GROUNDING:
+            settings["command"], settings["inside"] = part.command, part.inside
     properties.sort()
     return Profile(
         component,
@@ -197,7 +198,7 @@ class Origin:
         self._parsed: dict[str, Mapping[Node, list[tuple[IRI, Term]]]] = {}
 
     def linked(self, said: Iterable[Statement], known: StatementTable) -> tuple[Statement, ...] | None:
-        """What a component says, with what things it links to say of themselves; None where that cannot be told."""
+        """What a component says, with what things it links to say of themselves; None if only the reader finds it."""
         found: list[Statement] = []
         for statement in said:
             names = statement.links if statement in known.suspects else ()

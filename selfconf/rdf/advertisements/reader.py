@@ -8,11 +8,10 @@ a test holds the two verdicts together.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from decimal import Decimal
+from typing import Any
 
 from selfconf.model.number import number
 from selfconf.model.profile import (
-    NO_PREFERENCE,
     Condition,
     Input,
     OperationalParameter,
@@ -43,6 +42,7 @@ from selfconf.rdf.permitted_fields import (
     PORT_NAME,
     REQUEST,
     RESPONSE,
+    SETTINGS,
     SIGNAL_TYPE,
     STRUCTURE,
     Field,
@@ -133,14 +133,10 @@ class _Reader:
                 tuple(sorted(outputs, key=lambda port: port.name)),
             ),
             parameters=tuple(sorted(parameters, key=lambda parameter: parameter.name)),
-            preference=self._preference(),
-            shareable=self._shareable(),
-            tolerates=self._quantity(self.component, COMPONENT[SC.tolerates], "what a component sc:tolerates"),
-            deadline=self._quantity(self.component, COMPONENT[SC.deadline], "the sc:deadline of a component"),
-            restarts=self._restarts(),
+            place=Place(self.document.source),
+            **self._settings(),
             command=self._command(),
             inside=self._inside(),
-            place=Place(self.document.source),
         )
 
     def _types(self) -> frozenset[IRI]:
@@ -205,8 +201,9 @@ class _Reader:
 
     def _output(self, name: str, node: Term) -> Output:
         rate = self._quantity(node, OUTPUT[SC.rate], f"the sc:rate of output {name!r}")
+        hertz = None if rate is None else float(number(rate) or 0)
         frame = self._field_of_port(node, name, OUTPUT[SC.frame])
-        return Output(name, self._signals(node, name), rate, self._unit(node, name), frame)
+        return Output(name, self._signals(node, name), hertz, self._unit(node, name), frame)
 
     def _signals(self, node: Term, name: str) -> tuple[IRI, ...]:
         values = self.document.values(node, SIGNAL_TYPE.predicate)
@@ -252,6 +249,22 @@ class _Reader:
         if problem not in self.problems:
             self.problems.append(problem)
 
+    def _settings(self) -> dict[str, Any]:
+        """The members of the profile that hold one value each, of those fields that are there and in order."""
+        found: dict[str, Any] = {}
+        for predicate, setting in SETTINGS.items():
+            field = COMPONENT[predicate]
+            if field.into.fields:
+                said = "what a component sc:tolerates"
+                if predicate != SC.tolerates:
+                    said = f"the {_word(predicate)} of a component"
+                value = self._quantity(self.component, field, said)
+            else:
+                value = self._setting(field)
+            if value is not None:
+                found[setting.member] = setting.value(value.lexical, value.datatype)
+        return found
+
     def _setting(self, field: Field) -> Literal | None:
         """The value of a field that a component need not have; a problem if it is there and not in order."""
         if not self.document.values(self.component, field.predicate):
@@ -262,18 +275,7 @@ class _Reader:
         self._problem(f"{_word(field.predicate)} is {field.kind.words}, if it is there at all")
         return None
 
-    def _preference(self) -> Decimal:
-        value = self._setting(COMPONENT[SC.preference])
-        return NO_PREFERENCE if value is None else number(value) or NO_PREFERENCE
-
-    def _shareable(self) -> bool | None:
-        return truth(self._setting(COMPONENT[SC.shareable]))
-
-    def _restarts(self) -> int | None:
-        value = self._setting(COMPONENT[SC.restarts])
-        return None if value is None else int(value.lexical)
-
-    def _quantity(self, node: Term, field: Field, what: str) -> float | None:
+    def _quantity(self, node: Term, field: Field, what: str) -> Literal | None:
         """The number of a rate or of a duration, if there is one; a problem if it is not in order."""
         if not self.document.values(node, field.predicate):
             return None
@@ -282,7 +284,8 @@ class _Reader:
             unit = field.into[SC.unit].kind.words
             self._problem(f"{what} is [ sc:value NUMBER ; sc:unit {unit} ], above zero")
             return None
-        return float(number(self.document.values(quantity, SC.value)[0]) or 0)
+        (value,) = self.document.values(quantity, SC.value)
+        return value if isinstance(value, Literal) else None
 
     def _inside(self) -> IRI | None:
         """The template of a composite, if it is one."""

@@ -6,9 +6,7 @@ Each pattern accepts less than the table allows, never more; what is not recogni
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from decimal import Decimal
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from selfconf.model.profile import Input, OperationalParameter, Output, Ports, Profile
 from selfconf.model.term import IRI, STRING, Literal, Term
@@ -19,6 +17,7 @@ from selfconf.rdf.permitted_fields import (
     NEXT,
     PARAMETER_TYPE,
     PORTS,
+    SETTINGS,
     SIGNAL_TYPE,
     Field,
 )
@@ -73,17 +72,10 @@ class _PortPattern(NamedTuple):
 
 
 _PORTS = {f"<{link.predicate}>": _PortPattern.of(link) for link in PORTS}
-_SETTINGS: dict[str, tuple[re.Pattern[str], Callable[[str], Profile]]] = {
-    f"<{predicate}>": (re.compile(COMPONENT[predicate].turtle), part)
-    for predicate, part in (
-        (SC.preference, lambda text: Profile(SUBJECT, preference=Decimal(text))),
-        (SC.shareable, lambda text: Profile(SUBJECT, shareable=text == "true")),
-        (SC.tolerates, lambda text: Profile(SUBJECT, tolerates=float(text))),
-        (SC.deadline, lambda text: Profile(SUBJECT, deadline=float(text))),
-        (SC.restarts, lambda text: Profile(SUBJECT, restarts=int(text))),
-    )
+_SETTINGS = {
+    f"<{predicate}>": (re.compile(COMPONENT[predicate].turtle), setting) for predicate, setting in SETTINGS.items()
 }
-"""Of the fields of a component that say one thing: their pattern, and what makes a profile of the text of the value."""
+"""Of the fields of a component that say one thing: their pattern, and how a profile holds the value."""
 _COMMAND = re.compile(rf"<{SC.grounding}> \[ (?:{_KINDS}{NEXT})?{GROUNDING[SC.command].turtle} \]")
 
 
@@ -137,9 +129,12 @@ def setting_of(predicate: str, text: str) -> Profile | None:
     if predicate not in _SETTINGS:
         command = _COMMAND.fullmatch(text)
         return None if command is None else Profile(SUBJECT, command=command["command"])
-    pattern, part = _SETTINGS[predicate]
+    pattern, setting = _SETTINGS[predicate]
     found = pattern.fullmatch(text)
-    return None if found is None else part(found.group(1))
+    if found is None:
+        return None
+    value: dict[str, Any] = {setting.member: setting.value(found.group(1), XSD.decimal)}
+    return Profile(SUBJECT, **value)
 
 
 def property_of(text: str) -> tuple[IRI, Term] | None:

@@ -106,7 +106,8 @@ def told(found: tuple[list[Advertisement], list[MalformedAdvertisement]]) -> tup
                 a.types,
                 Counter((p, "[]" if type(v).__name__ == "BlankNode" else v) for p, v in a.profile.properties),
                 (a.profile.inputs, a.profile.outputs, a.profile.parameters),
-                [getattr(a.profile, member) for member in SETTINGS.values()],
+                [getattr(a.profile, setting.member) for setting in SETTINGS.values()],
+                (a.profile.command, a.profile.inside),
                 str(a.profile.place),
                 shape_of(a.triples),
             )

@@ -70,6 +70,11 @@ def test_a_port_that_is_not_in_order_is_left_to_the_careful_reader(link: str, sa
         (SC.preference, "-2.5", Profile(SUBJECT, preference=Decimal("-2.5"))),
         (SC.shareable, "true", Profile(SUBJECT, shareable=True)),
         (SC.restarts, "3", Profile(SUBJECT, restarts=3)),
+        (
+            SC.deadline,
+            f"[ <{SC.value}> 2.5{NEXT}<{SC.unit}> <{UNIT.SEC}> ]",
+            Profile(SUBJECT, deadline=2.5),
+        ),
         (SC.grounding, f'[ <{SC.command}> "lamp --on" ]', Profile(SUBJECT, command="lamp --on")),
     ],
 )
