@@ -2,6 +2,9 @@
 
 A composite passes on nothing: a configurator is told which outputs stand behind those of the composite that it starts.
 Who only looks on is told nothing, so it asks the composite for its `state`, again and again as long as it listens.
+
+Outputs are latched: a reader asks each output that it begins to hear for its last signal, as an input does. An output
+that nobody else follows issues it again by itself; the reader gets it once.
 """
 
 from __future__ import annotations
@@ -20,13 +23,43 @@ OUTPUTS_ASKED_AGAIN = 1.0
 """Seconds between two questions to a composite which outputs stand behind its own."""
 COMPOSITE_PATIENCE = 2.0
 """Seconds that a composite may take to answer."""
+LAST_SIGNAL_PATIENCE = 2.0
+"""Seconds that an output may take to say its last signal."""
 
 
 def follow_output(bus: Bus, keys: Keys, profile: Profile, output: str, heard: Callable[[Sample], None]) -> Undo:
-    """Hear the signals of an output of a component, until that is undone; runs on the thread of the bus."""
+    """Hear an output of a component, first its last signal if there is one, until undone; on the thread of the bus."""
     if profile.inside is None:
-        return bus.subscribe(keys.output(profile.component, output), heard)
+        return _Latched(bus, keys.output(profile.component, output), heard).end
     return _IssuedInside(bus, keys, profile, output, heard).end
+
+
+class _Latched:
+    """Hears what is issued on a key, and what was issued there last, each signal once."""
+
+    def __init__(self, bus: Bus, key: str, heard: Callable[[Sample], None]) -> None:
+        self._heard = heard
+        self._last: bytes | None = None
+        """The stamp of what was heard last; None if nothing was."""
+        self._undo: Undo | None = bus.subscribe(key, self._issued)
+        bus.ask(key, b"", LAST_SIGNAL_PATIENCE, self._answered)
+
+    def end(self) -> None:
+        """Hear no more."""
+        undo, self._undo = self._undo, None
+        if undo is not None:
+            undo()
+
+    def _issued(self, sample: Sample) -> None:
+        again = sample.attachment and sample.attachment == self._last
+        if self._undo is not None and not again:
+            self._last = sample.attachment
+            self._heard(sample)
+
+    def _answered(self, replies: Replies) -> None:
+        for sample in replies.samples:
+            if self._last is None:  # else what was issued meanwhile is newer
+                self._issued(sample)
 
 
 class _IssuedInside:
@@ -63,4 +96,4 @@ class _IssuedInside:
             self._followed.pop(key)()
         for key in wanted:
             if key not in self._followed:
-                self._followed[key] = self._bus.subscribe(key, self._heard)
+                self._followed[key] = _Latched(self._bus, key, self._heard).end

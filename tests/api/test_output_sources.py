@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from selfconf.api.output_sources import follow_output
+from selfconf.api.task import template
 from selfconf.bus.port import Sample, Undo
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.sdk import Component
+from selfconf.testing import Faults, MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME
-from tests.api.test_composites import SERVED, SERVICE, House
+from tests.api.test_composites import PREFIXES, SERVED, SERVICE, House
 
 
 def followed(house: House) -> tuple[list[str], Undo]:
@@ -46,3 +49,57 @@ def test_a_composite_that_does_not_act_is_heard_once_it_does() -> None:
     house.run()
     house.ecology.advance(2.0)
     assert set(sources) == {"t1"}
+
+
+DOORBELL = IRI("urn:c:bell")
+BELL = f'{PREFIXES}:bell a sc:Component, :Bell ; sc:hasOutput [ sc:name "rung" ; sc:signalType :Ring ] .'
+CHIME = f'{PREFIXES}:chime a sc:Component, :Chime ; sc:hasInput [ sc:name "rung" ; sc:signalType :Ring ] .'
+ANSWER_THE_DOOR = f"""{PREFIXES}
+:answer a sc:Template ; sc:roles ( :bells :chimes ) .
+:bells a sc:Role ; sh:class :Bell ; sc:feeds :chimes .
+:chimes a sc:Role ; sh:class :Chime ."""
+
+
+class Bell(Component):
+    """Rings once as it begins to act, and then when it is told to."""
+
+    def started(self) -> None:
+        self.emit("rung", 1)
+
+
+def heard_of_bell(ecology: MemoryEcology) -> list[bytes]:
+    """What a reader that begins now hears of the doorbell."""
+    heard: list[bytes] = []
+    profile = ecology.advertisements[DOORBELL].profile
+    bus = ecology.network.node()
+    follow_output(bus, Keys(ECOLOGY_NAME), profile, "rung", lambda sample: heard.append(sample.payload))
+    return heard
+
+
+def test_every_reader_gets_the_last_signal_once_whoever_else_follows_the_output() -> None:
+    ecology = MemoryEcology()
+    bell = ecology.add(Bell(), BELL)
+    ecology.add(Component(), CHIME)
+    alone = heard_of_bell(ecology)
+    ecology.run(template(ANSWER_THE_DOOR)).started()
+    ecology.advance(1.0)
+    assert alone == [b"1"]
+    beside = heard_of_bell(ecology)
+    ecology.advance(1.0)
+    assert beside == [b"1"]
+    bell.emit("rung", 2)
+    ecology.advance(1.0)
+    assert (alone, beside) == ([b"1", b"2"], [b"1", b"2"])
+
+
+def test_what_was_issued_meanwhile_is_not_followed_by_an_older_signal() -> None:
+    ecology = MemoryEcology(faults=Faults(most_delay=0.2))
+    bell = ecology.add(Bell(), BELL)
+    ecology.add(Component(), CHIME)
+    ecology.run(template(ANSWER_THE_DOOR)).started()
+    for number in range(2, 40):
+        heard = heard_of_bell(ecology)
+        bell.emit("rung", number)
+        ecology.advance(1.0)
+        assert heard[-1] == b"%d" % number
+        assert sorted(set(heard), key=int) == heard
