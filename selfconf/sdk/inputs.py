@@ -10,7 +10,8 @@ promised periods, and again as long as none comes.
 *Blindness.* An input is unfed when the life of the last of its outputs has ended, or that output's component has raised
 FAIL, has fallen silent, or has let go of a task and acts for no other, or another output has taken its place and has
 not issued anything yet. It is fed again by the first signal that comes; what still waits of a lost output is dropped,
-or a slow component would take it for news.
+or a slow component would take it for news. So is what an output that stands by has issued for another task, which it
+acts for no more.
 
 *Handing over.* Where a call asks for it (`gently`), an input goes on following the old output until the new one has
 issued a signal. A new output that issues nothing in time while the old one does is reported as silent, and again as
@@ -495,7 +496,7 @@ class InputSubscription:
             return
         if fail.component != self._wire.component or not fail.life or fail.cause is Cause.YIELD:
             return
-        if fail.cause is Cause.LET_GO:
+        if fail.cause is Cause.LET_GO and not self.muted:
             self._look_whether_it_acts(self._heard_at)
         else:
             self._over = fail.life, fail.sequence
@@ -513,9 +514,11 @@ class InputSubscription:
         self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, answered)
 
     def _lose(self, heard: float) -> None:
-        """The output is lost, unless it has issued a signal after that time."""
-        if not self.lost and not self.muted and self._heard_at <= heard:
-            self._queue.keep(0)  # before the input is told: what comes after that is news, and feeds it
+        """The output is lost, unless it has issued a signal after that time; one that stands by may act again later."""
+        if self.lost or self._heard_at > heard:
+            return
+        self._queue.keep(0)  # before the input is told: what comes after that is news, and feeds it
+        if not self.muted:
             self.lost = True
             self._report_lost(self._port)
 

@@ -348,6 +348,30 @@ def test_what_an_output_that_stands_by_issued_long_ago_does_not_count() -> None:
     assert stage.recorder.said == [("started",), ("unfed", "position")]
 
 
+@pytest.mark.parametrize("gently", [False, True])
+def test_what_an_output_that_stands_by_issued_for_a_task_that_it_acts_for_no_more_does_not_count(gently: bool) -> None:
+    stage = Stage(Watchful())
+    stage.neighbour()
+    odometry = other_source(stage)
+    spare = {"position": (Wire(ODOMETRY, "pose"),)}
+    stage.call(replace(follow(1), standby=spare))
+    stage.let_pass(0.1)
+    odometry.component.emit("pose", "for another goal")
+    stage.let_pass(0.1)
+    for call, message in (("release", release(2, US)), ("apply", apply(3, US))):
+        stage.caller.ask(KEYS.call(ODOMETRY, call), encode(message), 1.0, lambda _: None)
+        stage.let_pass(0.1)
+    answers: list[Replies] = []
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(apply(2, US, spare, gently=gently)), 60.0, answers.append)
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), *([] if gently else [("unfed", "position")])]
+    assert bool(answers) is not gently
+    odometry.component.emit("pose", "for this one")
+    stage.let_pass(0.2)
+    assert stage.recorder.said[-1] == ("position", "for this one")
+    assert answers
+
+
 # Handing over: what ran before is let go of only when the next delivers.
 
 
