@@ -24,6 +24,9 @@ there. A component that has obeyed a newer epoch of the task, by the clock of an
 one that waits in an older epoch: that one asks again in the newer. A task of higher priority that asks for a component
 of this one makes it let go: everything comes to rest, sinks first, and is configured again without that component.
 
+Changes for the better. What ran before is what is wanted again if such a change does not come about, whatever the
+policy: a component that was not part of it is only let go of when it is lost, or a task of higher priority asks for it.
+
 A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
 released again when it is seen again.
 
@@ -226,7 +229,8 @@ def _declined(state: State, event: Answered) -> Reaction:
     if event.verdict is Verdict.BUSY:
         return _busy(replace(counted, queued=state.queued | {event.component}), event)
     if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
-        return _lose(state, event.component, Loss(Cause.CRASH, "it has begun another life", ""))
+        ended = event.detail or "it has begun another life"
+        return _lose(state, event.component, Loss(Cause.CRASH, ended, startable=event.startable))
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
     return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life, False, event.verdict is not None))
 
@@ -298,8 +302,16 @@ def _failed(state: State, event: Failed) -> Reaction:
         return _lose(state, event.component, loss)
     if not held.reserved:
         return state, ()  # another task is asked to let go of it, perhaps for this one
-    # Nothing may act on a part: all come to rest, the component in its turn. One that has let go can be had again.
-    lost = {**state.lost, event.component: loss} if loss.busy else state.lost
+    return _let_go(state, event.component, loss)
+
+
+def _let_go(state: State, component: IRI, loss: Loss) -> Reaction:
+    """Let go of a component that another task asks for, or that has let go of this one and so can be had again."""
+    lost = {**state.lost, component: loss} if loss.busy else state.lost
+    if not _is_needed(state, component):
+        known, effects = _lose(state, component, loss)
+        return replace(known, lost=lost), effects
+    # Nothing may act on a part: all come to rest, the component in its turn.
     return _dismantle(replace(state, lost=lost, news=state.news or not loss.busy), Phase.COMPOSING)
 
 
@@ -314,14 +326,20 @@ def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
         lost={**state.lost, component: loss},
         queued=state.queued - {component},
     )
+    effects = (ReleaseFrom(component, epoch),)  # also what seems to be dead: it may hear, and not be heard
+    if not _is_needed(state, component):
+        return then(effects, deploying.deploy(replace(without, target=state.fallback or state.target, fallback=None)))
     if state.policy is Policy.DISMANTLE:
         return _dismantle(without, Phase.COMPOSING)
-    effects = (ReleaseFrom(component, epoch),)  # also what seems to be dead: it may hear, and not be heard
     if state.phase is Phase.DISCOVERING:
         return without, effects
-    if state.fallback is not None and component not in state.fallback.components and state.phase in DEPLOYING:
-        return then(effects, deploying.deploy(replace(without, target=state.fallback, fallback=None)))
     return then(effects, _compose(replace(without, fallback=None)))
+
+
+def _is_needed(state: State, component: IRI) -> bool:
+    """Whether a component may be part of what is to run: not if that is being deployed, or ran before, without it."""
+    wanted = state.fallback or state.target
+    return state.phase not in DEPLOYING or wanted is None or component in wanted.components
 
 
 def _dismantle(state: State, afterwards: Phase) -> Reaction:

@@ -34,7 +34,7 @@ from selfconf.configurator.events import (
     WaitedLong,
 )
 from selfconf.configurator.order import wiring
-from selfconf.configurator.state import Held, Phase, State
+from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI, Literal
@@ -303,14 +303,32 @@ def test_a_change_of_a_value_alone_waits_for_nothing() -> None:
     assert applied(history.answer(CONTROL, Call.APPLY)) == [ARM]
 
 
-def test_a_better_configuration_that_does_not_come_about_leaves_what_ran() -> None:
-    history = History(TASK).running(navigation(ODOMETRY))
+@pytest.mark.parametrize("policy", Policy)
+@pytest.mark.parametrize("cause", [Cause.CRASH, Cause.FAIL, Cause.YIELD, Cause.LET_GO])
+def test_a_better_configuration_that_does_not_come_about_leaves_what_ran(cause: Cause, policy: Policy) -> None:
+    history = History(replace(TASK, policy=policy)).running(navigation(ODOMETRY))
     history.hear(Improvable(), Discovered())
     history.composed(navigation())
     history.answer(TRACKER, Call.WAKE)
     history.answer(TRACKER, Call.APPLY)
-    effects = history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    effects = history.hear(Failed(TRACKER, "1", cause))
     assert applied(effects) == [CONTROL]
+    assert released(effects) == [TRACKER]
+    assert not any(isinstance(effect, Compose) for effect in effects)
+    assert (TRACKER in history.state.lost) == (cause is not Cause.LET_GO)  # what has let go can be had again
+    assert history.all_answer() == [Running(navigation(ODOMETRY))]
+
+
+@pytest.mark.parametrize("cause", [Cause.CRASH, Cause.YIELD])
+def test_what_is_to_run_again_does_not_suffer_from_the_loss_of_what_it_does_without(cause: Cause) -> None:
+    history = History(replace(TASK, policy=Policy.DISMANTLE)).running(navigation(ODOMETRY))
+    history.hear(Improvable(), Discovered())
+    history.composed(with_arm(navigation()))
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    history.answer(TRACKER, Call.APPLY)
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    effects = history.hear(Failed(ARM, "1", cause))
+    assert released(effects) == [ARM]
     assert not any(isinstance(effect, Compose) for effect in effects)
     assert history.all_answer() == [Running(navigation(ODOMETRY))]
 
