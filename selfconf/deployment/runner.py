@@ -95,7 +95,7 @@ AT_LEISURE = 0.01
 TRY_AGAIN = 5.0
 """After how many seconds a patient configurator that waits tries lost components again; the pause doubles each time."""
 LONGEST_PAUSE = 60.0
-"""The longest such pause, in seconds."""
+"""The longest such pause, in seconds; after as many, a task that may change for the better looks what is free now."""
 PULSE = 0.25
 """How often, in seconds, a configurator looks whether it has been suspended."""
 SUSPENDED = 1.0
@@ -155,6 +155,7 @@ class TaskRunner:
         self._chance_at: float | None = None
         """When lost components are tried again, which may be overdue; None: no time is set."""
         self._improve: Undo = lambda: None
+        self._improve_later: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
@@ -238,6 +239,8 @@ class TaskRunner:
             self._settle()
             if event.lives:
                 self._stand_by(self.state.target)
+        if isinstance(event, Composed) and self.state.phase is Phase.RUNNING and self.state.taken:
+            self._look_whether_free()
         if self.state.phase is not before:
             self._changed_phase(before)
 
@@ -286,6 +289,12 @@ class TaskRunner:
         if self.request.upgrade is not None:
             self._improve()
             self._improve = self.bus.later(self.request.upgrade, partial(self._step, Improvable()))
+
+    def _look_whether_free(self) -> None:
+        """Look again, after a while, for what would be rather had: only those that wait are told that it is free."""
+        self._improve_later()
+        if self.request.upgrade is not None:
+            self._improve_later = self.bus.later(LONGEST_PAUSE, partial(self._step, Improvable()))
 
     def _changed_phase(self, before: Phase) -> None:
         log.debug("%s -> %s", before.value, self.state.phase.value)

@@ -23,6 +23,7 @@ from selfconf.render.run_events import event_body
 from selfconf.sdk.component import Refused
 from selfconf.sdk.supervision import GRACE
 from tests.deployment.tasks import TASK
+from tests.faults.ecologies import CHOICE
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
 
 
@@ -465,6 +466,24 @@ def test_a_task_of_higher_priority_has_the_components_and_the_other_waits_and_go
     high.stop()
     assert lab.running(low)
     assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_task_that_changes_for_the_better_takes_in_the_end_what_another_has_let_go_of(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=CHOICE.advertisements)
+    for site, names in CHOICE.sites.items():
+        lab.site(site, *names)
+    for name in CHOICE.advertisements:
+        lab.component(name)
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(upgrade=0.5)
+    assert lab.running(second)
+    others = TASK | {"tracker"}
+    assert lab.active() == others | {"second-control", "second-drive"}
+    lab.let_pass(LONGEST_PAUSE)
+    first.stop()
+    assert lab.until(lambda: lab.active() == others, LONGEST_PAUSE + 1.0)
+    assert second.state.phase is Phase.RUNNING
 
 
 def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:

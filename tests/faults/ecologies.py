@@ -24,6 +24,8 @@ class FaultyEcology:
     """Another template, without the actuator."""
     bindings: tuple[tuple[str, str], ...] = ()
     """Values for parameters of either template; `{task}` stands for the name of the task."""
+    preferred: tuple[str, ...] = ()
+    """The processes in whose place another one may stand, but that tasks would rather have."""
 
     @property
     def processes(self) -> tuple[str, ...]:
@@ -42,6 +44,7 @@ PAPER = FaultyEcology(
     NAVIGATE,
     NAVIGATE.replace(" :drive )", " )").replace("sc:feeds :drive ;", "").partition(":drive a sc:Role")[0],
     (("robot", ":Astrid"), ("goal", "(AT {task})")),
+    ("tracker",),
 )
 """The paper's six components and Pippi's drive; the other template is the paper's task without the drive."""
 
@@ -91,7 +94,31 @@ COMPOSED = FaultyEcology(
     ":motor a sc:Role ; sh:class :Drive .",
     f"{PREFIXES}:show a sc:Template ; sc:roles ( :light :position :wall ) .{_ROLES.replace('FED', ':wall')}"
     ":wall a sc:Role ; sh:class :Screen .",
+    preferred=("lamp-1",),
 )
 """A composite that has an output, offers an operation and needs one; and a component that can stand for it."""
 
-ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED)}
+_SECOND = {
+    "sonar": ":second-sonar a sc:Component, rob:SonarArray ; sc:preference -1 ;",
+    "control": ":second-cap a sc:Component, rob:NavigationControl ; sc:preference -1 ;",
+    "drive": ":second-drive a sc:Component, rob:MotorDrive ; sc:preference -1 ;",
+}
+CHOICE = FaultyEcology(
+    "choice",
+    {
+        "living-room": ("tracker", "odometry"),
+        "astrid": ("sonar", "second-sonar", "encoder", "control", "second-control", "drive", "second-drive"),
+    },
+    {
+        **{name: text for name, text in ADVERTISEMENTS.items() if name != "pippi"},
+        **{f"second-{name}": f"{begin} {ADVERTISEMENTS[name].partition(';')[2]}" for name, begin in _SECOND.items()},
+    },
+    (),
+    PAPER.whole,
+    PAPER.part,
+    PAPER.bindings,
+    ("tracker", "sonar", "control", "drive"),
+)
+"""The paper's task, with a second component for most of its roles that is not preferred."""
+
+ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED, CHOICE)}
