@@ -35,15 +35,18 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 
 def test_codes_exit_codes_and_members_are_as_recorded(found: tuple[str, dict[str, Answer]]) -> None:
-    told = compared(*found, "answers")
-    if told:
-        pytest.fail(told, pytrace=False)
+    check(found, "answers")
 
 
 def test_sentences_are_as_recorded(found: tuple[str, dict[str, Answer]]) -> None:
-    told = compared(*found, "sentences")
+    check(found, "sentences")
+
+
+def check(found: tuple[str, dict[str, Answer]], part: str) -> None:
+    """Fail with what differs from the record, and with the command that records it anew."""
+    told = compared(*found, part)
     if told:
-        pytest.fail(f"{told}\nif that is intended: python -m tests.recorded.record sentences", pytrace=False)
+        pytest.fail(f"{told}\nif that is intended: python -m tests.recorded.record {part}", pytrace=False)
 
 
 @pytest.mark.parametrize(
