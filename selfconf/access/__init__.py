@@ -1,10 +1,10 @@
-"""Who may do what: an authority and its certificates, and the rules that follow from who is what.
+"""Who may do what: an authority and its certificates, and the rules that follow from the holders' names.
 
 `KeysFolder` is what `--keys` names: it issues, renews and revokes certificates, and gives a program what it shows to
-others. `Principal` is whom a certificate speaks for, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
+others. `Principal` is what a certificate names, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
 `Doorkeeper` keeps the rules of a site, from `first_rules` on; `introduce` shows a program's certificate to the sites,
 and `CertificateWatch` shows it again when it is renewed, and says that it expires.
-`believe` notes whose a component is that two sites advertise. It needs the extra `keys`.
+`believe` notes which site owns a component that two sites advertise. It needs the extra `keys`.
 """
 
 from selfconf.access.beliefs import believe, believed

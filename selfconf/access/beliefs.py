@@ -14,7 +14,7 @@ FILE = "believed.json"
 
 
 def believed(folder: Path) -> Mapping[IRI, str]:
-    """The site that is believed for each component of which somebody has said so. Raises AuthorError."""
+    """The site that is believed for each component for which a person has said so. Raises AuthorError."""
     path = folder / FILE
     try:
         said = json.loads(path.read_text())

@@ -23,7 +23,7 @@ try:
     from cryptography.hazmat.primitives import hashes, serialization
     from cryptography.hazmat.primitives.asymmetric import ec
     from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
-except ImportError:  # an extra: who needs no keys need not have it
+except ImportError:  # an extra: not needed without keys
     raise InstallationError("keys need the package cryptography; install the extra `keys`") from None
 
 AUTHORITY_DAYS = 3650.0
@@ -111,12 +111,12 @@ class Certificate:
 
     @property
     def principal(self) -> Principal:
-        """Whom it speaks for. Raises PeerError."""
+        """The principal that its subject names. Raises PeerError."""
         return Principal.of(self.common_name)
 
     @property
     def principals(self) -> tuple[Principal, ...]:
-        """Whom it speaks for: its subject, and the components that share a process with it. Raises PeerError."""
+        """Its principals: the subject, and the components that share a process with it. Raises PeerError."""
         others = (name.removeprefix(_ALSO) for name in self._names(x509.UniformResourceIdentifier) if _ALSO in name)
         return (self.principal, *(Principal.of(name) for name in others))
 
@@ -173,7 +173,7 @@ class Certificate:
         try:
             _ = self.principals
         except PeerError as error:
-            return f"names nobody: {error}"
+            return f"names no principal: {error}"
         return ""
 
     def _signed_by(self, authority: Certificate) -> bool:
@@ -187,7 +187,8 @@ class Certificate:
 def new_authority(name: str) -> tuple[Certificate, Key]:
     """An authority that can issue certificates, but no further authorities, with its key.
 
-    It is told from others of its name by a random text: who finds a name that it knows would blame the signature.
+    A random text makes its name differ from those of others: a program that finds a name that it knows would blame the
+    signature.
     """
     key, subject = new_key(), _subject(f"{name} {secrets.token_hex(4)}")
     usage = x509.KeyUsage(

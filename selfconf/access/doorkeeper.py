@@ -1,12 +1,12 @@
-"""The doorkeeper of a site with keys: it learns who there is, and has the hub of this host let in just these.
+"""The doorkeeper of a site with keys: it learns which holders there are, and has the hub let in just these.
 
-Zenoh reads its rules only as a router is opened. So they follow from who is what, and not from what is deployed: from
+Zenoh reads its rules only as a router is opened. So they follow from what holders are, not from what is deployed: from
 the certificates that people, programs and sites have shown (`introduce`), from the advertisements of this host, and
 from those of each other site, which speaks for the components that it advertises. When any of that changes, the hub is
 opened anew, which takes some ten milliseconds.
 
-A component that two sites advertise is nobody's, until `selfconf access --believe SITE COMPONENT` has said whose it is;
-on its own host a site goes on with its own.
+A component that two sites advertise belongs to no site, until `selfconf access --believe SITE COMPONENT` has said to
+which; on its own host a site goes on with its own.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ LOOK = 1.0
 RAREST_RETRY = 30.0
 """After how many seconds at most it is tried again to open the hub."""
 FAULT_AGAIN = 600.0
-"""After how many seconds a fault that lasts is told again."""
+"""After how many seconds a fault that lasts is reported again."""
 SOON = 0.05
 """Seconds after which others are asked what they advertise, when something has changed: mostly more does. However many
-changes are told of, others are asked no oftener than that."""
+changes are reported, others are asked no oftener than that."""
 WARNED = 0.05
 """Seconds between the word that a hub is about to be opened anew and that."""
 SITES_ANSWER = 3.0
@@ -49,9 +49,9 @@ INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 """Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
 INTRODUCE_AGAIN = 5.0
 LOOKS = 3
-"""After how many looks a refused attempt is told of: what somebody has tried who is let in by then does not count."""
+"""After how many looks a refused attempt is reported: those of a client that is let in by then do not count."""
 LIFE = "Liveliness Token"
-"""What Zenoh calls it when somebody says that somebody lives."""
+"""What Zenoh calls the announcement of a life."""
 MOST_TOLD = 20
 """How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
 
@@ -62,7 +62,7 @@ def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, I
 
 
 Process = tuple[Principal, ...]
-"""Whom the certificate of a process speaks for, its subject first."""
+"""The principals of the certificate of a process, its subject first."""
 
 
 def _principals(folder: KeysFolder, ecology: str) -> list[Process]:
@@ -140,7 +140,7 @@ class Doorkeeper:
     # Who there is.
 
     def _introduced(self, request: Request) -> None:
-        """Somebody shows a certificate: the hub lets in whom the authority vouches for."""
+        """A client shows a certificate: the hub lets it in if the authority has issued it."""
         try:
             known = self._admit(decode(request.payload, Introduction).certificate)
             if not known:
@@ -257,8 +257,8 @@ class Doorkeeper:
         disputed = {c: claim for c, claim in sites.items() if len(claim) > 1 and decided.get(c) not in claim}
         for component in sorted(disputed.keys() - self._disputed):
             self._complain(
-                f"{component} is advertised by the sites {' and '.join(disputed[component])}; it is nobody's until you"
-                f" say whose: selfconf access --believe SITE {component}"
+                f"{component} is advertised by the sites {' and '.join(disputed[component])}; it belongs to none until"
+                f" you say to which: selfconf access --believe SITE {component}"
             )
         self._disputed = frozenset(disputed)
         return {
@@ -285,7 +285,7 @@ class Doorkeeper:
             self._open_anew()
 
     def _open_anew(self) -> None:
-        """Have the hub opened anew, and tell everybody before: a hub takes its clients off one after the other."""
+        """Have the hub opened anew, and tell all clients before: a hub takes its clients off one after the other."""
         if not self._relays():
             self._enforced()
         elif not self._warned:
@@ -321,9 +321,10 @@ class Doorkeeper:
                 self._judge(one)
 
     def _judge(self, refused: RefusedAttempt) -> None:
-        """Tell of an attempt, unless a site has passed on that somebody lives who does.
+        """Report an attempt, unless it was a site's announcement of a life that is there.
 
-        Zenoh answers who asks for lives with those that it has heard of from others, whatever the rules of its end say.
+        Zenoh answers a question for lives with those that it has heard of from others, whatever the rules of its end
+        say.
         """
 
         def judge(living: tuple[str, ...] = ()) -> None:
@@ -349,7 +350,7 @@ class Doorkeeper:
             self._renewed_at = changed
             self._open_anew()
 
-    # What is told.
+    # Reports.
 
     def _tell_fault(self, sentence: str) -> None:
         """Say what is wrong with the keys or the hub, unless that was said a short while ago."""
@@ -364,7 +365,7 @@ class Doorkeeper:
         self._tellings = [at for at in self._tellings if now - at < 60.0]
         if len(self._tellings) < MOST_TOLD:
             self._tellings.append(now)
-            who = principal or "somebody without a certificate that is believed"
+            who = principal or "a client without a trusted certificate"
             self._complain(f"refused: {who}: {attempt}{f' on {key}' if key else ''}")
 
     def _tell(self, request: Request) -> None:

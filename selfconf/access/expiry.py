@@ -1,8 +1,8 @@
 """A program's certificate while the program runs: shown again when it is renewed, and spoken of before it expires.
 
 Links have to be made anew with another certificate, and Zenoh does that by itself: the other end closes a link as the
-certificate of this end expires, and the next link is made with what lies in the file by then. But sites let in who has
-*shown* a good certificate, so a renewed one is shown as soon as it is there. Nothing is noticed of that.
+certificate of this end expires, and the next link is made with what lies in the file by then. But sites let in a
+client that has *shown* a good certificate, so a renewed one is shown as soon as it is there. Nothing is noticed of it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ log = logging.getLogger(__name__)
 CERTIFICATE_CHECK = 1.0
 """How often, in seconds, the certificate is looked at."""
 LAST_PART = 4
-"""A certificate is spoken of in the last quarter of its time, if nobody has renewed it by then."""
+"""A certificate is spoken of in the last quarter of its time, if it has not been renewed by then."""
 
 
 class CertificateWatch:
@@ -88,7 +88,7 @@ class CertificateWatch:
             "its site renews it, while it has a certificate" if its_site else f"renew it: selfconf keys renew {folder}"
         )
         if ends < now:
-            return f"{self._whose} has expired at {_at(ends)}: nobody believes it any more; {renew}"
+            return f"{self._whose} has expired at {_at(ends)}: it is not trusted any more; {renew}"
         if ends - now < (ends - self._certificate.issued) / LAST_PART:
             return f"{self._whose} expires at {_at(ends)}; {renew}"
         return ""

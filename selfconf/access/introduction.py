@@ -50,7 +50,7 @@ def _answer(payload: bytes) -> Introduction:
     try:
         return decode(payload, Introduction)
     except PeerError:
-        return Introduction("", known=True)  # a site that answers in another way will not get to know anybody
+        return Introduction("", known=True)  # a site that answers in another way will not get to know any client
 
 
 def _asked(bus: Bus, key: str, payload: bytes) -> Replies:

@@ -1,9 +1,9 @@
-"""A folder of keys: what `--keys DIR` names. Either an authority's own, or that of somebody it has issued to.
+"""A folder of keys: what `--keys DIR` names. Either an authority's own, or that of a holder that it has issued to.
 
-    authority.pem     the certificate of the authority, which everybody has
-    authority.key     its key: whoever has it can make certificates for everybody, so it stays on one machine
+    authority.pem     the certificate of the authority, which every holder has
+    authority.key     its key, which makes certificates for any name, so it stays on one machine
     issued/           the certificates it has issued, by common name and serial
-    certificate.pem   whom this folder speaks for, with certificate.key
+    certificate.pem   the certificate of the holder of this folder, with certificate.key
     own/NAME/         in the folder of an authority: the certificates of programs that are given the folder itself
     components.pem    the authority of one host, with components.key: it issues to the components that its sites start
     components/NAME/  their certificates, each for all components of one process
@@ -48,7 +48,7 @@ COMPONENT_DAYS = 1.0
 MAIN = "main"
 """The name of a program that is given the folder of an authority itself."""
 KNOWN = (f"conf.{MAIN}", f"read.{MAIN}")
-"""Whom every site that is given that folder knows."""
+"""The principals that every site that is given that folder knows."""
 _AUTHORITY, _HOST_AUTHORITY, _OWN = "authority", "components", "certificate"
 
 
@@ -76,7 +76,7 @@ class KeysFolder:
         except OSError as error:
             raise AuthorError(reason(error)) from None
         folder = cls(path)
-        for kind in (PrincipalKind.CONFIGURATOR, PrincipalKind.READER):  # known before anybody asks
+        for kind in (PrincipalKind.CONFIGURATOR, PrincipalKind.READER):  # known before any program asks
             folder.credentials((kind,), MAIN)
         return folder
 
@@ -200,9 +200,9 @@ class KeysFolder:
             self.component(first, others)
 
     def admitted(self, ecology: str) -> dict[str, Certificate]:
-        """By whom they speak for, the certificates that sites of an ecology let in: shown once, and good until now.
+        """The certificates that sites of an ecology let in, by their principals: shown once, and good until now.
 
-        With the folder of an authority also those of the programs that are given it, which nobody need show.
+        With the folder of an authority also those of the programs that are given it, which need not be shown.
         """
         shown = [self._certificate(path) for path in (self.path / "admitted" / ecology).glob("*.pem")]
         shown += [self._certificate(self.path / "own" / name / f"{_OWN}.pem") for name in KNOWN if self.is_authority]
@@ -211,7 +211,7 @@ class KeysFolder:
         return {_whose(one.principals): one for one in good}
 
     def admit(self, ecology: str, pem: bytes) -> Certificate:
-        """Keep a certificate that somebody has shown to a site. Raises PeerError for one that is not good."""
+        """Keep a certificate that a client has shown to a site. Raises PeerError for one that is not good."""
         certificate = Certificate.read(pem)
         fault = certificate.fault(self._authorities_for(certificate))
         if fault:
@@ -227,7 +227,7 @@ class KeysFolder:
     def _has_later(self, path: Path, certificate: Certificate) -> bool:
         """Whether a good certificate for the same is kept that was issued no earlier than this one.
 
-        Certificates are no secret: who shows an old one of somebody else must not bring the end of the name forward.
+        Certificates are no secret: one that is shown by another than its holder must not bring the end forward.
         """
         try:
             kept = self._certificate(path)
@@ -337,7 +337,7 @@ class KeysFolder:
 
 
 def _whose(principals: Sequence[Principal]) -> str:
-    """The name of a file about those for whom a certificate speaks.
+    """The name of a file about the principals of a certificate.
 
     A component may be the first of several processes, with other components each, in different ecologies or one after
     the other; the certificate of one must not take the place of that of another.
@@ -354,7 +354,7 @@ def _principal(certificate: Certificate, folder: Path) -> Principal:
 
 
 def _write_holder(folder: Path, authority: Certificate, certificate: Certificate, key: Key) -> None:
-    """Write what a holder needs. The certificate comes last: whoever reads meanwhile finds a pair that fits."""
+    """Write what a holder needs. The certificate comes last: a program that reads meanwhile finds a pair that fits."""
     _made(folder)
     _write_file(folder / f"{_AUTHORITY}.pem", authority.pem)
     _write(folder / _OWN, certificate, key)

@@ -1,4 +1,4 @@
-"""Who a certificate speaks for: a site, a component, a configurator or a reader, by the certificate's common name.
+"""The principal of a certificate, by its common name: a site, a component, a configurator or a reader.
 
 site.NAME   a site                       comp.KEY    a component; KEY is its chunk of the keys of the ecology
 conf.NAME   who may run and stop tasks   read.NAME   who may discover, query and watch
@@ -22,7 +22,7 @@ _CHUNK = re.compile(r"[a-z2-7]{16}")
 
 
 class PrincipalKind(str, Enum):
-    """What somebody with a certificate is, and so what it may do."""
+    """What the holder of a certificate is, and so what it may do."""
 
     SITE = "site"
     """Serves advertisements, starts components, relays for its host."""
@@ -66,9 +66,7 @@ class Principal:
         if (
             found.kind is PrincipalKind.CONFIGURATOR and "-" in name
         ):  # conf.a speaks for all a-..., so for an a-b as well
-            raise PeerError(
-                f"{common_name!r} has a hyphen: the programs of a configurator are told apart by what follows one"
-            )
+            raise PeerError(f"{common_name!r} has a hyphen: the programs of a configurator differ by what follows one")
         if not dot or len(name) > LONGEST_NAME or (kind == "comp" and not _CHUNK.fullmatch(name)):
             raise PeerError(f"{common_name!r} is no name of a site, component, configurator or reader")
         return found
@@ -82,7 +80,7 @@ class Principal:
             return cls.of(text)
         except PeerError:
             raise AuthorError(
-                f"{text!r} names nobody who can have a certificate; write site.NAME, conf.NAME, read.NAME, or the IRI"
+                f"{text!r} names no holder of a certificate; write site.NAME, conf.NAME, read.NAME, or the IRI"
                 f" of a component; a NAME has at most {LONGEST_NAME} letters, digits, '.', '-' and '_', that of"
                 " conf.NAME no hyphen"
             ) from None

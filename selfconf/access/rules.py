@@ -21,11 +21,11 @@ from selfconf.protocol.keys import Keys, any_ecology, component_chunk
 from selfconf.protocol.messages import Access
 
 SPEAK = ("put", "delete", "declare_queryable", "reply", "liveliness_token")
-"""The messages by which somebody says something under a key: a sample, an answer, a life."""
+"""The messages by which a client says something under a key: a sample, an answer, a life."""
 LISTEN = ("declare_subscriber", "query", "liveliness_query", "declare_liveliness_subscriber")
-"""The messages by which somebody wants to hear what is said under a key."""
+"""The messages by which a client asks to hear what is said under a key."""
 BY, TO = "ingress", "egress"
-"""What comes by the link of somebody, and what goes to that link."""
+"""What comes by the link of a client, and what goes to that link."""
 
 
 @immutable
@@ -33,10 +33,10 @@ class AccessRules:
     """Who may do what at the hubs of one site."""
 
     accesses: tuple[Access, ...]
-    """What each may do; the first is what everybody may."""
+    """What each may do; the first is what every holder of a certificate may."""
     at_uplinks: Access | None = None
-    """What everybody may do at uplinks: there the other end is a hub that this site was told to connect to, and it has
-    to answer who shows a certificate before it is known. At a hub only sites that are known answer that."""
+    """What every holder may do at uplinks: there the other end is a hub that this site was set up to connect to, and it
+    has to answer a client that shows a certificate before it is known. At a hub only known sites answer that."""
 
     @property
     def principals(self) -> frozenset[str]:
@@ -80,7 +80,7 @@ def rules_of(
 ) -> AccessRules:
     """The rules of a site, in an order that does not depend on chance.
 
-    `processes` are those of components of this host, each with whom its certificate speaks for, its subject first;
+    `processes` are those of components of this host, each with the principals of its certificate, its subject first;
     `shown` what other certificates have been shown. `others` are the components that each other site vouches for.
     """
     keys = Keys(ecology)
@@ -134,7 +134,7 @@ def _component(keys: Keys, principal: Principal, process: Iterable[Principal]) -
     )
     return Access(
         principal.common_name,
-        "speaks on its own outputs, FAIL and calls; hears signals, FAIL and who lives; asks for operations as itself",
+        "speaks on its own outputs, FAIL and calls; hears signals, FAIL and lives; asks for operations as itself",
         says=own,
         asked=(keys.any_output(), keys.any_fail(), keys.any_free(), keys.any_call("state")),
         hears=(*own, *heard),
@@ -143,7 +143,7 @@ def _component(keys: Keys, principal: Principal, process: Iterable[Principal]) -
 
 
 def _looking(keys: Keys) -> tuple[str, ...]:
-    """What may be asked and heard by whoever looks on."""
+    """What may be asked and heard by a reader."""
     return (
         keys.advertisements(),
         keys.changed(),
@@ -164,7 +164,7 @@ def _looking(keys: Keys) -> tuple[str, ...]:
 def _reader(keys: Keys, principal: Principal) -> Access:
     return Access(
         principal.common_name,
-        "may discover, query and watch; hears no signals, calls nobody",
+        "may discover, query and watch; hears no signals, calls no component",
         hears=_looking(keys),
     )
 
@@ -205,7 +205,7 @@ def _other_site(keys: Keys, principal: Principal, components: Collection[IRI], s
 
 
 def _rules(identity: str, access: Access) -> list[dict[str, Any]]:
-    """The rules of Zenoh: who may say something is told who listens, and who may listen is told what is said."""
+    """The rules of Zenoh: one that may say something hears who listens, and one that may listen what is said."""
     granted = (
         (BY, SPEAK, access.says),
         (TO, LISTEN, (*access.says, *access.asked)),

@@ -47,7 +47,7 @@ def why_refused(endpoint: str, credentials: Credentials) -> str:
         said = next(known, "").format(name=credentials.name)
         return f"{endpoint} refuses: {said}" if said else ""
     except (OSError, ValueError):
-        return ""  # nobody listens, or it stays silent
+        return ""  # nothing listens, or it stays silent
     return ""
 
 

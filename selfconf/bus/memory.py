@@ -77,7 +77,7 @@ class Faults:
 class Network:
     """The simulated network: its nodes, its time, and which nodes reach each other.
 
-    `stepped` is called after each thing that has happened, for those who want to look at every step of a history.
+    `stepped` is called after each thing that has happened, for callers that look at every step of a history.
     """
 
     def __init__(self, seed: int = 0, faults: Faults | None = None) -> None:
@@ -95,7 +95,7 @@ class Network:
         """Who serves each key that was asked, in order; forgotten when a node begins to serve a key, or ends."""
         self.nodes: list[MemoryBus] = []
         self.shape = 0
-        """Counts what changes who reaches whom: nodes that come, go, are paused or go on, and links that are cut."""
+        """Counts what changes the reach of nodes: those that come, go, are paused or go on, and links that are cut."""
 
     def node(self, clock: float = 0.0) -> MemoryBus:
         """A new node that reaches all others; its clock is ahead of the network's time by that many seconds."""
@@ -205,7 +205,7 @@ class Network:
         return found
 
     def forget_serving(self) -> None:
-        """Look anew who serves a key, when it is asked next."""
+        """Look anew which nodes serve a key, when it is asked next."""
         self._serving.clear()
 
     def loses(self) -> bool:
@@ -375,7 +375,7 @@ class MemoryBus:
     def publisher(
         self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None, *, kept: int = 0
     ) -> _Publisher:
-        """Declare a key to put on; here nobody asks for what was put before."""
+        """Declare a key to put on; here no subscriber asks for what was put before."""
         number = next(self._count)
         declared = _Publisher(self, number, key, urgency, matched)
         self._publishers[number] = declared
@@ -401,7 +401,7 @@ class MemoryBus:
         return undone
 
     def serve(self, key: str, answer: Callable[[_Request], None], *, complete: bool = False) -> Callable[[], None]:
-        """Answer questions to a key; here everybody who does is asked."""
+        """Answer questions to a key; here all nodes that do are asked."""
         undo = self._declare(self._queryables, (key, answer))
         self.network.forget_serving()
 
@@ -537,7 +537,7 @@ class _Watch:
     shown: set[str] | None
 
     def tells(self, token: str, alive: bool, alone: bool) -> bool:
-        """Whether it is told that a life begins or ends; `alone`: that a link comes or goes, and not the life."""
+        """Whether the watch hears that a life begins or ends; `alone`: that a link comes or goes, and not the life."""
         if self.shown is None:
             return True
         told = alive or not alone or token in self.shown

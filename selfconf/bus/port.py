@@ -169,7 +169,7 @@ class Bus(Protocol):
     def serve(self, key: str, answer: Callable[[Request], None], *, complete: bool = False) -> Undo:
         """Answer questions to a key.
 
-        `complete` says that who answers has all there is below the key, which some others than this library ask for.
+        `complete` says that this node has all there is below the key, which some programs other than selfconf ask for.
         """
         ...
 
@@ -188,8 +188,8 @@ class Bus(Protocol):
     ) -> Undo:
         """Follow every life under a key: those that are there already, those that begin, those that end.
 
-        Without `history` those that are there already are not told; nor is it, when this node loses its hub, that they
-        have ended. When it has one again, all that live are told. `many` says that thousands may be told at once.
+        Without `history` those that are there already are not reported; nor is it, when this node loses its hub, that
+        they have ended. When it has one again, all that live are. `many` says that thousands may come at once.
         """
         ...
 

@@ -3,20 +3,20 @@
 Zenoh logs to the standard output of the process. So that becomes a pipe which a thread reads; what this program itself
 prints goes where it went before. Two kinds of lines count:
 
-* "... is unauthorized to Put (ingress) on KEY", with "Msg intercepted!" as the next line of the same thread: somebody
-  with a certificate has tried what its name does not allow. What is kept from reaching somebody (egress) is no attempt.
-* a warning of the TLS link: somebody without a certificate that is believed has knocked.
+* "... is unauthorized to Put (ingress) on KEY", with "Msg intercepted!" as the next line of the same thread: a holder
+  of a certificate has tried what its name does not allow. What is kept from reaching a client (egress) is no attempt.
+* a warning of the TLS link: a client without a trusted certificate has knocked.
 
 Messages that pass cost Zenoh a line each, as they come in and as they go out, for these lines have the target and the
-level (trace) of those that say no, and no field but their text: no filter tells them apart. (The line "Msg
+level (trace) of those that say no, and no field but their text: no filter separates them. (The line "Msg
 intercepted!" alone could be had for nothing: it has a target of its own, `zenoh::net::routing::interceptor` without
-`::access_control`. But it says neither who, nor what, nor under which key; a span of Zenoh adds the peer, and leaves
-open whether that was kept from speaking or another one from hearing.) So this program reads many lines at a time, and
-looks into those chunks alone that hold a word of a refusal: a thread that woke up for each line took twice as long as
-all the rest that a hub does for a signal (`python -m benchmarks.access`).
+`::access_control`. But it says neither which client, nor what, nor under which key; a span of Zenoh adds the peer, and
+leaves open whether that was kept from speaking or another one from hearing.) So this program reads many lines at a
+time, and looks into those chunks alone that hold a word of a refusal: a thread that woke up for each line took twice as
+long as all the rest that a hub does for a signal (`python -m benchmarks.access`).
 
 A key is what a stranger has written, and may hold line breaks: what follows one could be a line like those of Zenoh,
-which says that somebody else has tried something. But Zenoh writes an ESC of a key as text, and begins its own lines
+which says that another client has tried something. But Zenoh writes an ESC of a key as text, and begins its own lines
 with one, where it writes in colours. So it is asked for colours, and what does not begin so is no line of Zenoh; and in
 a line the key comes last, so what stands before it is what counts.
 """
@@ -47,7 +47,7 @@ ROOM = 1 << 20
 BETWEEN_READS = 0.05
 """Seconds between two looks into the pipe: a hub that relays 20,000 signals a second fills half of it meanwhile."""
 MOST_ATTEMPTS = 1000
-"""How many different attempts are told apart; further ones are counted as those of their principal alone."""
+"""How many different attempts are kept apart; further ones are counted as those of their principal alone."""
 LONGEST_KEY = 300
 """Characters of a key that are kept."""
 _COLOUR = re.compile(rb"\x1b\[[0-9;]*m")
@@ -76,7 +76,7 @@ class RefusalLog:
         self._denied: dict[str, tuple[str, str, str, str]] = {}
         """The last line of each thread that says no: peer, attempt, flow, key."""
         self._forgiven: dict[str, float] = {}
-        """Until when what somebody has tried is forgotten."""
+        """Until when what a principal has tried is forgotten."""
         self._lock = threading.Lock()
 
     @property
@@ -87,7 +87,7 @@ class RefusalLog:
         return tuple(sorted(found, key=lambda one: -one.latest))
 
     def forget(self, principal: str) -> None:
-        """Forget what somebody has tried so far, also where that has not been read yet."""
+        """Forget what a principal has tried so far, also where that has not been read yet."""
         with self._lock:
             self._forgiven[principal] = self._clock()
             self._found = {what: found for what, found in self._found.items() if what[0] != principal}
@@ -114,7 +114,7 @@ class RefusalLog:
         if name is not None:
             self._names.pop(peer, None)
             self._names[peer] = name[1]
-            if len(self._names) > MOST_ATTEMPTS:  # who comes again and again has another number each time
+            if len(self._names) > MOST_ATTEMPTS:  # a client that comes again and again has another number each time
                 del self._names[next(iter(self._names))]
         return peer, attempt, flow, key
 
@@ -167,7 +167,7 @@ def hear_refusals() -> RefusalLog:
 
 @contextmanager
 def _colours() -> Iterator[None]:
-    """Have Zenoh write its log in colours, whatever the user wants on a terminal: nobody sees this log."""
+    """Have Zenoh write its log in colours, whatever the user wants on a terminal: this log is not shown."""
     before = os.environ.pop(NO_COLOUR, None)
     try:
         yield

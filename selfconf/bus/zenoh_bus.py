@@ -42,7 +42,7 @@ _CHANNEL = 1 << 17
 _TOGETHER = 200
 """How many of them are handed over together: what is urgent waits for as many lives at most."""
 LAST_TOLD = 0.5
-"""Seconds after which it is told which sample was the last one, where samples are kept: the last may be lost, too."""
+"""Seconds after which the last sample is announced as that, where samples are kept: the last may be lost, too."""
 _QUALITY: dict[Urgency, dict[str, Any]] = {
     Urgency.SIGNAL: {
         "congestion_control": zenoh.CongestionControl.DROP,
@@ -269,7 +269,7 @@ class ZenohBus(Loop):
             self._relay.secure(security)
 
     def relay_no_more(self) -> None:
-        """Close the hub, if there is one; this bus goes to another hub that it was told of."""
+        """Close the hub, if there is one; this bus goes to another hub that it knows."""
         if self._relay is not None:
             self._relay.close()
         self._relay, self.endpoint = None, ""

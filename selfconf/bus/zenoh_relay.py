@@ -1,11 +1,11 @@
 """The router of a site, in two sessions: a *hub* that listens, and an *uplink* that connects the hub to other hubs.
 
 Nothing is declared on either; whatever a site has to say it says as a client of its own hub. So the uplink can be
-replaced by a new session at any time, and nobody hears of it.
+replaced by a new session at any time, and no other session notices.
 
 It has to be, for routers of Zenoh 1.10 do not survive being cut off for a moment. A router computes its trees 100 ms
 after a change, and then sends what is declared to the *new* children in each. A router whose link is lost, and
-made again within that time, was a child before and is one after: it is told nothing, while it has itself forgotten
+made again within that time, was a child before and is one after: it receives nothing, while it has itself forgotten
 everything at the loss; and the side that connects does so again at once. A host that was stopped for longer than the
 lease was not seen again by some of the others, for good. So an uplink that has lost a hub and has it back is followed
 by a new one, which no router knows yet; the old one stays for a while, or the new one might be taken for it. Hubs do
@@ -89,7 +89,7 @@ class Hub:
             except NetworkError:
                 if time.monotonic() > deadline:
                     raise
-                time.sleep(PORT_PAUSE)  # nobody tells when the system gives the port back
+                time.sleep(PORT_PAUSE)  # nothing says when the system gives the port back
 
     @property
     def from_here(self) -> str:
@@ -97,7 +97,7 @@ class Hub:
         return self.endpoint.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
 
     def close(self) -> None:
-        """Leave the network, and have nobody stay connected, the client of the same process included.
+        """Leave the network, and have no session stay connected, the client of the same process included.
 
         A router that has broken inside lets go of no connection when it is closed.
         """

@@ -28,7 +28,7 @@ LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
 ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
 HANDSHAKE_MS = 1500
-"""How long whoever accepts a connection may take to greet, or to answer: beyond that it is no router, or a hung one."""
+"""How long the end that accepts may take to greet, or to answer: beyond that it is no router, or a hung one."""
 SHARED_FROM = 1 << 15
 """From how many bytes on a payload goes through shared memory; smaller ones are as fast through a socket."""
 SHARED_MEMORY = Path("/dev/shm")
@@ -48,7 +48,7 @@ class Security:
 
     credentials: Credentials
     access_control: Mapping[str, Any] | None = None
-    """The member `access_control` of a configuration of Zenoh; None: whoever is let in may do everything."""
+    """The member `access_control` of a configuration of Zenoh; None: a client that is let in may do everything."""
     at_uplinks: Mapping[str, Any] | None = None
     """The member `access_control` for a session that connects a hub to others; None: as at the hub."""
 
@@ -85,7 +85,7 @@ def open_session(
         where = ", ".join(connect if mode == "client" else listen)
         if "Address already in use" in str(error):
             raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
-        what = "nobody answers at" if mode == "client" else "cannot listen on"
+        what = "no site answers at" if mode == "client" else "cannot listen on"
         raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
 
 
@@ -152,7 +152,7 @@ def _config(
 def _secured(security: Security) -> dict[str, Any]:
     """The settings of mutual TLS, and of access control where there is any.
 
-    Zenoh takes an expired certificate off its links only if it is told to.
+    Zenoh takes an expired certificate off its links only if it is set to.
     """
     own = security.credentials
     settings: dict[str, Any] = {

@@ -115,7 +115,7 @@ def _tell(site: SiteAccess) -> None:
         print(f"  {one.principal or 'everybody'}{whose}: {one.sentence}")
     print(f"  refused: {'nothing' if not site.refused else ''}")
     for refused in site.refused:
-        who = refused.principal or "somebody without a certificate that is believed"
+        who = refused.principal or "a client without a trusted certificate"
         at = datetime.fromtimestamp(refused.latest, timezone.utc)
         where = f" on {refused.key}" if refused.key else ""
         print(f"    {who}: {refused.attempt}{where}, {refused.number} times, latest {at:%Y-%m-%d %H:%M:%S} UTC")

@@ -149,7 +149,7 @@ def insider(
         else client(endpoint, credentials=credentials)
     )
     if kind == "boss":
-        with pytest.raises(NetworkError, match="names nobody"):
+        with pytest.raises(NetworkError, match="names no principal"):
             introduce(attacker, home.ecology, credentials)
     else:
         introduce(attacker, home.ecology, credentials)
@@ -305,7 +305,7 @@ def test_who_has_no_keys_is_told_so(home: Home, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.delenv("SELFCONF_KEYS", raising=False)
     with pytest.raises(NetworkError, match="with keys only"):
         client([home.endpoint(SITE)])
-    with pytest.raises(NetworkError, match=r"nobody answers|stays silent"):
+    with pytest.raises(NetworkError, match=r"no site answers|stays silent"):
         client([home.endpoint(SITE).replace("tls/", "tcp/")], seconds=0.5)
 
 

@@ -49,7 +49,7 @@ def test_each_way_to_be_wrong_has_its_sentence() -> None:
 
 def test_a_certificate_without_a_good_name_names_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Principal, "common_name", "boss")
-    assert "names nobody" in issued().fault((AUTHORITY,))
+    assert "names no principal" in issued().fault((AUTHORITY,))
 
 
 def test_authorities_of_one_name_are_told_apart() -> None:

@@ -207,7 +207,7 @@ def test_what_was_refused_is_told_once_and_shown_to_who_asks(door: Door) -> None
     for _ in range(3):
         door.refusals.take("2126Z WARN acc-0 ThreadId(1) zenoh_link_tls::unicast: peer sent no certificates. Hint: x")
     door.pass_time(10.0)
-    assert door.said == ["refused: somebody without a certificate that is believed: peer sent no certificates"]
+    assert door.said == ["refused: a client without a trusted certificate: peer sent no certificates"]
     replies = door.ask(KEYS.access("home"))
     shown = [decode(sample.payload, RefusedAttempt) for sample in replies.samples if b"refused" in sample.payload[:40]]
     assert [(one.principal, one.number) for one in shown] == [("", 3)]

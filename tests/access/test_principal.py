@@ -21,7 +21,7 @@ def test_the_name_of_a_configurator_has_no_hyphen() -> None:
     """The configurators of conf.a are called a-...: a conf.a-b would be one of them."""
     with pytest.raises(PeerError, match="has a hyphen"):
         Principal.of("conf.a-b")
-    with pytest.raises(AuthorError, match=r"names nobody.*conf.NAME no hyphen"):
+    with pytest.raises(AuthorError, match=r"names no holder of a certificate.*conf.NAME no hyphen"):
         Principal.written("conf.a-b")
     assert Principal.of("site.a-b").name == "a-b"
 
@@ -44,7 +44,7 @@ def test_the_name_of_a_configurator_has_no_hyphen() -> None:
 def test_other_names_stand_for_nobody(name: str) -> None:
     with pytest.raises(PeerError, match="no name of"):
         Principal.of(name)
-    with pytest.raises(AuthorError, match="names nobody"):
+    with pytest.raises(AuthorError, match="names no holder of a certificate"):
         Principal.written(name)
 
 

@@ -37,7 +37,7 @@ def until(condition: Callable[[], bool], *buses: ZenohBus, seconds: float = 10.0
 
 def test_a_client_without_an_answer_says_where_it_has_asked() -> None:
     endpoint = free_endpoint()
-    with pytest.raises(NetworkError, match=f"nobody answers at {endpoint}"):
+    with pytest.raises(NetworkError, match=f"no site answers at {endpoint}"):
         client([endpoint], seconds=0.2)
 
 

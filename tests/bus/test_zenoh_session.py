@@ -33,7 +33,7 @@ def test_a_client_without_a_router_names_every_endpoint_that_it_has_asked() -> N
     asked = [with_port(ANYWHERE_ON_LOOPBACK) for _ in range(2)]
     with pytest.raises(NetworkError) as error:
         open_session("client", connect=asked)
-    assert str(error.value).startswith(f"nobody answers at {asked[0]}, {asked[1]}; is the endpoint right?")
+    assert str(error.value).startswith(f"no site answers at {asked[0]}, {asked[1]}; is the endpoint right?")
 
 
 def test_two_routers_cannot_listen_on_one_endpoint() -> None:

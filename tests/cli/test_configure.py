@@ -474,7 +474,7 @@ def test_without_a_peer_there_is_a_sentence_that_says_what_to_start(
     for module in ("selfconf.api.membership", "selfconf.rendezvous"):
         monkeypatch.setattr(f"{module}.client", partial(client, seconds=0.1))
     assert desk.configure(*BOUND, ads=False).is_one_sentence("selfconf site")
-    assert desk.configure(*BOUND, "--connect", "tcp/127.0.0.1:1", ads=False).is_one_sentence("nobody answers")
+    assert desk.configure(*BOUND, "--connect", "tcp/127.0.0.1:1", ads=False).is_one_sentence("no site answers")
     assert desk.configure(*BOUND, "--connect", "here", ads=False).is_one_sentence("no endpoint")
 
 

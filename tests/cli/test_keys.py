@@ -55,7 +55,7 @@ def test_what_is_wrong_with_a_holder_is_shown(
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("issue", "boss", "--out", "x"), ("'boss' names nobody", "site.NAME")),
+        (("issue", "boss", "--out", "x"), ("'boss' names no holder of a certificate", "site.NAME")),
         (("issue", "read.a", "--out", "."), ("not empty",)),
         (("issue", "site.a", "--host", "a b", "--out", "x"), ("neither the name of a host",)),
         (("renew", "nowhere"), ("there is no folder nowhere",)),

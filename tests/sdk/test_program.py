@@ -38,7 +38,7 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         ((), "selfconf site"),
         (("--ecology", "home"), "of the ecology 'home'"),
-        (("--ecology", "home", "--connect", "tcp/127.0.0.1:1"), "nobody answers at tcp/127.0.0.1:1"),
+        (("--ecology", "home", "--connect", "tcp/127.0.0.1:1"), "no site answers at tcp/127.0.0.1:1"),
         (("--ecology", "home", "--connect", "somewhere"), "no endpoint"),
     ],
 )
@@ -60,7 +60,7 @@ def test_the_environment_that_a_site_gives_names_the_ecology(
     monkeypatch.setenv("SELFCONF_CONNECT", "tcp/127.0.0.1:1")
     with pytest.raises(SystemExit, match="2"):
         main(Lamp, arguments=())
-    assert "nobody answers at tcp/127.0.0.1:1" in capsys.readouterr().err
+    assert "no site answers at tcp/127.0.0.1:1" in capsys.readouterr().err
 
 
 def test_help_tells_what_the_component_is(capsys: pytest.CaptureFixture[str]) -> None:
