@@ -80,6 +80,13 @@ def checked_upgrade(seconds: float | None) -> float | None:
     return float(seconds)
 
 
+def passing_seconds(seconds: float) -> float:
+    """The simulated seconds that are to pass. Raises ProgrammerError for what is no time."""
+    if isinstance(seconds, bool) or not isinstance(seconds, Real) or not 0 <= seconds <= LONGEST_SECONDS:
+        raise ProgrammerError(f"simulated seconds are a number from 0 to {LONGEST_SECONDS:,.0f}, not {seconds!r}")
+    return float(seconds)
+
+
 def option(kind: type[Choice], name: str, word: str) -> Choice:
     """The choice that a word stands for. Raises ProgrammerError, which names the words that there are."""
     try:

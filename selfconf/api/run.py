@@ -20,6 +20,7 @@ from selfconf.bus.credentials import Credentials
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
+from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
@@ -86,7 +87,7 @@ class Run:
         self._told: tuple[Refusal, Mapping[IRI, Advertisement], Refusal] | None = None
         """The refusal that was explained last, of which ecology, and the explanation."""
         self._work = WorkQueue()
-        self._ended = False
+        self._entered = self._left = self._ended = False
         record = task_record(self.task, method, policy, name, priority, upgrade)
         self._bus = member(ecology, endpoints, credentials)
         self.wanted_name = task_name(record.task)
@@ -129,6 +130,9 @@ class Run:
             raise
 
     def __enter__(self) -> Run:
+        if self._entered:
+            raise ProgrammerError(f"the run of {self.task_name} was entered already; ask the ecology for another run")
+        self._entered = True
         self._bus.run_aside()
         self._bus.wake_up(self._runner.start)
         self._bus.wake_up(self._check)
@@ -144,16 +148,20 @@ class Run:
             while not self._ended and self._bus.now() < deadline:
                 self._work.next(CHECK)
         finally:
+            self._left = True
             self._claimed.release()
             self._bus.close()
 
     def events(self) -> Iterator[AnyRunEvent]:
         """What happens, in order, until the task has ended; does the work of the run while it waits for the next event.
 
-        Raises SelfconfError where the shapes of the task cannot be judged, once everything is taken down.
+        Raises ProgrammerError outside of a `with` statement, in which alone the task runs, and SelfconfError where the
+        shapes of the task cannot be judged, once everything is taken down.
         """
+        if not self._entered:
+            raise ProgrammerError(f"the run of {self.task_name} has not begun; use it in a `with` statement")
         while True:
-            ended = self._ended  # before the look at the queue: what was reported by then is in it
+            ended = self._ended or self._left  # before the look at the queue: what was reported by then is in it
             event = self._work.next(0.0 if ended else CHECK)
             if event is not None:
                 yield answered_event(self._with_explanation(event), self.task.document)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from selfconf.api.arguments import Paths
+from selfconf.api.arguments import Paths, passing_seconds
 from selfconf.api.task import template
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
@@ -125,8 +125,10 @@ class ComponentBench:
     def start(self, **parameters: str | int | float | bool) -> None:
         """Activate the component, with values for its operational parameters by name.
 
-        Raises ProgrammerError if it declines, breaks, or declares no parameter of that name.
+        Raises ProgrammerError if it declines, breaks, acts already, or declares no parameter of that name.
         """
+        if self.active:
+            raise ProgrammerError(f"{self.profile.component.short} acts already; stop it first")  # it would be awaited
         task = template(PREFIXES + self._template(parameters))
         self._run = self.ecology.run(task)
         self.ecology.until(lambda: self._run is not None and (self._run.running or self._run.ended))
@@ -164,13 +166,18 @@ class ComponentBench:
         self._servers[operation + CALL_MARK].answer = answer
 
     def call(self, operation: str, request: Any = None, seconds: float = 2.0) -> Response:
-        """Call an operation of the component, and let the time pass until there is an answer, or none in time."""
+        """Call an operation of the component, and let the time pass until there is an answer, or none in time.
+
+        Raises ProgrammerError for an operation that it does not offer, for what is no number of seconds, and where the
+        component does not act.
+        """
+        within = passing_seconds(seconds)
         caller = self._callers.get(operation + CALL_MARK)
         if caller is None:
             raise ProgrammerError(f"{self.profile.component.short} advertises no operation {operation!r}")
         answers: list[Response] = []
-        caller.call("call", request, answered=answers.append, seconds=seconds)
-        if not self.ecology.until(lambda: bool(answers), seconds + DELIVERY):
+        caller.call("call", request, answered=answers.append, seconds=within)
+        if not self.ecology.until(lambda: bool(answers), within + DELIVERY):
             raise ProgrammerError(f"{self.profile.component.short} cannot be called now; start it first")
         return answers[0]
 

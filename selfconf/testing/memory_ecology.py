@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from selfconf import files, library
 from selfconf.api.answer import Answer, Method
-from selfconf.api.arguments import Paths, listed_paths, option
+from selfconf.api.arguments import Paths, listed_paths, option, passing_seconds
 from selfconf.api.composites import Composites
 from selfconf.api.event_answers import answered, answered_event
 from selfconf.api.ontologies import hierarchy_of
@@ -215,12 +215,15 @@ class MemoryEcology:
                 self.network.reconnect(node, other)
 
     def advance(self, seconds: float) -> None:
-        """Let simulated time pass."""
-        self.network.run(lambda: False, seconds)
+        """Let simulated time pass. Raises ProgrammerError for what is no number of seconds, from zero on."""
+        self.network.run(lambda: False, passing_seconds(seconds))
 
     def until(self, condition: Callable[[], bool], seconds: float = UNTIL_SECONDS) -> bool:
-        """Let simulated time pass until something holds; returns whether it does."""
-        return self.network.run(condition, seconds)
+        """Let simulated time pass until something holds, or that many seconds are over; returns whether it holds.
+
+        Raises ProgrammerError for what is no number of seconds, from zero on.
+        """
+        return self.network.run(condition, passing_seconds(seconds))
 
     def __repr__(self) -> str:
         return f"<ecology in memory of {count(len(self.advertisements), 'component')} after {self.time:.1f} s>"

@@ -16,6 +16,7 @@ from selfconf.api.arguments import (
     listed_endpoints,
     listed_paths,
     option,
+    passing_seconds,
     seconds_limit,
     steps_limit,
 )
@@ -82,6 +83,12 @@ def test_what_is_no_priority_is_refused_in_a_sentence(priority: Any) -> None:
     assert [checked_priority(one) for one in (-(10**6), 0, 10**6)] == [-(10**6), 0, 10**6]
     with pytest.raises(ProgrammerError, match=r"^a priority is a whole number from -1000000 to 1000000, not "):
         checked_priority(priority)
+
+
+def test_simulated_seconds_are_none_or_more() -> None:
+    assert (passing_seconds(0), passing_seconds(0.5)) == (0.0, 0.5)
+    with pytest.raises(ProgrammerError, match=r"^simulated seconds are a number from 0 to 1,000,000, not nan$"):
+        passing_seconds(float("nan"))
 
 
 @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf"), 1e300, True, "5"])

@@ -59,6 +59,20 @@ def test_events_are_values_in_the_order_in_which_things_happen(served: Home, clo
     assert run.refusal is None
 
 
+def test_a_run_has_events_in_a_with_statement_alone_and_is_entered_once(
+    served: Home, clock: sc.TaskSpecification
+) -> None:
+    with sc.join(served.ecology) as living:
+        run = living.run(clock)
+        with pytest.raises(ProgrammerError, match="the run of tell-the-time has not begun; use it in a `with` statem"):
+            list(run.events())
+        with run:
+            until(run, TaskRunning)
+        assert list(run.events()) == []  # and it ends
+        with pytest.raises(ProgrammerError, match="was entered already"), run:
+            pytest.fail("it was entered twice")
+
+
 def test_another_thread_sees_the_task_and_may_stop_it(served: Home, clock: sc.TaskSpecification) -> None:
     seen: list[tuple[str, ...]] = []
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +90,29 @@ def test_a_failure_is_told_and_a_stop_brings_it_to_rest() -> None:
     assert not bench.active
     bench.stop()
     assert thermostat.rests >= 1
+
+
+@pytest.mark.parametrize("seconds", [float("nan"), float("inf"), -5.0])
+def test_time_goes_by_numbers_and_forward_on_the_bench(seconds: float) -> None:
+    bench = ComponentBench(Guide(), GUIDE)
+    bench.start()
+    for let_pass in (bench.advance, partial(bench.call, "map", None)):
+        with pytest.raises(ProgrammerError, match="simulated seconds are a number"):
+            let_pass(seconds)
+
+
+def test_a_component_that_acts_is_not_started_again_and_one_stop_is_enough() -> None:
+    bench = ComponentBench(Thermostat(), ADVERTISEMENT)
+    bench.start()
+    with pytest.raises(ProgrammerError, match="thermostat acts already; stop it first"):
+        bench.start()
+    bench.stop()
+    assert not bench.active
+    bench.advance(10.0)
+    assert not bench.active
+    bench.start(wanted=30.0)
+    bench.send("temperature", {"celsius": 25.0})
+    assert bench.emitted["heating"] == [{"on": True}]
 
 
 def test_what_breaks_in_a_component_is_its_failure() -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -126,6 +128,15 @@ def test_an_advertisement_that_is_none_is_refused(tmp_path: Path) -> None:
         ecology.advertise(PREFIXES)
     with pytest.raises(ProgrammerError, match="add it first"):
         ecology.crash(Screen())
+
+
+@pytest.mark.parametrize("seconds", [float("nan"), float("inf"), -5, True, "5"])
+def test_time_goes_by_numbers_and_forward(seconds: Any) -> None:
+    ecology = MemoryEcology()
+    for let_pass in (ecology.advance, partial(ecology.until, lambda: False)):
+        with pytest.raises(ProgrammerError, match="simulated seconds are a number from 0 to 1,000,000, not "):
+            let_pass(seconds)
+    assert ecology.time == 0.0
 
 
 def test_what_is_no_task_and_no_policy_is_refused_in_a_sentence() -> None:
