@@ -76,6 +76,8 @@ class Answered:
     detail: str = ""
     holder: Holder | None = None
     """Who holds the component, where that is another task."""
+    startable: bool = False
+    """Whether the site of the component can start it again."""
 
 
 @immutable

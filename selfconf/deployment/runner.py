@@ -17,6 +17,7 @@ from selfconf.configurator import (
     DEPLOYING,
     Accepted,
     Adopted,
+    Answered,
     Appeared,
     ApplyTo,
     AwaitRelease,
@@ -211,7 +212,7 @@ class TaskRunner:
 
     def _step(self, event: Event) -> None:
         """Feed the machine; an event that an effect brings about comes after the other effects."""
-        if isinstance(event, Failed):
+        if isinstance(event, (Answered, Failed)):
             found = self.ecology.discovery.found.get(event.component)
             event = replace(event, startable=found is not None and found.startable)
         self._events.append(event)

@@ -64,6 +64,8 @@ YIELDING = 2.0
 """Seconds that a task has to let go of a component that a task of higher priority asks for."""
 MOST_PENDING = 256
 """How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
+LIFE_ENDS = "it is leaving the ecology"
+"""What a component says that cannot act any more in this life, but does not refuse to."""
 Reply = Callable[[CallAnswer], None]
 
 
@@ -267,9 +269,9 @@ class ComponentRuntime:
             self._when_at_rest(lambda: self._obey(message, reply))
 
     def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
-        if self._closed:  # while the call waited for the code to be at rest
-            verdict = Verdict.DONE if isinstance(message, Release) else Verdict.REFUSED
-            reply(self._verdict(verdict, message.task, "it is leaving the ecology"))
+        if self._closed:  # while the call waited for the code to be at rest; its site may start another life
+            verdict = Verdict.DONE if isinstance(message, Release) else Verdict.OTHER_LIFE
+            reply(self._verdict(verdict, message.task, LIFE_ENDS))
             return
         after, verdict, step = table.obey(
             self.activation,
@@ -306,6 +308,9 @@ class ComponentRuntime:
                 trouble = "it was turned off again"
             if trouble is None:
                 reply(self._verdict(Verdict.DONE, message.task))
+                return
+            if self._closed:
+                reply(self._verdict(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
                 return
             if step is not ActivationStep.NONE:
                 self._drop([message.task], message.epoch)

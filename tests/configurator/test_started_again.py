@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from selfconf.configurator.effects import Compose, Finish, ReleaseFrom, WakeUp
-from selfconf.configurator.events import Call, Failed
+from selfconf.configurator.events import Answered, Call, Failed
 from selfconf.configurator.state import Phase, State
-from selfconf.protocol.messages import Cause
+from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import CONTROL, DRIVE, ODOMETRY, REFUSAL, TRACKER, History, navigation
 
 
@@ -65,6 +65,21 @@ def test_what_its_site_starts_no_more_is_a_reason_to_refuse() -> None:
     history.all_answer()
     assert history.state.phase is Phase.REFUSED
     assert history.effects[-1] == Finish(REFUSAL)
+
+
+@pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])
+@pytest.mark.parametrize("startable", [True, False])
+def test_what_says_that_its_life_is_over_is_waited_for_if_its_site_can_start_it(call: Call, startable: bool) -> None:
+    history = History().accepted()
+    history.composed(navigation())
+    while (TRACKER, call) not in history.state.pending:
+        history.answer(*min(history.state.pending))
+    over = Answered(TRACKER, call, history.state.epoch, Verdict.OTHER_LIFE, "1", detail="it ends", startable=startable)
+    history.hear(over)
+    assert (history.state.lost[TRACKER].cause, history.state.lost[TRACKER].detail) == (Cause.CRASH, "it ends")
+    effects = history.composed(REFUSAL)
+    assert effects == ([Compose(history.state.attempt, frozenset(), history.state.target)] if startable else effects)
+    assert (history.state.phase is Phase.COMPOSING) is startable
 
 
 def test_what_crashes_again_while_it_is_waited_for_is_started_again_as_often_as_its_site_does() -> None:

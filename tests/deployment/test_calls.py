@@ -21,7 +21,7 @@ from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Relea
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk.component import Refused
-from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk.runtime import LIFE_ENDS, ComponentRuntime
 from selfconf.sdk.supervision import GRACE
 from tests.deployment.tasks import TASK
 from tests.faults.simulated_code import SimulatedCodeThread, SimulatedComponentCode
@@ -385,6 +385,27 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_pat
     assert lab.until(lambda: bool(lab.ended))
     assert ended[0] == End(tracker, runtime.life)
     assert lab.until(lambda: lab.active() == set())
+
+
+def test_a_task_waits_for_a_component_whose_life_is_ending_and_has_its_site_start_it_again(tmp_path: Path) -> None:
+    """Its code is in `started` for another task; its process is told to end meanwhile, and ends as that returns."""
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    for name in TASK:
+        lab.component(name)
+    lab.component("tracker")
+    thread = slow_code(lab, "tracker")
+    runtime = lab.runtimes["tracker"]
+    living_room(lab, "1", lambda _: lab.runtimes["tracker"] is runtime and lab.component("tracker"))
+    runtime.code.stop(runtime.at_rest)
+    thread.spend(1.5)
+    agent = lab.agent()
+    runtime.bus.later(1.5, runtime.close)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 5.0)
+    assert lab.runtimes["tracker"] is not runtime
+    assert lab.active() == TASK | {"tracker"}
+    assert {event.cause for event in lab.acts("lost")} == {"crash"}
+    assert lab.acts("lost")[0].detail == LIFE_ENDS
 
 
 def test_a_component_that_hears_but_is_not_heard_is_released_though_it_seems_to_be_dead(lab: Lab) -> None:

@@ -6,6 +6,7 @@ import logging
 import math
 import os
 import socket
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -18,9 +19,9 @@ from selfconf.model.term import IRI, Literal, Term
 from selfconf.model.wording import LONGEST_REMARK
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Apply, Cause, Fail, Release, Reserve, Verdict, Wire
+from selfconf.protocol.messages import Apply, CallAnswer, Cause, Fail, Release, Reserve, Verdict, Wire
 from selfconf.sdk.component import Component, Refused, Signal
-from selfconf.sdk.runtime import OFFER, YIELDING
+from selfconf.sdk.runtime import LIFE_ENDS, OFFER, YIELDING
 from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.stage import (
@@ -394,6 +395,36 @@ def test_closing_turns_the_component_off_and_ends_its_life() -> None:
     assert called == [()]
     assert stage.recorder.said == [("started",), ("stopped",)]
     assert stage.ask("state", b"") == Replies((), (), True)
+
+
+@pytest.mark.parametrize(
+    ("make", "verdict"),
+    [(apply, Verdict.OTHER_LIFE), (reserve, Verdict.OTHER_LIFE), (release, Verdict.DONE)],
+)
+def test_a_call_that_waits_for_code_that_leaves_hears_that_this_life_is_over_and_no_refusal(
+    make: Callable[..., Apply | Reserve | Release], verdict: Verdict
+) -> None:
+    answers: list[CallAnswer] = []
+
+    class Stopping(Recorder):
+        def stopped(self) -> None:
+            name = make.__name__
+            stage.runtime._answer(name, encode(make(1, THEM, life="life-1")), answers.append)
+
+    stage = Stage(Stopping())
+    stage.call(apply(1, US))
+    stage.runtime.close()
+    assert [(answer.verdict, answer.detail) for answer in answers] == [(verdict, LIFE_ENDS)]
+
+
+def test_a_component_that_leaves_while_it_starts_does_not_say_that_it_refuses() -> None:
+    class Ending(Recorder):
+        def started(self) -> None:
+            stage.runtime.close()
+
+    stage = Stage(Ending())
+    answer = stage.call(apply(1, US))
+    assert (answer.verdict, answer.detail, answer.life) == (Verdict.OTHER_LIFE, LIFE_ENDS, "life-1")
 
 
 def test_closing_an_idle_component_does_not_stop_it() -> None:
