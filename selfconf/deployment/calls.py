@@ -217,7 +217,8 @@ class Calls:
             if not replies.samples:
                 self._give_up(waking, replies.errors[0] if replies.errors else "its site does not answer")
 
-        self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component)), CALL, answered)
+        ended = self._left_behind.get(effect.component, ("",))[-1]
+        self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component, ended)), CALL, answered)
 
     def _give_up(self, waking: tuple[WakeUp, Undo], detail: str) -> None:
         """Do without a component that was to be started, unless it lives by now or is being started anew."""

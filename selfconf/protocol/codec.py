@@ -364,6 +364,7 @@ _READERS: dict[tuple[type, str], Any] = {
     **{(kind, "beginning"): _moment for kind in (Reserve, Apply, Release, CallAnswer, Status, TaskRecord)},
     **{(kind, "component"): _iri for kind in (CallAnswer, Fail, Free, Moved, Wake, End, Stamp)},
     **{(kind, "life"): _label for kind in (Reserve, Apply, Release, CallAnswer, Fail, Free, Moved, End, Stamp)},
+    (Wake, "after"): _label,
     **{(kind, "sequence"): _whole for kind in (Fail, Notice, Stamp)},
     **{(kind, "detail"): _remark for kind in (CallAnswer, Fail)},
     **{(kind, "inputs"): _inputs for kind in (Reserve, Apply)},

@@ -200,6 +200,8 @@ class Wake:
     """Start the process of a dormant component."""
 
     component: IRI
+    after: str = ""
+    """The life that has ended while the task held it; empty: none has, as far as the task knows."""
 
 
 @immutable

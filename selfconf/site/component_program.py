@@ -4,10 +4,11 @@
     running --end, trouble--> ending --gone--> idle, or pausing if it was for trouble
 
 A process that ends with 0 has wanted to, and one that ends with 2 has said why it cannot run (its component lives
-already, for one); every other end is a crash. After a crash the program is started again with a pause, until it has
-crashed too often (`selfconf.site.restart_limit`). The pause after a first crash ends when the program is asked for, as
-a task may stand still without it; further ones do not, else a task that asks at once would leave no pauses. What still
-runs of the process is ended first: there is never more than one.
+already, for one); every other end is a crash. So is each end after which a task that held a component of the process
+has it started again, or that would go on for ever. After a crash the program is started again with a pause, until it
+has crashed too often (`selfconf.site.restart_limit`). The pause after a first crash ends when the program is asked for,
+as a task may stand still without it; further ones do not, else a task that asks at once would leave no pauses. What
+still runs of the process is ended first: there is never more than one.
 """
 
 from __future__ import annotations
@@ -76,6 +77,10 @@ class ComponentProgram:
         self._watches: dict[IRI, LifeWatch] = {}
         """Of some components, whether they live, as long as there is a process."""
         self._limit = RestartLimit()
+        self._counted = False
+        """Whether the end of the present process, or else of the last one, was counted as a crash."""
+        self._last_watches: tuple[LifeWatch, ...] = ()
+        """The watches over the lives of the process that has ended last."""
         self._life = ""
         self.group: ProcessGroup | None = None
         """The process, while there is anything left of it."""
@@ -93,19 +98,25 @@ class ComponentProgram:
         """Whether there is a process that is not to end."""
         return self.group is not None and self._ending_since is None
 
-    def start(self, profile: Profile, sharing: Iterable[Profile]) -> None:
-        """Start the process for one of its components, unless it runs. Raises PeerError if that cannot be done."""
+    def start(self, profile: Profile, sharing: Iterable[Profile], after: str = "") -> None:
+        """Start the process for one of its components, unless it runs. Raises PeerError if that cannot be done.
+
+        `after` is the life that a task has lost, if that is why it is started: such an end is a crash, whatever for.
+        """
         self._asked.add(profile.component)
         self._profiles = {one.component: one for one in (profile, *sharing)}
         if self.running:
             self._follow_lives()
             return
+        counted = self._count_lost(after)
         wait = self._limit.wait(self._bus.now(), self._restarts())
         if wait > 0:
             crashed = f"has ended more than {self._restarts()} times within {CRASH_WINDOW:.0f} s"
             raise PeerError(f"the command of {profile.component} {crashed}; it can be started in {wait:.0f} s")
         if self.group is None:
-            if self._pause is None or self._limit.first(self._bus.now()):
+            if counted and not self._limit.first(self._bus.now()):
+                self._start_again()
+            elif self._pause is None or self._limit.first(self._bus.now()):
                 self._launch()
         else:
             self._again = True  # one process at a time; the end of this one is near
@@ -131,6 +142,18 @@ class ComponentProgram:
         watch = self._watches.get(component)
         return life == self._life or (watch is not None and watch.is_life(life))
 
+    def _count_lost(self, life: str) -> bool:
+        """Count the end of the process in which a task has lost a life, unless it has counted; whether it does now."""
+        watches = (*self._watches.values(), *self._last_watches)
+        counts = bool(life) and not self._counted and any(watch.was_life(life) for watch in watches)
+        if counts:
+            self._count_crash()
+        return counts
+
+    def _count_crash(self) -> None:
+        self._counted = True
+        self._limit.crashed(self._bus.now())
+
     def close(self) -> None:
         """Start nothing any more; the process is ended by whoever closes. May be called from any thread."""
         self._closed = True
@@ -139,6 +162,7 @@ class ComponentProgram:
         """Start the process. Raises PeerError."""
         self._end_pause()
         self._life = secrets.token_hex(4)
+        self._counted, self._last_watches = False, ()
         environment = {
             **os.environ,
             **self._environment,
@@ -180,6 +204,7 @@ class ComponentProgram:
                 self._watches[component] = LifeWatch(self._bus, self._keys, profile, self._life)
 
     def _unwatch(self) -> None:
+        self._last_watches = tuple(self._watches.values())
         for watch in self._watches.values():
             watch.close()
         self._watches.clear()
@@ -244,7 +269,7 @@ class ComponentProgram:
         again = code not in NO_CRASH
         # One that ends before it lives is not started again, but whoever asks for it may not ask without a limit.
         if again or not any(watch.lived for watch in self._watches.values()):
-            self._limit.crashed(self._bus.now())
+            self._count_crash()
         outlook = self._outlook() if again else ""
         self._report(Cause.CRASH, f"the process that its site started for it has ended with code {code}{outlook}")
         self.end(lambda: None, again)  # what it has started may still run
@@ -252,7 +277,7 @@ class ComponentProgram:
 
     def _end_for(self, cause: Cause, trouble: str) -> None:
         """End a process that cannot say itself that something is wrong with it."""
-        self._limit.crashed(self._bus.now())
+        self._count_crash()
         self._report(cause, f"its process {trouble}; its site ends it{self._outlook()}")
         self.end(lambda: None, again=True)
 

@@ -36,6 +36,8 @@ class LifeWatch:
         self._bus, self._profile, self._life = bus, profile, life
         self._state = keys.call(profile.component, "state")
         self._lives: set[str] = set()
+        self._had: set[str] = set()
+        """The lives that the component has had since the process began."""
         self.lived = False
         """Whether the component has had a life since the process began."""
         self._lifeless_since = bus.now()
@@ -60,6 +62,10 @@ class LifeWatch:
         """Whether a life of the component is that of the process, as far as can be told."""
         return life == self._life or (life in self._lives and self._life not in self._lives)
 
+    def was_life(self, life: str) -> bool:
+        """Whether a life that may have ended was that of the process, as far as can be told."""
+        return life == self._life or (life in self._had and self._life not in self._had)
+
     def lifeless(self, frozen: bool) -> str | None:
         """Why a process without a living component has to be ended, in words. `frozen`: it is stopped by a signal."""
         lifeless = self._bus.now() - self._lifeless_since
@@ -80,6 +86,7 @@ class LifeWatch:
         if alive:
             self.lived = True
             self._lives.add(life_of(key))
+            self._had.add(life_of(key))
         else:
             self._lives.discard(life_of(key))
             self._lifeless_since = self._bus.now()

@@ -49,10 +49,11 @@ class ComponentProcesses:
         self.by_component: dict[IRI, ComponentProgram] = {}
         """The program that each component was started by last."""
 
-    def start(self, profile: Profile, sharing: Iterable[Profile] = ()) -> None:
+    def start(self, profile: Profile, sharing: Iterable[Profile] = (), after: str = "") -> None:
         """Start the process of a component, unless it runs. Raises PeerError if that cannot be done.
 
-        `sharing` are the components with the same command in the same folder.
+        `sharing` are the components with the same command in the same folder. `after` is the life that a task has
+        lost, if that is why it is started.
         """
         component, started = profile.component, started_once(profile)
         if started is None or self._environment is None:
@@ -70,7 +71,7 @@ class ComponentProcesses:
             self._programs[started] = program
             if self._closed:  # after it is known: either it is closed here, or by `close`
                 program.close()
-        program.start(profile, sharing)
+        program.start(profile, sharing, after)
         for one in (*sharing, profile):
             self.by_component[one.component] = program
 

@@ -96,14 +96,17 @@ class Site:
         self.processes.close()
         self.bus.close()
 
-    def start(self, component: IRI) -> None:
-        """Start the process of a dormant component, unless it runs. Raises PeerError if that cannot be done."""
+    def start(self, component: IRI, after: str = "") -> None:
+        """Start the process of a dormant component, unless it runs. Raises PeerError if that cannot be done.
+
+        `after` is the life that a task has lost, if that is why it is started.
+        """
         advertisement = self.shelf.advertisements.get(component)
         if advertisement is None:
             raise cannot_start(component)
         started = started_once(advertisement.profile)
         sharing = () if started is None else self._sharing[started]
-        self.processes.start(advertisement.profile, [self.shelf.advertisements[one].profile for one in sharing])
+        self.processes.start(advertisement.profile, [self.shelf.advertisements[one].profile for one in sharing], after)
 
     def tell_unable(self, why: Mapping[IRI, str]) -> None:
         """Say from now on with each advertisement why its component cannot act now, if that is so."""
@@ -211,7 +214,7 @@ class Site:
     def _wake(self, request: Request) -> None:
         try:
             wake = decode(request.payload, Wake)
-            self.start(wake.component)
+            self.start(wake.component, wake.after)
             request.reply(self.keys.wake(self.name), b"started")
         except PeerError as error:
             request.refuse(str(error))

@@ -17,7 +17,7 @@ from selfconf.deployment.runner import TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk
-from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Release, Reserve, Verdict
+from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Release, Reserve, Verdict, Wake
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk.component import Refused
@@ -210,6 +210,27 @@ def test_a_component_that_has_ended_unseen_is_started_again_by_a_site_that_can(t
     lab.let_pass(0.3)
     lab.rejoin(agent)
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING and lab.active() == TASK | {"tracker"}, 10.0)
+
+
+def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_component_again(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    for name in TASK:
+        lab.component(name)
+    living_room(lab, "1", lambda _: lab.component("tracker"))
+    asked: list[Wake] = []
+
+    def listen(request: Request) -> None:
+        asked.append(decode(request.payload, Wake))
+        request.finish()
+
+    lab.network.node().serve(lab.keys.wake("living-room"), listen)
+    agent = lab.agent()
+    assert lab.running(agent)
+    life, tracker = lab.runtimes["tracker"].life, iri("person-tracker")
+    lab.crash("tracker")
+    assert lab.until(lambda: len(asked) == 2)
+    assert asked == [Wake(tracker), Wake(tracker, life)]
 
 
 def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:

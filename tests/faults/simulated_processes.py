@@ -29,7 +29,7 @@ class SimulatedProcesses:
         """The node of each process that is to run; None while it begins."""
         self._restarts: dict[str, int] = {}
 
-    def start(self, profile: Profile, sharing: Iterable[Profile] = ()) -> None:
+    def start(self, profile: Profile, sharing: Iterable[Profile] = (), after: str = "") -> None:
         """Start the process of a component, unless it runs."""
         name = self._names[profile.component]
         if name not in self._nodes:

@@ -120,7 +120,7 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
     Known: st.builds(Known, st.dictionaries(names, numbers, max_size=3)),
     LogQuestion: st.builds(LogQuestion, texts, numbers, texts),
     LogPart: st.builds(LogPart, st.lists(log_lines, max_size=3).map(tuple), texts, st.booleans()),
-    Wake: st.builds(Wake, iris),
+    Wake: st.builds(Wake, iris, names),
     End: st.builds(End, iris, texts),
     Page: st.builds(
         Page, numbers, numbers, numbers, st.none() | iris, texts, st.booleans(), texts, st.booleans(), texts

@@ -154,6 +154,67 @@ def test_a_program_that_wants_to_end_or_cannot_run_is_not_started_again(
     assert heard[0].detail == f"the process that its site started for it has ended with code {code}"
 
 
+def lost_lives(network: Network, tmp_path: Path, made: Site, number: int, told: bool) -> str:
+    """A component is started, lives and ends, wanting to, that many times; its last life, named to the site or not."""
+    life = ""
+    for run in range(1, number + 1):
+        made.start(SLEEPER, life if told else "")
+        assert live(network, lambda run=run: len(runs(tmp_path)) == run)
+        life = program(made)._life
+        leave = network.node().announce(KEYS.life(SLEEPER, life))
+        network.run(lambda: False, 0.1)
+        leave()
+        os.kill(runs(tmp_path)[-1], signal.SIGTERM)
+        assert live(network, lambda: program(made).group is None)
+    return life
+
+
+WANTS_TO_END = "import signal, sys; signal.signal(signal.SIGTERM, lambda *_: sys.exit(0)); "
+
+
+def test_an_end_counts_as_a_crash_where_a_task_has_lost_the_life_whatever_the_code(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(WANTS_TO_END + NUMBERED), more="; sc:restarts 2 ")
+    life = lost_lives(network, tmp_path, made, 3, told=True)
+    for _ in range(2):
+        with pytest.raises(PeerError, match="has ended more than 2 times within 60 s"):
+            made.start(SLEEPER, life)
+
+
+def test_an_end_that_a_task_has_lost_a_life_by_counts_once_and_is_followed_by_a_pause(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(WANTS_TO_END + NUMBERED))
+    life = lost_lives(network, tmp_path, made, 2, told=True)
+    for _ in range(5):
+        made.start(SLEEPER, life)
+    assert not live(network, lambda: program(made).running, 0.3)
+    assert live(network, lambda: len(runs(tmp_path)) == 3)
+
+
+def test_what_has_wanted_to_end_is_started_as_often_as_it_is_asked_for(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(WANTS_TO_END + NUMBERED), more="; sc:restarts 1 ")
+    lost_lives(network, tmp_path, made, 4, told=False)
+    made.start(SLEEPER, "another")
+    assert program(made).running
+
+
+def test_what_a_site_has_ended_for_a_task_counts_as_a_crash_when_that_task_asks_for_it_again(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED), more="; sc:restarts 0 ")
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    life, ended = program(made)._life, list[bool]()
+    made.processes.end(SLEEPER, life, lambda: ended.append(True))
+    with pytest.raises(PeerError, match="has ended more than 0 times"):
+        made.start(SLEEPER, life)
+    assert live(network, lambda: bool(ended))
+
+
 def test_a_process_that_is_ended_is_not_started_again_but_can_be(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:

@@ -124,6 +124,16 @@ def test_a_program_that_names_its_life_itself_is_watched_as_well(network: Networ
     assert watch.hanging() is not None
 
 
+@pytest.mark.parametrize("life", ["own", "of-its-own"])
+def test_a_life_that_has_ended_was_that_of_the_process(network: Network, life: str) -> None:
+    watch, actor = watched(network), Actor(network, life)
+    passes(network, 1.0)
+    actor.end_life()
+    passes(network, 1.0)
+    assert watch.was_life(life)
+    assert not watch.was_life("another")
+
+
 def test_the_life_of_a_second_process_is_not_that_of_the_first(network: Network) -> None:
     watch, _, _ = watched(network), Actor(network), Actor(network, "other")
     passes(network, 1.0)
