@@ -131,12 +131,12 @@ class LivingEcology(Ecology):
     def component_states(self) -> tuple[ComponentState, ...]:
         """How each advertised component is: whether it lives, who holds it, where, since when; sorted by IRI.
 
-        A component that lives and does not answer is named among the `complaints`. To those who may look on only the
-        configurators tell who holds it.
+        A component that lives and does not answer is named among the `complaints`. A reader (`read.NAME`)
+        learns from configurators alone which task holds it.
         """
         discovery = self.discover()
         asked = self._view.keys.any_call("state")
-        # Nobody would hear the question of those who may look on only.
+        # No component would hear the question of a reader.
         replies = Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATES)
         holders = self.holders() if self._looks_on_only else {}
         found = []
@@ -148,26 +148,26 @@ class LivingEcology(Ecology):
                 silent.append(f"{one.component} lives, but does not say how it is")
             found.append(one)
         if silent and self._looks_on_only:
-            silent = ["components do not tell those who may look on only how they are; that takes keys of conf.NAME"]
+            silent = ["components do not tell readers how they are; that takes keys of conf.NAME"]
         self._complaints = (*self.complaints, *silent)
         return tuple(found)
 
     def out_of_control(self) -> Mapping[IRI, str]:
-        """The components that were told to stop and do not come to rest in time, sorted, and how each of them is.
+        """The components that were asked to stop and do not come to rest in time, sorted, and how each of them is.
 
-        That takes some seconds where a component is stopping. Those who may look on only are told of none.
+        That takes some seconds where a component is stopping. A reader (`read.NAME`) sees none.
         """
         return {} if self._looks_on_only else self._tasks.out_of_control()
 
     def _life(self, component: IRI) -> str | None:
-        """The life of a component; those of a large ecology, which most who look on need not, are called now."""
+        """The life of a component; those of a large ecology, which most readers do not need, are called now."""
         if not self._view.knows(component_chunk(component)):
             self._view.called(self._synchronous.living(self._view.keys.any_life()))
         return self._view.life(component)
 
     @property
     def _looks_on_only(self) -> bool:
-        """Whether the keys, if there are any, are those of a reader: it hears no signals, and calls nobody."""
+        """Whether the keys, if there are any, are those of a reader: it hears no signals, and calls no component."""
         return self._credentials is not None and self._credentials.name.startswith("read.")
 
     def component(self, term: str) -> FoundAdvertisement:
@@ -191,7 +191,7 @@ class LivingEcology(Ecology):
         `complain` hears of what is no signal, and of what is to be known before the first one.
         """
         if self._looks_on_only:
-            raise NetworkError("those who may look on only hear no signals; that takes keys of conf.NAME")
+            raise NetworkError("readers hear no signals; that takes keys of conf.NAME")
         found = self.component(component)
         profile = found.advertisement.profile
         if output not in (port.name for port in profile.outputs):
@@ -252,7 +252,7 @@ class LivingEcology(Ecology):
     @property
     def tasks(self) -> tuple[Status, ...]:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
-        return self._complaining(self._tasks.running())
+        return self._complaining(self._tasks.running(by_components=not self._looks_on_only))
 
     def all_tasks(self) -> tuple[LivingTask, ...]:
         """The tasks that run and those that live in the sites, sorted by name."""
@@ -260,7 +260,7 @@ class LivingEcology(Ecology):
 
     @property
     def silent(self) -> tuple[str, ...]:
-        """The configurators that live, but did not answer when they were asked for their `tasks`, sorted."""
+        """The configurators that live or hold components, but did not answer when asked for their `tasks`, sorted."""
         return self._tasks.silent
 
     def _complaining(self, found: _Result) -> _Result:
@@ -297,11 +297,12 @@ class LivingEcology(Ecology):
         return LogPart((), question.position)
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
-        """Whom each component of a deployed task hears, by what its configurator says; None if nobody runs it."""
-        names = {status.configurator for status in self.tasks if status.name == task}
+        """The sources of each component of a deployed task, as a configurator says; None if none runs it."""
+        running = self._tasks.running()
+        names = {status.configurator for status in running if status.name == task}
         if not names:
             return None
-        heard: dict[IRI, set[IRI]] = {c: set() for s in self.tasks if s.configurator in names for c in s.components}
+        heard: dict[IRI, set[IRI]] = {c: set() for s in running if s.configurator in names for c in s.components}
         for sample in self._synchronous.ask(self._view.keys.configuration()).samples:
             if sample.key.split("/")[-2] in names:
                 for source, sink in connected(sample):
@@ -323,7 +324,7 @@ class LivingEcology(Ecology):
         return dataset
 
     def why(self, term: str, at: float | None = None) -> list[str]:
-        """Why roles are played by whom, of those that a term means, in sentences; at a moment, or now.
+        """Why components play the roles that a term means, in sentences; at a moment, or now.
 
         The term is a role, a component, a value that a task is bound to, or a task: an IRI or its local name. A
         configurator remembers its latest events, and none of them when it has ended.
@@ -475,7 +476,7 @@ def join(ecology: str | None = None, *, connect: Endpoints = (), keys: str | Pat
     `connect` is an endpoint of a site, such as `tcp/127.0.0.1:7447`, or several; without them the sites on this
     machine. Joining reads; nothing changes before `run`. `keys` is a folder of keys; without it, that of the variable
     SELFCONF_KEYS, if there is one. Raises NetworkError, saying what to try, if there is no such ecology, or if it does
-    not let in whom the keys speak for, and AuthorError for keys that are none.
+    not let in the holder of the keys, and AuthorError for keys that are none.
 
     >>> with join() as living:
     ...     answer = living.configure(template("examples/clock/tell-the-time.ttl"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain, count
@@ -89,18 +89,41 @@ class LivingTask:
         }
 
 
+@immutable
+class SilentHolder:
+    """A configurator that is not seen to live, though components say that it holds them: suspended, or just killed."""
+
+    configurator: str
+    task: str
+    """The identity of its task."""
+    components: tuple[IRI, ...]
+
+    def is_meant(self, name: str | None) -> bool:
+        """Whether a name is that of the configurator or of its task; None means all."""
+        return name in (None, self.configurator, task_name(self.task))
+
+    def __str__(self) -> str:
+        named = ", ".join(component.short for component in self.components)
+        return f"the configurator {self.configurator!r} of {task_name(self.task)!r} holds {named}, but does not answer"
+
+
 class LivingTasks:
     """Lists the tasks of an ecology, hands it others, and takes them down."""
 
     def __init__(self, bus: SynchronousBus, keys: Keys) -> None:
         self._bus, self._keys = bus, keys
         self.silent: tuple[str, ...] = ()
-        """The configurators that live, but did not answer when they were asked for their tasks, sorted."""
+        """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
         self.complaints: tuple[str, ...] = ()
         """What was wrong with the answers of configurators, as of the last question."""
+        self._holding: list[SilentHolder] = []
 
-    def running(self) -> tuple[Status, ...]:
-        """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
+    def running(self, by_components: bool = False) -> tuple[Status, ...]:
+        """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name.
+
+        A configurator that is suspended is not seen to live any more before the components that it holds are at rest:
+        `by_components`, these are asked as well by which configurator each of them is held.
+        """
         found: list[Status] = []
         rejected: list[str] = []
         keys = self._keys
@@ -115,10 +138,22 @@ class LivingTasks:
                 found.append(status)
             else:
                 rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
-        self.silent = tuple(sorted(living - {status.configurator for status in found}))
-        rejected += map(_said_of_silent, self.silent)
+        answered = {status.configurator for status in found}
+        self._holding = self._holding_beside(living | answered) if by_components else []
+        rejected += map(_said_of_silent, sorted(living - answered))
+        rejected += map(str, self._holding)
+        self.silent = tuple(sorted((living - answered).union(one.configurator for one in self._holding)))
         self.complaints = tuple(rejected)
         return tuple(sorted(found, key=lambda status: status.configurator))
+
+    def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:
+        """What components are held by configurators that are not among some, sorted by the configurator's name."""
+        found: dict[tuple[str, str], list[IRI]] = {}
+        for one in _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE), self._keys):
+            with suppress(PeerError):
+                if one.supervisor and (configurator := owner_of(one.supervisor)) not in known:
+                    found.setdefault((configurator, one.task), []).append(one.component)
+        return [SilentHolder(*holder, tuple(sorted(components))) for holder, components in sorted(found.items())]
 
     def kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""
@@ -172,21 +207,29 @@ class LivingTasks:
         Raises NetworkError if there is none of that name, or if one does not answer or does not end in time, or if a
         component was turned off and does not obey; of all tasks those are taken down first that answer.
         """
-        running = [s for s in self.running() if name in (None, s.configurator, s.name)]
+        running = [s for s in self.running(by_components=True) if name in (None, s.configurator, s.name)]
         kept = self.kept(name)
-        silent = [one for one in self.silent if name in (None, one)]
+        holding = [one for one in self._holding if one.is_meant(name)]
+        silent = {one for one in self.silent if name in (None, one)}.difference(one.configurator for one in holding)
         if name is not None:
-            _raise_for(map(_said_of_silent, silent))
-            if not running and not kept:
+            _raise_for(map(_said_of_silent, sorted(silent)))
+            if not running and not kept and not holding:
                 raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
         self._take_down(running, kept)
-        troubles = self._disobedience(running)
-        if silent:  # one that was only slow may have ended meanwhile
-            lives = self._bus.living(self._keys.any_configurator_life())
-            troubles += map(_said_of_silent, sorted({owner_of(key) for key in lives}.intersection(silent)))
-        _raise_for(troubles)
+        _raise_for([*self._disobedience(running), *self._unheard(silent, holding)])
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
+
+    def _unheard(self, silent: Set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
+        """What is to be said of configurators that could not be told to stop, once what they hold has come to rest."""
+        if silent:  # one that was only slow may have ended meanwhile, and a suspended one is no longer seen to live
+            living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
+            yield from map(_said_of_silent, sorted(living & silent))
+            holding = [*holding, *(one for one in self._holding_beside(living) if one.configurator in silent)]
+        for one in holding:
+            act_on = self._after_some_time((component, one.task) for component in one.components)
+            at_rest = "they have come to rest, and if it was suspended, it takes them again when it goes on"
+            yield f"{one}; {'they act on' if act_on else at_rest}"
 
     def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
         """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""

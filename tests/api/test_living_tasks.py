@@ -193,6 +193,43 @@ def test_what_does_not_come_to_rest_is_out_of_control_also_without_a_task(tasks:
     assert tasks.asked.out_of_control() == {DRIVE: "its code has not come to rest (process 7 on lab)"}
 
 
+def held_by(configurator: str, task: str) -> CallAnswer:
+    """How the drive is that acts for a task."""
+    return replace(AT_REST, active=True, task=task, supervisor=KEYS.configurator_life(configurator, "1"))
+
+
+def test_a_configurator_that_is_known_by_what_it_holds_alone_is_silent(tasks: Tasks) -> None:
+    tasks.configurator("c1", TIDY.task, IRI("urn:c#cap"))
+    tasks.component(IRI("urn:c#cap"), replace(held_by("c1", TIDY.task), component=IRI("urn:c#cap")))
+    tasks.component(DRIVE, held_by("c2", PATROL.task))
+    assert [status.configurator for status in tasks.asked.running()] == ["c1"]
+    assert (tasks.asked.silent, tasks.asked.complaints) == ((), ())
+    assert [status.configurator for status in tasks.asked.running(by_components=True)] == ["c1"]
+    assert tasks.asked.silent == ("c2",)
+    assert tasks.asked.complaints == ("the configurator 'c2' of 'patrol' holds drive, but does not answer",)
+
+
+@pytest.mark.parametrize("name", [None, "patrol", "c2"])
+@pytest.mark.parametrize(
+    ("later", "said"),
+    [(AT_REST, "they have come to rest, and if it was suspended"), (held_by("c2", PATROL.task), "they act on")],
+)
+def test_nothing_is_said_to_be_taken_down_that_a_silent_configurator_holds(
+    tasks: Tasks, name: str | None, later: CallAnswer, said: str
+) -> None:
+    tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 5, later)
+    began = tasks.network.time
+    with pytest.raises(NetworkError, match=f"'c2' of 'patrol' holds drive, but does not answer; {said}"):
+        tasks.asked.stop(name)
+    assert 0.3 < tasks.network.time - began < 10.0
+
+
+def test_what_another_configurator_holds_is_nothing_to_the_end_of_a_task(tasks: Tasks) -> None:
+    tasks.configurator("c1", TIDY.task)
+    tasks.component(DRIVE, held_by("c2", PATROL.task))
+    assert tasks.asked.stop("tidy") == ("tidy",)
+
+
 def test_nothing_is_waited_for_where_nothing_is_stopping(tasks: Tasks) -> None:
     tasks.component(DRIVE, AT_REST)
     began = tasks.network.time

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.termination import alive
+from tests.cli.command import run as command
 from tests.cli.processes import Home, component_of, dormant
 from tests.lab import PREFIXES
 
@@ -72,6 +73,30 @@ def test_a_run_that_was_suspended_goes_on_with_those_that_turned_themselves_off_
     run.send(signal.SIGCONT)
     assert run.act("running")["epoch"] > epoch
     assert inhabited.active(*EVERYBODY) == TASK | {"tracker"}
+    assert run.end(signal.SIGINT) == 0
+
+
+def test_no_moment_passes_in_which_a_run_that_is_suspended_acts_and_is_not_named(
+    inhabited: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = inhabited.run()
+    run.act("running")
+    where = inhabited.arguments()
+    (status,) = command(capsys, "status", "--format", "json", *where).body
+    name = status["configurator"]
+    run.send(signal.SIGSTOP)
+    acting = inhabited.active(*EVERYBODY)
+    while acting:
+        asked = command(capsys, "status", "--format", "json", *where)
+        acting = inhabited.active(*EVERYBODY)
+        assert not acting or (name in asked.err and asked.code == 2) or asked.body
+    run.send(signal.SIGCONT)
+    run.act("running")
+    run.send(signal.SIGSTOP)
+    assert f"the configurator {name!r}" in command(capsys, "stop", *where).err
+    assert inhabited.until(lambda: inhabited.active(*EVERYBODY) == set())
+    run.send(signal.SIGCONT)
+    run.act("running")
     assert run.end(signal.SIGINT) == 0
 
 
