@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
 
 from selfconf.api.arguments import Paths, listed_paths, option, seconds_limit, steps_limit
 from selfconf.api.collector import collector_at_rest, collector_looking_at_new
@@ -22,6 +20,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
@@ -46,7 +45,7 @@ from selfconf.render import (
 )
 
 
-@dataclass(frozen=True)
+@immutable
 class Method:
     """How a task is composed: the strategy, what the roles see, and how long the search may take."""
 
@@ -83,7 +82,7 @@ class Method:
         return hierarchy_of(Reasoning.SUBCLASS, self.ontologies) if self.reasoning is Reasoning.SYNTACTIC else None
 
 
-@dataclass(frozen=True)
+@immutable
 class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     """A configuration as the library answers with it: also what it costs, and what would replace what.
 
@@ -113,12 +112,7 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
         return cls(**facts, task=task, optimum=optimum, unknown=unknown, what_if=what_if)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "bindings", MappingProxyType(dict(self.bindings)))
-
-    def __reduce__(self) -> tuple[object, ...]:
-        """An answer can be copied and pickled, though a read-only view of its bindings cannot."""
-        facts = {one.name: getattr(self, one.name) for one in fields(self)}
-        return _answer, ({**facts, "bindings": dict(self.bindings)},)
+        object.__setattr__(self, "bindings", FrozenMapping(self.bindings))
 
     @property
     def names(self) -> Names:
@@ -180,11 +174,7 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
         return html_sections(sections) + html_text(plain(str(self)))
 
 
-def _answer(facts: Mapping[str, Any]) -> Answer:
-    return Answer(**facts)
-
-
-@dataclass(frozen=True)
+@immutable
 class ExplainedRefusal(Refusal):
     """A refusal as the library answers with it: it prints on one screen, with the place of each fact."""
 

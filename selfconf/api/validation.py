@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from selfconf import files, library
@@ -12,6 +11,7 @@ from selfconf.api.file_checks import Remembered, shared
 from selfconf.api.tables import Tabular
 from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
+from selfconf.model.immutable import immutable
 from selfconf.project import PROJECT_FILE, project_problems
 from selfconf.rdf import validation
 from selfconf.rdf.validation import CheckEach, SourceText
@@ -22,7 +22,7 @@ LARGEST_FILE = 64 << 20
 """A file of more bytes is not read."""
 
 
-@dataclass(frozen=True)
+@immutable
 class ValidationReport(Tabular, Report):
     """A report as the library answers with it: true if all conforms, and by iteration its problems in order.
 
@@ -50,12 +50,12 @@ class ValidationReport(Tabular, Report):
 
         counted = f"{count(self.errors, 'error')} and {count(self.warnings, 'warning')}"
         said = f"<{counted} in {count(len(self.files), 'file')}>"
-        return f"{said}\n{super().__repr__()}" if self.diagnostics else said
+        return f"{said}\n{Tabular.__repr__(self)}" if self.diagnostics else said
 
     def _repr_html_(self) -> str:
         from selfconf.render import html_text
 
-        return super()._repr_html_() if self.diagnostics else html_text(repr(self))
+        return Tabular._repr_html_(self) if self.diagnostics else html_text(repr(self))
 
 
 def validate(paths: Paths, *, ontologies: Paths = (), cache: bool = False) -> ValidationReport:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import KW_ONLY
 
 from selfconf.configurator import Policy
 from selfconf.discovery import Beliefs
@@ -38,10 +38,11 @@ class Outside:
     """Which components outside may call an operation of the composite now, by the name of its output."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@immutable
 class RunRequest:
     """A task to run: how to compose, what to do after a loss, and where to report."""
 
+    _: KW_ONLY
     task: Task
     compose: ComposeFunction
     not_judged: Callable[[], Mapping[IRI, NotJudged]] = dict

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 from selfconf.model.immutable import immutable
@@ -11,14 +11,18 @@ from selfconf.model.term import IRI, Term
 from selfconf.model.wants import Wants
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@immutable
 class Connection:
-    """An input of one component follows an output of another."""
+    """An input of one component follows an output of another. Connections are ordered by their fields."""
 
     source: IRI
     output: str
     sink: IRI
     input: str
+
+    def __lt__(self, other: Connection) -> bool:
+        own = self.source, self.output, self.sink, self.input
+        return own < (other.source, other.output, other.sink, other.input)
 
 
 def ordered_connections(connections: Iterable[Connection], components: Iterable[IRI]) -> tuple[Connection, ...]:
@@ -44,7 +48,7 @@ class ParameterSetting:
     value: Term
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Configuration:
     """Which components play which role (in template order), all connections and settings, the bindings by name.
 

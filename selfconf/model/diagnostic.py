@@ -5,7 +5,7 @@ printed.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from selfconf.model.immutable import immutable
@@ -54,7 +54,7 @@ class Diagnostic:
         return self.file, self.line, self.column, self.code, self.message
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Report:
     """The problems of several files, in order."""
 

@@ -3,19 +3,21 @@
 A data class compiles six methods for each class, one by one, which for the 150 classes of a site was a quarter of the
 time in which it starts. Here only `__init__` is compiled; the other methods are the same functions for all classes, or
 closures over the names of the fields. What `dataclasses` offers for data classes (`fields`, `replace`, `asdict`) works
-as usual, and type checkers see a frozen data class.
+as usual, and type checkers see a frozen data class. A value holds what it maps in a `FrozenMapping`.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import MISSING, Field, FrozenInstanceError
 from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, TypeVar
 
 Class = TypeVar("Class", bound=type)
+_Key = TypeVar("_Key")
+_Mapped = TypeVar("_Mapped", covariant=True)
 Methods = dict[str, Callable[..., Any]]
 
 if TYPE_CHECKING:
@@ -118,3 +120,31 @@ _SHARED: Methods = {
     "__getstate__": _state,
     "__setstate__": _restore,
 }
+
+
+@immutable
+class FrozenMapping(Mapping[_Key, _Mapped]):
+    """A mapping that does not change; it compares and prints as a dictionary, and is hashed by what it maps."""
+
+    _items: Mapping[_Key, _Mapped]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_items", dict(self._items))
+
+    def __getitem__(self, key: _Key) -> _Mapped:
+        return self._items[key]
+
+    def __iter__(self) -> Iterator[_Key]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __eq__(self, other: object) -> bool:
+        return self._items == other
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._items.items()))
+
+    def __repr__(self) -> str:
+        return repr(self._items)

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 
 from selfconf.model.candidate_order import candidate_order
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.profile import Place, Profile
 from selfconf.model.term import IRI, Term
@@ -95,6 +95,9 @@ class NearMiss:
     """Whether it would not play the role, but be recruited for it."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the component is described, if that is known."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "allows", FrozenMapping(self.allows))
 
     def __str__(self) -> str:
         return self.obstacle.clause

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import ClassVar, Literal
 
 from selfconf.model.configuration import Configuration
@@ -228,7 +228,7 @@ class Conflict:
 Reason = Contradiction | ValueUnknown | TooFewEligible | InputUnfed | TooFewDistinct | Conflict
 
 
-@dataclass(frozen=True, slots=True)
+@immutable
 class Refusal:
     """No configuration: the reasons, the most likely cause first, near misses, repairs, and a hint if there is one.
 

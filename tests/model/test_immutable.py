@@ -6,10 +6,16 @@ import copy
 import pickle
 from collections.abc import Mapping
 from dataclasses import FrozenInstanceError, asdict, dataclass, field, fields, replace
+from pathlib import Path
 
 import pytest
 
-from selfconf.model.immutable import immutable
+import selfconf
+from selfconf.model.configuration import Connection
+from selfconf.model.diagnostic import Report
+from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
 
 
 @immutable
@@ -116,6 +122,33 @@ def test_values_are_copied_and_pickled() -> None:
             assert again == one
             assert again.__class__ is one.__class__
     assert pickle.loads(pickle.dumps(Lamp("a", note="n"))).note == "n"
+
+
+def test_a_value_has_no_other_attributes_than_its_fields() -> None:
+    for value in (Connection(IRI("urn:a"), "x", IRI("urn:b"), "y"), Refusal(IRI("urn:t"), ()), Report()):
+        with pytest.raises(FrozenInstanceError, match="cannot assign to field 'note'"):
+            value.note = ""  # type: ignore[union-attr]  # that is what is tested
+
+
+def test_a_frozen_mapping_is_a_dictionary_that_does_not_change() -> None:
+    source = {"a": 1}
+    frozen = FrozenMapping(source)
+    source["a"] = 2
+    assert (frozen["a"], frozen.get("b"), list(frozen), len(frozen), repr(frozen)) == (1, None, ["a"], 1, "{'a': 1}")
+    assert frozen == {"a": 1} == frozen == FrozenMapping({"a": 1}) != FrozenMapping({"a": 2})
+    assert hash(frozen) == hash(FrozenMapping({"a": 1}))
+    for again in (copy.copy(frozen), copy.deepcopy(frozen), pickle.loads(pickle.dumps(frozen))):
+        assert again == frozen
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        frozen["a"] = 2  # type: ignore[index]  # that is what is tested
+    with pytest.raises(FrozenInstanceError):
+        frozen._items = {}  # type: ignore[misc]  # that is what is tested
+
+
+def test_every_class_of_values_with_slots_is_made_by_it() -> None:
+    folder = Path(selfconf.__file__).parent
+    made = [path for path in folder.rglob("*.py") if "@dataclass(frozen=True, slots=True" in path.read_text("utf-8")]
+    assert made == []
 
 
 def test_values_without_fields_are_equal() -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from decimal import Decimal
 
+import pytest
+
 from selfconf.model.candidate_order import candidate_order
-from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Partition, Variable, ordered
+from selfconf.model.obstacle import WrongComponent
+from selfconf.model.partition import ANY_VALUE, Candidate, Mention, NearMiss, Partition, Variable, ordered
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 
@@ -57,6 +60,14 @@ def test_what_shapes_mention_stays_whatever_is_lost() -> None:
     assert partition.without(frozenset({IRI("urn:a")})).mentioned(0) == (mention,)
     assert partition.without(frozenset({IRI("urn:b")})).mentioned(0) == (mention,)
     assert partition.mentioned(1) == ()  # what is outside of a composite is no role of its template
+
+
+def test_what_a_near_miss_would_allow_does_not_change() -> None:
+    allows = {IRI("urn:p"): frozenset((IRI("urn:x"),))}
+    miss = NearMiss(IRI("urn:r"), IRI("urn:a"), WrongComponent(frozenset()), allows)
+    assert miss.allows == allows
+    with pytest.raises(TypeError):
+        miss.allows[IRI("urn:q")] = frozenset()  # type: ignore[index]  # that is what is tested
 
 
 def test_two_mentions_of_a_parameter_ask_for_what_both_ask_for() -> None:
