@@ -1,7 +1,7 @@
 """Why a candidate plays a role and another does not: its preference, its cost, and what a configuration with it costs.
 
 For each candidate the task is composed once more as if it alone were eligible for the role. Where the template states
-a cost, the cheapest such configuration is told; else only whether there is one.
+a cost, the cheapest such configuration is reported; else only whether there is one.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from selfconf.model.template import Role
 from selfconf.model.term import IRI
 
 MOST_TRIED = 12
-"""How many candidates of a role are tried, in their order; with thousands nobody reads the others."""
+"""How many candidates of a role are tried, in their order; with thousands no user reads the others."""
 SECONDS_FOR_ALL = 20.0
 """The time for all of them together."""
 

@@ -53,8 +53,8 @@ def serve_things(
 
     Sources are read again and again, so that things come and go; but files of which none can be read now are a mistake.
 
-    `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with what
-    origins are told; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
+    `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with the
+    secrets of origins; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
     """
     from selfconf.bridging.wot import (
         ThingCredentials,

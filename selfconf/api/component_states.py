@@ -41,7 +41,7 @@ class ComponentState(NamedTuple):
     reason: str = ""
     """Why it cannot act now, where its site says so: of a composite whose inside cannot be configured."""
     stopping: bool = False
-    """Whether it was told to stop and has not come to rest; where that lasts, it is out of control."""
+    """Whether it was asked to stop and has not come to rest; where that lasts, it is out of control."""
 
     @property
     def shown(self) -> str:
@@ -69,7 +69,7 @@ class ComponentState(NamedTuple):
 def component_states(discovery: Discovery, keys: Keys, replies: Replies) -> Iterator[ComponentState]:
     """The state of each advertised component, sorted by IRI; the answers of strangers are passed over.
 
-    The state is `dormant` or `absent` for a component that has not answered; who knows that it lives corrects that.
+    The state is `dormant` or `absent` for a component that has not answered; a caller that knows its life corrects it.
     """
     answers: dict[IRI, CallAnswer] = {}
     for sample in replies.samples:

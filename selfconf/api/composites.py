@@ -11,9 +11,10 @@ bound when the composite is activated. Other values than before have the inside 
 the composite gets a source, or loses its last one, the inside is configured again beside what runs.
 
 Neither signals nor calls pass here. The inputs inside that are those of the composite follow what feeds it, and a
-configurator that asks the composite to act is told which outputs stand behind its own, and which components inside call
+configurator that asks the composite to act hears which outputs stand behind its own, and which components inside call
 what it needs (`CallAnswer`, and `Moved` when they change). Where what stood behind an output is lost and not replaced
-within `REPLACING`, nothing does: who follows it is not to take a component that rests for one that has nothing to say.
+within `REPLACING`, nothing does: an input that follows it is not to take a component that rests for one that has
+nothing to say.
 Those outside that may call an operation of the composite may call the one that stands behind it.
 
 Composites that could be inside of each other in a circle never live.
@@ -50,14 +51,14 @@ log = logging.getLogger(__name__)
 STARTING_INSIDE = 25.0
 """Seconds that the inside of a composite may take to run: each site may take 15 to start what is dormant."""
 REPLACING = 0.5
-"""Seconds after which those outside are told that nothing stands behind an output: most repairs take less."""
+"""Seconds after which those outside hear that nothing stands behind an output: most repairs take less."""
 
 
 class _CompositeCode(Component):
     """What a composite does itself: nothing."""
 
     def called(self, operation: str, request: Signal) -> None:
-        """Refuse: who calls a composite was not told what stands behind it."""
+        """Refuse: a caller of a composite does not know what stands behind it."""
         raise Refused(f"{operation!r} of a composite is answered by a component inside of it")
 
 
@@ -84,7 +85,7 @@ class InsideOfComposite:
         self.runner: TaskRunner | None = None
         """What runs the inside, while the composite acts."""
         self._beginnings = 0
-        """How often an inside has begun: what one reports that has come to rest concerns nobody."""
+        """How often an inside has begun: what one reports that has come to rest is passed over."""
         self._again: Apply | None = None
         """The call with which the inside is to begin anew once it has come to rest."""
         self._waiting: list[Callable[[], None]] = []

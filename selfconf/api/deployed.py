@@ -77,7 +77,7 @@ def _value(value: Term | None) -> object:
 
 
 def connected(sample: Sample) -> Iterator[tuple[IRI, IRI]]:
-    """Yield who feeds whom in the deployed configuration that a configurator has answered; nothing for no Turtle."""
+    """Yield which component feeds which in a configuration that a configurator has answered; nothing for no Turtle."""
     try:
         document = turtle.parse(sample.payload, sample.key)
     except TurtleError:

@@ -1,7 +1,7 @@
-"""What an output issues, as it comes, for a reader who looks on.
+"""What an output issues, as it comes, for a reader.
 
 The reader follows the output as an input does, and takes part in nothing. What it cannot take in time is passed over
-here, and counted: neither the component nor anybody else waits for it.
+here, and counted: neither the component nor another reader waits for it.
 """
 
 from __future__ import annotations

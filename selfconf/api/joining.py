@@ -5,9 +5,9 @@ site that has lost it takes its place, on the same port if that is free. So a ma
 however many sites it has, and there is a router as long as there is a site. (Fifty routers that see each other come and
 go cost two processors and do not recover from a common stall; fifty clients of one cost a twentieth of a processor.)
 
-A site that is told where to listen, or to connect to another machine, relays beside the others.
+A site with an endpoint of its own, or that connects to another machine, relays beside the others.
 
-A relay that hangs cannot be told so. A site that has had no hub for `HUNG` seconds takes its place on another port and
+A relay that hangs receives nothing. A site that has had no hub for `HUNG` seconds takes its place on another port and
 writes into its file that it relays no more; when it goes on it reads that, and closes its hub.
 
 A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
@@ -214,7 +214,7 @@ class Joining:
         if self._file is None:
             return
         if not self.bus.link and self._lost_at is None:
-            self._lost_at = self.bus.now()  # when the change was told, the link was not lost yet
+            self._lost_at = self.bus.now()  # when the change was reported, the link was not lost yet
         done = self._in_order() or self._looked_in_turn()
         if not done or not self.bus.link:
             self._look_again = self.bus.later(LOOK_AGAIN, self._look)
@@ -241,7 +241,7 @@ class Joining:
             self.announce()
 
     def _take_place(self) -> None:
-        """Relay, if nobody does, or if whoever does hangs."""
+        """Relay, if no site does, or if the one that does hangs."""
         relays = self._relays()
         hung = self._lost_at is not None and self.bus.now() - self._lost_at > HUNG
         if not relays or hung:

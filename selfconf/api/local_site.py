@@ -58,7 +58,7 @@ class SiteProcess:
         self.endpoint = ""
         """Where it listens."""
         self.exit_code_before_end: int | None = None
-        """The exit code of a process that has ended before it was told to."""
+        """The exit code of a process that has ended before it was asked to."""
 
     def __enter__(self) -> SiteProcess:
         """Raises NetworkError if it does not listen in time, SiteMisusedError if it has said why it cannot."""

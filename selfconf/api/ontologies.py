@@ -35,7 +35,7 @@ def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hiera
     return _of_texts(reasoning, tuple(map(file_text, (*library.ontologies(), *own))))
 
 
-# Whoever asks again and again under one large ontology waits for it once.
+# A caller that asks again and again under one large ontology waits for it once.
 @lru_cache(maxsize=2)
 def _of_texts(reasoning: Reasoning, texts: tuple[Text, ...]) -> Hierarchy:
     documents = [turtle.read_ontology(*text, _RELEVANT[reasoning]) for text in texts]

@@ -1,10 +1,10 @@
 """Where the signals of an output are heard: on its own key; of a composite, on the keys of those that issue inside.
 
-A composite passes on nothing: a configurator is told which outputs stand behind those of the composite that it starts.
-Who only looks on is told nothing, so it asks the composite for its `state`, again and again as long as it listens.
+A composite passes on nothing: a configurator learns which outputs stand behind those of the composite that it starts.
+A reader receives nothing, so it asks the composite for its `state`, again and again as long as it listens.
 
 Outputs are latched: a reader asks each output that it begins to hear for its last signal, as an input does. An output
-that nobody else follows issues it again by itself; the reader gets it once.
+that no input follows issues it again by itself; the reader gets it once.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class _Latched:
 
 
 class _IssuedInside:
-    """Hears an output of a composite, by whomever it is issued inside; by nobody while the composite does not act."""
+    """Hears an output of a composite, whichever component issues it inside; none while the composite rests."""
 
     def __init__(self, bus: Bus, keys: Keys, profile: Profile, output: str, heard: Callable[[Sample], None]) -> None:
         self._bus, self._keys, self._composite, self._output = bus, keys, profile.component, output

@@ -44,7 +44,7 @@ class RolePartition(Tabular):
 
     @property
     def held(self) -> Mapping[IRI, Holder]:
-        """The eligible components that other tasks hold, as of the same or a higher priority, and by whom."""
+        """The eligible components that other tasks hold, as of the same or a higher priority, each with its holder."""
         return {c: self._inquiry.holders[c] for c in self.eligible if c in self._inquiry.holders}
 
     @cached_property

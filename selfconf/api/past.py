@@ -92,7 +92,7 @@ def past_configurations(graphs: Mapping[str, bytes]) -> list[PastConfiguration]:
 
 
 def past_why(folder: Path, term: str, at: float | None) -> list[str]:
-    """Why roles were played by whom, of those that a term means, in sentences, at a moment or at the end.
+    """Why components played the roles that a term means, in sentences, at a moment or at the end.
 
     Raises AuthorError where the folder holds no history.
     """

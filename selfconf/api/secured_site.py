@@ -31,7 +31,7 @@ class SecuredSite:
     """A site that has keys."""
 
     def __init__(self, keys: Path, name: str | None) -> None:
-        """Raises AuthorError for keys that are none, or of somebody else than a site of that name.
+        """Raises AuthorError for keys that are none, or of another holder than a site of that name.
 
         From now on, what Zenoh logs is read: it must be made before any session is opened.
         """
@@ -69,14 +69,14 @@ class SecuredSite:
         return self._folder.component(Principal.component(program), [Principal.component(c) for c in sharing])
 
     def believed(self) -> Mapping[IRI, str]:
-        """Whose a component is for the tasks that this site runs: its own are its own, unless somebody says otherwise.
+        """The site of each component, for tasks of this site: its own are its own, unless a person says otherwise.
 
         Raises AuthorError.
         """
         return {**dict.fromkeys(self._programs(), self.name), **believed(self._folder.path)}
 
     def keep_door(self, site: Site, joining: Joining, complain: Callable[[str], None]) -> None:
-        """From now on, let in who shows a good certificate, and renew what expires."""
+        """From now on, let in clients that show a good certificate, and renew what expires."""
         self._programs = lambda: site.programs
         Doorkeeper(
             site.bus,

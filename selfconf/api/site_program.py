@@ -1,4 +1,4 @@
-"""A site as a program: it listens, announces itself on this machine, and serves until it is told to end."""
+"""A site as a program: it listens, announces itself on this machine, and serves until it is asked to end."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ log = logging.getLogger(__name__)
 Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
 """Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
 WORK_CHECK = 1.0
-"""How often, in seconds, a site looks whether it is to end; it is told at once, but for a signal at a bad moment."""
+"""How often, in seconds, a site looks whether it is to end; it hears at once, but for a signal at a bad moment."""
 
 
 def serve(
@@ -70,7 +70,7 @@ def serve(
     Without a name it gets one of its own; without an endpoint it listens where a site of the ecology usually does.
     `complain` hears what is left out, and where it listens. In the folder `state` are the tasks that it keeps, in the
     folder `log` what the components print that it starts; by default both are folders of the runtime folder. With the
-    folder `keys` only those are let in whom its authority vouches for; without it the site listens beyond loopback
+    folder `keys` only holders of certificates of its authority are let in; without it the site listens beyond loopback
     only if it may be `insecure`. `beside` is what lives with the site, from when it listens to when it ends. By
     `ontologies`, files and folders of Turtle, the components that it starts check what they emit, and in
     the mode `reasoning` the insides of its composites see them. Raises AuthorError and NetworkError.

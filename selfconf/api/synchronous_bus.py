@@ -71,7 +71,7 @@ class SynchronousBus:
         return self.wait(begin) if questions else []
 
     def demand(self, key: str, payload: bytes, trouble: str, seconds: float | None = None) -> None:
-        """Have something done. Raises NetworkError, which begins with the trouble, where nobody has done it."""
+        """Have something done. Raises NetworkError, which begins with the trouble, where no node has done it."""
         replies = self.ask(key, payload, seconds)
         if not replies.samples:
             raise NetworkError(f"{trouble}: {'; '.join(replies.errors) or 'it does not answer'}")

@@ -1,7 +1,7 @@
 """Terms of selfconf and SHACL that there are not: `validate` calls them errors, and to a search they say nothing.
 
 A misspelt `sc:feeds` or `sh:minCount` has no meaning, and so a role or an advertisement says less than its author
-believes. Who reads it to act on it is told, and not kept from acting; `validate` says where, and what was meant.
+believes. A command that acts on it warns and goes on; `validate` says where, and what was meant.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _Work(NamedTuple):
-    """What takes long, and for whom it is done."""
+    """Work that takes long, and its owner."""
 
     do: Callable[[], None]
     owner: str
@@ -26,7 +26,7 @@ class WorkQueue:
     def __init__(self) -> None:
         self._works: deque[_Work] = deque()
         self._under_way: tuple[str, Callable[[], None]] | None = None
-        """For whom something is being done, and what ends it."""
+        """The owner of the work that is being done, and what ends it."""
         self._until_more: Callable[[], None] | None = None
         """What ends that which is done only until there is something else."""
         self._events: deque[AnyRunEvent] = deque()
@@ -40,7 +40,7 @@ class WorkQueue:
             self._notify()
 
     def abandon(self, owner: str = "") -> None:
-        """End and forget what is done for an owner, or for everybody if none is named; `next` returns soon."""
+        """End and forget what is done for an owner, or for all if none is named; `next` returns soon."""
         with self._more:
             for work in [work for work in self._works if owner in ("", work.owner)]:
                 self._works.remove(work)

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from selfconf.api.site_access import SiteAccess
 
 EXAMPLE = """  selfconf access --keys keys
-  selfconf access --keys keys --task tidy           # whom each component of a deployed task may hear
+  selfconf access --keys keys --task tidy           # what each component of a deployed task may hear
   selfconf access --keys keys --believe attic https://example.org/my-home#lamp"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     add_ecology_arguments(parser)
-    parser.add_argument("--task", metavar="NAME", help="only what a deployed task needs: who hears and calls whom")
+    parser.add_argument("--task", metavar="NAME", help="only what a deployed task needs: which components hear which")
     parser.add_argument(
         "--believe",
         metavar=("SITE", "COMPONENT"),
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0; 1 if a task is asked for that nobody runs."""
+    """0; 1 if a task is asked for that no configurator runs."""
     if given.believe is not None:
         return _believe(given, *given.believe)
     with joined(given) as ecology:
@@ -69,13 +69,13 @@ def _believe(given: argparse.Namespace, site: str, component: str) -> int:
 def _task(given: argparse.Namespace, ecology: LivingEcology) -> int:
     links = ecology.links_of(given.task)
     if links is None:
-        complain(f"nobody runs a task {given.task!r}")
+        complain(f"no configurator runs a task {given.task!r}")
         return 1
     if given.format == "json":
         print(json.dumps({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]}))
         return 0
     for component, heard in links.items():
-        print(f"{IRI(component)!r} hears {', '.join(repr(IRI(one)) for one in heard) or 'nobody'}")
+        print(f"{IRI(component)!r} hears {', '.join(repr(IRI(one)) for one in heard) or 'no component'}")
     return 0
 
 

@@ -106,7 +106,7 @@ def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--insecure",
         action="store_true",
-        help="listen beyond this host without keys: whoever reaches it may do everything",
+        help="listen beyond this host without keys: any program that reaches it may do everything",
     )
 
 

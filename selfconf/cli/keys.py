@@ -47,10 +47,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     renew.add_argument("folder", metavar="DIR", type=Path, help="the folder of the holder")
     _add_days(renew)
     add_keys_argument(renew)
-    show = _action(actions, "show", "show whom a folder of keys speaks for, until when, and what is wrong with it")
+    show = _action(actions, "show", "show the holder of a folder of keys, until when, and what is wrong with it")
     show.add_argument("folder", metavar="DIR", type=Path, help="a folder of keys")
     show.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
-    revoke = _action(actions, "revoke", "let nobody in any more under a name, until its certificates have expired")
+    revoke = _action(actions, "revoke", "let no program in any more under a name, until its certificates have expired")
     revoke.add_argument("holder", metavar="HOLDER", help="as for `issue`")
     add_keys_argument(revoke)
 
@@ -87,7 +87,7 @@ def _init(given: argparse.Namespace) -> int:
     from selfconf.access import KeysFolder
 
     KeysFolder.init(given.folder)
-    print(f"made an authority in {given.folder}; whoever has this folder may do everything, so keep it to yourself")
+    print(f"made an authority in {given.folder}; this folder permits everything, so keep it to yourself")
     return 0
 
 

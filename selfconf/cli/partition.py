@@ -1,4 +1,4 @@
-"""`partition`: who could play each role of a template, in the order of trying, and what keeps the others out."""
+"""`partition`: which components could play each role, in the order of trying, and what keeps the others out."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def _lines(one: RolePartition, names: Names, why: Why, some_held: bool) -> Itera
     told = {found.component: found for found in why.get(one.role.iri, ())}
     chosen = next((found for found in told.values() if found.chosen), None)
 
-    yield f"{names(one.role.iri)}  {len(one.eligible) or 'nobody is'} eligible"
+    yield f"{names(one.role.iri)}  {len(one.eligible) or 'no component is'} eligible"
     for number, component in enumerate(one.eligible, 1):
         held = one.held.get(component)
         said = f": {alternative_text(told[component], chosen, some_held)}" if component in told else ""

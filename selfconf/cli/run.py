@@ -158,7 +158,7 @@ def _lives(given: argparse.Namespace) -> bool:
 
 
 def _tell_of_others(given: argparse.Namespace) -> None:
-    """Tell who gives advertisements, and so begins an ecology, of one that runs on this machine already."""
+    """Tell a user that gives advertisements, and so begins an ecology, of one that runs on this machine already."""
     from selfconf import rendezvous
 
     others = sorted({site.ecology for site in rendezvous.local_sites()})
@@ -247,7 +247,7 @@ def _described(paths: Sequence[Path]) -> Mapping[IRI, Advertisement]:
 
 
 def _explain(running: Run, task: TaskSpecification, told: Collection[IRI]) -> None:
-    """Everything is down, so there is time to find out what else can be told than what has been told already."""
+    """Print what else can be found out about a refusal: everything is down, so there is time."""
     from selfconf.model.refusal import Refusal
     from selfconf.render import refusal_text
     from selfconf.render.run_events import lost_sentences

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class TextLines:
     """Reports events to people, one line each on stderr, with the seconds since the first one; no failure twice.
 
-    A task that waits looks again from time to time whether it can run: that is told once it comes to something else
+    A task that waits looks again from time to time whether it can run: that is reported once it comes to something else
     than before.
     """
 
@@ -24,9 +24,9 @@ class TextLines:
         self._names = task.names
         self._began: float | None = None
         self.told: set[IRI] = set()
-        """The components of which it was told that they were lost, and why."""
+        """The components that were reported as lost, and why."""
         self._trouble: dict[IRI, str] = {}
-        """What was told last of a component that declines or cannot be reached, which is then lost for that."""
+        """What was reported last of a component that declines or cannot be reached, which is then lost for that."""
         self._waiting: list[RunEvent] | None = None
         """While the task waits, what it saw when it looked last, without the times, and why it waits."""
         self._seen: list[RunEvent] = []

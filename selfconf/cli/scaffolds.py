@@ -67,7 +67,7 @@ class $class_(Component):
         """A parameter has been set."""
 
     def stopped(self):
-        """Nobody needs this component any more; what moves must be at rest when this returns."""
+        """No task needs this component any more; what moves must be at rest when this returns."""
 
 
 if __name__ == "__main__":
@@ -75,7 +75,7 @@ if __name__ == "__main__":
 '''
 
 _TASK_TEMPLATE = f"""\
-# $label, as a template: which roles there are, and who feeds whom.
+# $label, as a template: which roles there are, and which feeds which.
 # Look at the answer with `selfconf configure $name.ttl --ads .`, run it with `selfconf run $name.ttl --ads .`
 
 {_PREFIXES}@prefix sh:   <http://www.w3.org/ns/shacl#> .
@@ -119,7 +119,7 @@ _ONTOLOGY = """\
 :$class_ a owl:Class ;
     rdfs:subClassOf rob:Sensor ;
     rdfs:label "$lower"@en ;
-    skos:definition "A sensor of something that nobody has sensed before."@en ;
+    skos:definition "A sensor of something that no other sensor senses."@en ;
     rdfs:isDefinedBy <$document> .
 
 # A kind of signal, with the fields of each of its messages.

@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--insecure",
         action="store_true",
-        help="with keys, listen beyond this host: by HTTP whoever reaches it sees what they protect",
+        help="with keys, listen beyond this host: by HTTP any program that reaches it sees what they protect",
     )
     add_ecology_arguments(parser)
 

@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--listen",
         metavar="ENDPOINT",
         help="where to listen; port 0 is any free one (default: on 127.0.0.1, at a port that goes with the name of the"
-        " ecology, so that a site that is started again is found by those who were connected; if it is taken, at any)",
+        " ecology, so that a site that is started again is found by its former clients; if it is taken, at any)",
     )
     parser.add_argument(
         "--connect",
@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--insecure",
         action="store_true",
-        help="listen beyond this host without keys: whoever reaches it may do everything",
+        help="listen beyond this host without keys: any program that reaches it may do everything",
     )
     parser.add_argument(
         "--state",

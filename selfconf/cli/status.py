@@ -1,4 +1,4 @@
-"""`status`: what is deployed, by whom, since when."""
+"""`status`: what is deployed, by which configurator, since when."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _holders(inside: Status, found: Sequence[Status]) -> list[Status]:
 
 
 def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> Iterator[str]:
-    """A task for people: who runs it, what is deployed, and what is wrong."""
+    """A task for people: its configurator, what is deployed, and what is wrong."""
     from selfconf.render import duration
 
     phase = paint(status.phase, STATE_COLOURS.get(status.phase, ""))
@@ -105,7 +105,7 @@ def _held(status: Status, names: Names) -> Iterator[str]:
 
 
 def _configuration(body: Mapping[str, Any], status: Status, names: Names) -> Iterator[str]:
-    """What is deployed: who plays which role, for whom values are bound, and who feeds whom."""
+    """What is deployed: which values are bound, which component plays which role, and which feeds which."""
     for name, value in body["bindings"].items():
         yield f"{one_line(name)} = {_value(value, names)}"
     width = max((len(names(IRI(role["role"]))) for role in body["roles"]), default=0)

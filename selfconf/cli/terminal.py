@@ -2,7 +2,7 @@
 
 Names, labels, file names and the words of a failure come from the network. A file or a program that
 reads the output gets it unchanged; only a terminal obeys `ESC [ 2 J`. Colours come from `paint` alone: it marks a text
-in a way that nobody else can know, and a `Terminal` makes the sequences of it.
+in a way that no other program can know, and a `Terminal` makes the sequences of it.
 
 Nor does what a command comes to depend on its readers: one may have seen enough, or never have been there.
 """
@@ -81,7 +81,7 @@ def guard() -> None:
 
 
 def in_colour(stream: TextIO | None = None) -> bool:
-    """Whether a stream, else stdout, is shown in colour: by a terminal that has some, if nobody has said no.
+    """Whether a stream, else stdout, is shown in colour: by a terminal that has some, unless the environment says no.
 
     NO_COLOR (https://no-color.org) says no where it is not empty.
     """

@@ -1,4 +1,4 @@
-"""`top`: who lives, held by which task, how much each issues, and how much memory it takes."""
+"""`top`: what lives, held by which task, how much each issues, and how much memory it takes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`why`: why a role is played by whom, now or at a moment, in sentences."""
+"""`why`: why a component plays a role, now or at a moment, in sentences."""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def likeness_body(obstacle: Obstacle, likeness: float) -> dict[str, float]:
 
 
 def holder_body(holder: Holder) -> dict[str, Any]:
-    """Who holds a component, and since when."""
+    """The holder of a component, and since when."""
     return {
         "task": holder.name,
         "priority": holder.priority,

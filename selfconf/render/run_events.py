@@ -97,7 +97,7 @@ def owed_sentences(owed: Iterable[IRI], name: Name) -> Iterator[str]:
 
 
 def lost_sentences(losses: Mapping[IRI, str], name: Name, told: Collection[IRI] = ()) -> Iterator[str]:
-    """Why each component was lost, a line each, but for those of which that has been told."""
+    """Why each component was lost, a line each, but for those of which it is known."""
     return (f"  {name(component)} was lost: {why}" for component, why in losses.items() if component not in told)
 
 

@@ -37,7 +37,7 @@ def configuration_text(configuration: Configuration, name: Name) -> str:
     width = max(map(len, roles), default=0)
     lines = [f"configured {name(configuration.template)}"]
     for role, assignment in zip(roles, configuration.assignments, strict=True):
-        lines.append(f"  {role:<{width}}  {', '.join(map(name, assignment.components)) or '(nobody)'}")
+        lines.append(f"  {role:<{width}}  {', '.join(map(name, assignment.components)) or '(no component)'}")
     if configuration.recruits:
         lines += ["recruits", *(f"  {name(component)}" for component in configuration.recruits)]
     return "\n".join([*lines, *_connections(configuration, name), *_values(configuration, name)])
@@ -76,7 +76,7 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
         terms = "1 term is" if optimum.unknown == 1 else f"{optimum.unknown} terms are"
         lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")
     unstated = set(unknown)
-    lines += [f"    nobody in the ecology has a number for {name(one)}" for one in sorted(unstated)]
+    lines += [f"    no component of the ecology has a number for {name(one)}" for one in sorted(unstated)]
     told = dict.fromkeys(pair for pair in optimum.missing if pair[1] not in unstated)
     lines += [f"    {name(component)} has no number for {name(wanted)}" for component, wanted in told]
     return "\n".join(lines)
@@ -167,7 +167,7 @@ def _missing(sites: Sequence[str], most: int) -> list[str]:
 
 
 def holder_text(holder: Holder) -> str:
-    """Who holds a component, and since when."""
+    """The holder of a component, and since when."""
     return f"{holder} since {time.strftime('%H:%M:%S', time.localtime(holder.beginning))}"
 
 

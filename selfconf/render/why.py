@@ -1,4 +1,4 @@
-"""Why a role is played by whom, in sentences: what a task has told of itself, read back at a moment.
+"""Why a component plays a role, in sentences: what a task has reported, read back at a moment.
 
 The events are those of `run --format json`, as a configurator keeps them. Of a stranger they may hold anything: then
 `told_why` raises PeerError.
@@ -110,8 +110,8 @@ def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Seque
 
 
 def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequence[str] | None) -> list[str]:
-    """Who plays a role and why; `before` are the candidates that go before those, None if that is not known."""
-    who = ", ".join(map(_name, components)) or "nobody"
+    """Which components play a role and why; `before` are the candidates before those, None if not known."""
+    who = ", ".join(map(_name, components)) or "no component"
     until = "" if found.ended is None else f", until {_clock(found.ended)}"
     sentences = [f"{_name(role)} in {found.task}: {who}, since {_clock(found.since)}{until}"]
     for component in components:

@@ -1,4 +1,4 @@
-"""Judging in a process of its own, which has not long: what strangers have written may ask what takes for ever."""
+"""Judge untrusted shapes and queries in a process of its own with a time limit: they may ask what never ends."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ HEADERS = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
 }
-"""What a browser is told with every answer: load nothing from elsewhere, run nothing that is not a file of the page."""
+"""What every answer says to a browser: load nothing from elsewhere, run nothing that is not a file of the page."""
 
 
 def application(
@@ -99,7 +99,7 @@ def application(
         Route("/metrics", counted),
         Route("/healthz", health),
     ]
-    refusals = {HTTPException: _refused, ClientDisconnect: _nobody_left}
+    refusals = {HTTPException: _refused, ClientDisconnect: _client_gone}
     return Guard(Starlette(routes=routes, exception_handlers=refusals), hosts, Origins(origins))
 
 
@@ -140,8 +140,8 @@ def _without_port(host: str) -> str:
     return (head if head and port.isdecimal() else host).lower()
 
 
-async def _nobody_left(_: Request, error: Exception) -> Response:
-    """The client has gone in the middle of its request, which is no fault of this server: nobody reads the answer."""
+async def _client_gone(_: Request, error: Exception) -> Response:
+    """The client has gone in the middle of its request, which is no fault of this server: the answer is not read."""
     return problem(400, "the request was not sent in full")
 
 

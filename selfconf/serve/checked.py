@@ -1,4 +1,4 @@
-"""What a configurator tells, checked: only what is of the expected form goes on to the page, whoever tells it."""
+"""What a configurator tells, checked: from any peer, only what is of the expected form goes on to the page."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Server-sent events: each has a number, so that a client that was away hears what it has missed.
 
-A client that reads too slowly is left behind: its stream ends, and when it comes back it is told what it missed, or, if
-that is too much, to begin anew.
+A client that reads too slowly is left behind: its stream ends, and when it comes back it receives what it missed, or,
+if that is too much, the word to begin anew.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class ServerEvent(NamedTuple):
 
 
 class EventStream:
-    """The events of a server, and those who listen; used on one thread."""
+    """The events of a server, and its listeners; used on one thread."""
 
     def __init__(self) -> None:
         self.life = secrets.token_hex(3)
@@ -55,7 +55,7 @@ class EventStream:
         return len(self._listeners)
 
     def put(self, kind: str, data: object) -> None:
-        """Tell all who listen."""
+        """Send an event to all listeners."""
         self._number += 1
         event = ServerEvent(self._number, kind, data)
         self._kept.append(event)

@@ -1,6 +1,6 @@
 """What was deployed before, kept on disk as PROV-O, so that questions reach back over the end of a configurator.
 
-Each configuration is a named graph under its own name, as its configurator has told it: which task, who generated it
+Each configuration is a named graph under its own name, as its configurator has told it: which task, what generated it
 and when, which configuration it revises, which failures have influenced it, and what was passed over. When another
 one takes its place, or its configurator has gone, it gets the time of its end (prov:invalidatedAtTime). One that was
 running when the server ended gets none, for when it ended was not seen.
@@ -40,7 +40,7 @@ class History:
         except (OSError, RuntimeError) as error:  # the latter is how Oxigraph says that a store is broken
             raise AuthorError(f"cannot keep a history in {folder} ({error}); does another server use it?") from None
         self._current: dict[str, str] = {}
-        """The configuration that is deployed, by the graph in which it is told."""
+        """The configuration that is deployed, by the graph that states it."""
         self._unsettled = {name for name in self._names() if not self._has_ended(name)}
         """Those that ran when the last server ended: they may run still."""
 

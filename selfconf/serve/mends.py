@@ -1,4 +1,4 @@
-"""`/mend`: what would mend a task that has no configuration now, found out on behalf of those who look at its refusal.
+"""`/mend`: what would mend a task that has no configuration now, found out for the clients that look at its refusal.
 
 The configurator of a task that waits has to listen, and tells why there is no configuration and no more; one that has
 been refused has ended. What nearly fits and which change would help takes a search, which is made in a process of its

@@ -1,8 +1,8 @@
-"""What one component issues and prints, for somebody who looks at it: only meanwhile, and never much of it.
+"""What one component issues and prints, for a client that looks at it: only meanwhile, and never much of it.
 
 An output is *glanced* at: followed as an input does until a few signals have come, then let go for a while, the longer
-the more bytes they were. So a camera that nobody else looks at costs the network no more than a thermometer does, and
-the component is called by nobody, but a composite, which is asked what stands behind its outputs. The log is asked for
+the more bytes they were. So a camera that no input follows costs the network no more than a thermometer does, and
+no component is called but a composite, which is asked what stands behind its outputs. The log is asked for
 at the site, piece by piece.
 """
 
@@ -40,9 +40,9 @@ TOLD_AFTER = 0.25
 LARGEST_READ = 1 << 16
 """JSON of more bytes is described, as arrays are."""
 LOG_LINES = 100
-"""How many lines of the log are told at once, at most: of more the latest."""
+"""How many lines of the log are sent at once, at most: of more the latest."""
 LONGEST_TOLD = 500
-"""How many characters of a line of the log are told."""
+"""How many characters of a line of the log are sent."""
 LOG_PAUSE = 1.0
 """Seconds between two questions for the log."""
 LOG_PATIENCE = 3.0
@@ -153,7 +153,7 @@ class Onlooker:
         elif part.lines or not position:
             lines = [_line_body(*line) for line in part.lines[-LOG_LINES:]]
             self._tell("log", {"lines": lines, "anew": not position})
-        # Who prints more than is told at once is followed from its present end on.
+        # A component that prints more than is sent at once is followed from its present end on.
         after = position if part is None else "" if part.more else part.position
         self._bus.later(LOG_PAUSE, lambda: self._ask_log(after))
 

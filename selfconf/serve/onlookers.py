@@ -1,4 +1,4 @@
-"""`/look`: what a component issues and prints, as server-sent events, as long as somebody looks at it."""
+"""`/look`: what a component issues and prints, as server-sent events, as long as a browser looks at it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _Told = tuple[str, Body] | None
 
 
 class Onlookers:
-    """Those who look at a component; used on the thread that serves, while its onlookers are on that of the bus."""
+    """The clients that look at components; used on the thread that serves, its onlookers on that of the bus."""
 
     def __init__(self, bus: Bus, board: Board, may_hear: bool = True) -> None:
         """`may_hear` is whether the keys of the server, if there are any, let it hear signals and ask for logs."""

@@ -36,7 +36,7 @@ class Origins:
             if origin not in self._named:
                 return f"a page of {origin} may not ask this server; `selfconf serve --allow-origin ORIGIN` lets it"
             return "" if _is_shared(path) else f"a page of {origin} may ask {', '.join(SHARED)}, and nothing else"
-        # Pictures, scripts and frames are asked for without an origin; so is a document, by who follows a link to it.
+        # Pictures, scripts and frames are asked for without an origin; so is a document to which a link leads.
         embedded = site in ("cross-site", "same-site") and headers.get("sec-fetch-dest") != "document"
         return "this server is not to be embedded in a page of another origin" if embedded and not origin else ""
 
@@ -54,7 +54,7 @@ class Origins:
         }
 
     def preflight(self, method: str, headers: Mapping[str, str]) -> dict[str, str] | None:
-        """What a browser is told that asks whether its page may ask; None for any other request."""
+        """The answer to a browser that asks whether its page may ask; None for any other request."""
         asks = method == "OPTIONS" and "access-control-request-method" in headers
         if not asks or headers.get("origin", "") not in self._named:
             return None

@@ -58,12 +58,12 @@ class ServerOptions:
 
 
 def refuse_exposure(host: str, credentials: Credentials | None) -> None:
-    """Raise AuthorError where other hosts can reach a server with keys: by HTTP it asks nobody who asks it for any."""
+    """Raise AuthorError where other hosts can reach a server with keys: by HTTP it asks no client for any."""
     if credentials is not None and is_beyond_loopback(host):
         raise AuthorError(
-            f"{host} can be reached from other hosts, and whoever asks by HTTP sees what {credentials.name} may see,"
-            " without keys: listen on 127.0.0.1, behind a server that asks who it is, or give --insecure if that is"
-            " what you want"
+            f"{host} can be reached from other hosts, and any program that asks by HTTP sees without keys what"
+            f" {credentials.name} may see: listen on 127.0.0.1, behind a server that asks who it is, or give --insecure"
+            " if that is what you want"
         )
 
 
@@ -158,7 +158,7 @@ async def _serve(
             record.note(change)
         except Exception:  # an outermost loop: the page shows all the same what cannot be asked for
             log.exception("a change is missing in what is asked; going on")
-        loop.call_soon_threadsafe(board.apply, change)  # last: whoever hears of it finds it by SPARQL
+        loop.call_soon_threadsafe(board.apply, change)  # last: a client that hears of it finds it by SPARQL
 
     def tell(change: EcologyChange) -> None:
         record.hands.submit(take, change)

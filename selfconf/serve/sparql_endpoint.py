@@ -89,7 +89,7 @@ class SparqlEndpoint:
         try:
             line = await asyncio.shield(begun)
         except asyncio.CancelledError:
-            begun.add_done_callback(_close_line)  # a thread cannot be cancelled: its socket is nobody's
+            begun.add_done_callback(_close_line)  # a thread cannot be cancelled: its socket has no owner
             raise
         try:
             line.setblocking(False)

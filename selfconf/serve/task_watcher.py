@@ -27,7 +27,7 @@ _EPOCH = re.compile("[0-9]{1,18}")
 LOOK_ANEW = 10.0
 """Seconds between two looks at all configurators."""
 TOGETHER = 0.05
-"""Seconds for which changes are collected, so that a rush of them is told at once."""
+"""Seconds for which changes are collected, so that a rush of them is sent at once."""
 LAST_WORDS_OF_TASK = 0.25
 """Seconds for which the end of a configurator waits for its last notice: the end of a life may overtake it."""
 PATIENCE_WITH_PEERS = 2.0
@@ -63,7 +63,7 @@ class TaskWatcher:
         """What each configurator has said last of what it has deployed."""
         self._asking: set[str] = set()
         self._early: deque[Sample] = deque(maxlen=EARLY)
-        """What was told while something before it is missing: the configurator may end before it can say that."""
+        """What was received while something before it is missing: the configurator may end before it can say that."""
 
     def follow(self) -> None:
         """Follow every configurator from now on, those that are there first."""

@@ -1,8 +1,8 @@
 """A component as a W3C Thing Description 1.1: its outputs are properties that can be observed, FAIL is an event.
 
 What a consumer cannot do over the forms is stated in the terms of selfconf: inputs, which follow outputs, operations,
-which answer those whom a configuration connects, and operational parameters, which a configurator sets for the task
-that holds the component.
+which answer the components that a configuration connects, and operational parameters, which a configurator sets for the
+task that holds the component.
 """
 
 from __future__ import annotations

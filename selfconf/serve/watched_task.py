@@ -63,7 +63,7 @@ class WatchedTask:
             self.lost[str(event.get("component"))] = why
         if act == "running":
             self.refusal = None
-            if event["epoch"] != self.deployed:  # what is told of what is deployed says more
+            if event["epoch"] != self.deployed:  # the notice of what is deployed says more
                 self.configuration = event["configuration"] or self.configuration
         if act in ("waiting", "refused"):
             self.configuration, self.refusal = None, event["refusal"]

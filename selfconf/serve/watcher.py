@@ -1,8 +1,9 @@
 """A living ecology, followed from a bus: what is advertised, what lives, which tasks run, and what happens to them.
 
-It only reads: it has no life of its own, answers nobody, and makes no call to a component, so nobody notices that it is
-there. Changes come by push: lives by liveliness, files by `changed`, the events of a run by notices. Every `LOOK_ANEW`
-seconds the configurators are asked once more, which heals what was lost and serves those that put no notices.
+It only reads: it has no life of its own, answers no question, and makes no call to a component, so that no program
+notices it. Changes come by push: lives by liveliness, files by `changed`, the events of a run by notices. Every
+`LOOK_ANEW` seconds the configurators are asked once more, which heals what was lost and serves those that put no
+notices.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class EcologyWatcher:
         self._sites: dict[str, Body] = {}
         self._tasks = TaskWatcher(bus, self.keys, self._happened, self._flush_soon)
         self._shown: dict[str, Body] = {}
-        """The tasks as they were told last, by identity."""
+        """The tasks as they were sent last, by identity."""
         self._events: list[Body] = []
         self._touched: set[IRI] = set()
         self._flushing = self._discovering = self._discover_again = self._following = False

@@ -89,7 +89,7 @@ def test_a_cost_over_a_property_that_nobody_has_is_told(watch: Watch) -> None:
     text = watch.run("--strategy", "best")
     assert text.code == 0
     assert "2 terms are unknown" in text.out
-    assert "nobody in the ecology has a number for rob:error" in text.out
+    assert "no component of the ecology has a number for rob:error" in text.out
 
 
 def test_a_component_without_the_property_is_named(watch: Watch) -> None:

@@ -76,7 +76,7 @@ def test_the_partition_lists_who_is_eligible_and_what_keeps_the_others_out(
 def test_a_role_that_nobody_can_play_is_an_honest_no(home: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["partition", *home]) == 0
     assert main(["partition", home[0], "--bind", "robot=:Nobody", *home[3:]]) == 1
-    assert ":drive  nobody is eligible" in capsys.readouterr().out
+    assert ":drive  no component is eligible" in capsys.readouterr().out
 
 
 def test_text_shows_the_nearest_of_many_and_json_all(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -88,7 +88,7 @@ def test_text_shows_the_nearest_of_many_and_json_all(tmp_path: Path, capsys: pyt
     (tmp_path / "ads.ttl").write_text(ads)
     given = str(tmp_path / "t.ttl"), "--ads", str(tmp_path / "ads.ttl")
     text = told(capsys, *given).splitlines()
-    assert text[:3] == [":r  nobody is eligible", "  kept out", "    :near: p is 2, not 1"]
+    assert text[:3] == [":r  no component is eligible", "  kept out", "    :near: p is 2, not 1"]
     assert text[-1] == "    and 23 more; --format json has them all"
     excluded = json.loads(told(capsys, *given, "--format", "json"))["roles"][0]["excluded"]
     assert len(excluded) == 31

@@ -1,4 +1,4 @@
-"""`status` and `stop`: what is deployed, by whom, since when; and taking it down from another process."""
+"""`status` and `stop`: what is deployed, by which configurator, since when; and taking it down from another process."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def test_a_configuration_says_who_plays_what_is_connected_bound_and_set() -> Non
         "configured :tell",
         "  :source  :clock",
         "  :sink    :screen",
-        "  :spare   (nobody)",
+        "  :spare   (no component)",
         "connections",
         "  :clock time  ->  :screen text",
         "bindings",
@@ -96,7 +96,7 @@ def test_a_cost_says_its_levels_its_bound_and_what_has_no_number() -> None:
         "  level 2  24  (bound 24)",
         "  not proved: there may be something better",
         "  2 terms are unknown, and left out of the sums (sc:otherwise would say what to count)",
-        "    nobody in the ecology has a number for :error",
+        "    no component of the ecology has a number for :error",
         "    :clock has no number for :power",
     ]
 

@@ -1,4 +1,4 @@
-"""Why a role is played by whom, from the events of a run."""
+"""Why a component plays a role, from the events of a run."""
 
 from __future__ import annotations
 

@@ -192,7 +192,7 @@ def test_the_page_is_used_by_keyboard(page: Page) -> None:
 
 def test_questions_in_sparql_are_answered_and_their_faults_shown_where_they_are(page: Page) -> None:
     page.click("Query")
-    page.click("Who feeds whom")
+    page.click("Which component feeds which")
     page.until("document.querySelectorAll('.answer tbody tr').length === 4")
     for number in range(6):
         page.value(f"document.querySelectorAll('#examples button')[{number}].click()")

@@ -1,4 +1,4 @@
-"""For people, editors and compilers' kin: one line for each problem, `file:line:column: error[CODE]:
+"""For people, editors and tools that read compiler output: one line for each problem, `file:line:column: error[CODE]:
 message`.
 """
 

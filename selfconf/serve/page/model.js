@@ -100,7 +100,7 @@ export class Model {
     return then;
   }
 
-  /** Who holds what, and what was lost by whom. */
+  /** Which task holds which component, and which have lost one. */
   claims() {
     const held = new Map(), lost = new Map();
     for (const [id, task] of this.tasksSeen()) {
@@ -108,7 +108,7 @@ export class Model {
       for (const component of task.components) held.set(component, [...(held.get(component) ?? []), { id, ...task }]);
       for (const [component, why] of Object.entries(task.lost)) lost.set(component, why);
     }
-    for (const component of held.keys()) lost.delete(component);  // whoever has it now can use it
+    for (const component of held.keys()) lost.delete(component);  // the task that has it now can use it
     return { held, lost };
   }
 }

@@ -163,7 +163,7 @@ function fill(button, one, selected, held, lost, then) {
 // One component, and what the page shows where none is chosen.
 
 const STATES = [["alive", "alive: its program runs"], ["dormant", "dormant: its site starts it when a task needs it"],
-  ["absent", "absent: nobody runs it"], ["lost", "lost: it failed while a task held it"]];
+  ["absent", "absent: no program of it runs"], ["lost", "lost: it failed while a task held it"]];
 
 const guide = () => [h("h2", { text: "How to read this" }),
   h("p", { class: "hint", text: "Components say what they are; a task says which roles it needs. The middle shows who plays which role now, and the line below what has happened: drag its handle to look back." }),

@@ -9,7 +9,7 @@ const EXAMPLES = {
   OPTIONAL { ?component rob:place ?place }
   FILTER (?type != sc:Component)
 } ORDER BY ?type ?component`,
-  "Who feeds whom": `SELECT ?source ?output ?sink ?input WHERE {
+  "Which component feeds which": `SELECT ?source ?output ?sink ?input WHERE {
   [] sc:connection [ sc:from ?source ; sc:output ?output ; sc:to ?sink ; sc:input ?input ]
 }`,
   "What replaced what, and why": `SELECT ?role ?component ?instead ?cause ?detail WHERE {
@@ -21,7 +21,7 @@ const EXAMPLES = {
   "Who could deliver a pose": `SELECT ?component ?output WHERE {
   ?component sc:hasOutput [ sc:name ?output ; sc:signalType rob:PlanarPose2D ]
 }`,
-  "Outputs nobody could follow": `SELECT ?component ?output ?signal WHERE {
+  "Outputs that no input could follow": `SELECT ?component ?output ?signal WHERE {
   ?component sc:hasOutput [ sc:name ?output ; sc:signalType ?signal ] .
   FILTER NOT EXISTS { [] sc:hasInput [ sc:signalType ?signal ] }
 }`,
