@@ -65,7 +65,7 @@ class Life:
 
     name: str
     runtime: ComponentRuntime
-    recorder: Recorder
+    recorder: Speaker
     node: MemoryBus
     thread: SimulatedCodeThread
 
@@ -91,11 +91,34 @@ def nothing() -> int:
     return 0
 
 
+class Speaker(Recorder):
+    """A component that issues signals while it acts, each so many seconds after the last."""
+
+    def __init__(self, period: float | None) -> None:
+        super().__init__()
+        self._period = period
+        self.hushed = False
+        """Whether it issues nothing, though it acts."""
+        self.started_at = 0.0
+        """When it was started last."""
+
+    def started(self) -> None:
+        self.started_at = self._runtime.bus.now() if self._runtime is not None else 0.0
+        super().started()
+        if self._period is not None:
+            self.every(self._period, self._speak)
+
+    def _speak(self) -> None:
+        runtime = self._runtime
+        for output in runtime.profile.signal_outputs if runtime is not None and not self.hushed else ():
+            self.emit(output.name, runtime.bus.now())
+
+
 class History:
     """A script that is played; `broken` says what was not as it must be, and when."""
 
     def __init__(self, script: Script, folder: Path) -> None:
-        from tests.faults.invariants import Watch
+        from tests.faults.watch import Watch
 
         self.script = script
         ecology = script.ecology
@@ -145,6 +168,13 @@ class History:
             if self.perform(action):
                 self.told.append(str(action))
         self._cease()
+        self._come_to_an_end()
+        if self.script.mended:
+            self._mend_all()
+            self._come_to_an_end()
+
+    def _come_to_an_end(self) -> None:
+        """Let everything come into order, everybody speak, and look at what must hold in the end."""
         self.lab.let_pass(SETTLED)
         for _ in range(TURNS):
             self._let_be_decided()
@@ -165,6 +195,21 @@ class History:
         slowest = max((life.recorder.slow for life in self.lives), default=0.0)
         turns = LONGEST_PAUSE + 2 * slowest * len(self.living()) if slowest else 0.0
         self.lab.until(self.watch.all_decided, LOOKED_AGAIN + turns)
+
+    def _mend_all(self) -> None:
+        """Have every component and every site live, and be able to act; those that were lost begin another life."""
+        self.told.append(f"{self.network.time:8.3f}  everything is mended")
+        for name in self.script.ecology.sites:
+            if self.node(name) is None:
+                self._begin_site(name)
+        for life in self.processes:
+            lost = any(life.component in agent.state.lost for agent in self.agents if self.lab.is_open(agent))
+            if lost and not life.runtime.active:
+                life.node.close()
+            life.recorder.refusal, life.recorder.slow, life.recorder.hushed = None, 0.0, False
+        for name in self.script.ecology.processes:
+            if name not in self.script.startable and not self.lives_of(name):
+                self._begin_life(name)
 
     def _speak(self) -> None:
         """Let every source that acts say something."""
@@ -213,7 +258,7 @@ class History:
             for inside in composites.living.values() if node is not None else ():
                 assert node is not None
                 thread = SimulatedCodeThread(node, inside.runtime.hung)
-                yield Life(inside.profile.component.short, inside.runtime, Recorder(), node, thread)
+                yield Life(inside.profile.component.short, inside.runtime, Speaker(None), node, thread)
 
     def insides(self) -> Iterator[InsideOfComposite]:
         """The composites that live now, with what they are inside."""
@@ -260,7 +305,7 @@ class History:
     def _begin_life(self, name: str) -> Life:
         """Let a component live, on a node of its own; one that has to leave later leaves with its node."""
         node = self.network.node()
-        recorder = Recorder()
+        recorder = Speaker(self.script.period)
 
         def hung(what: str, limit: float) -> None:
             runtime.hung(what, limit)
@@ -382,6 +427,14 @@ class History:
         life.recorder.refusal = None if life.recorder.refusal else Refused("scripted")
         return True
 
+    def _hush(self, action: Action) -> bool:
+        """A component issues nothing any more, or again."""
+        life = self.life(action.who)
+        if life is None:
+            return False
+        life.recorder.hushed = not life.recorder.hushed
+        return True
+
     def _slow(self, action: Action) -> bool:
         life = self.life(action.who)
         if life is None:
@@ -422,6 +475,7 @@ class History:
             patient=plan.patient,
             name=action.who,
             priority=plan.priority,
+            upgrade=plan.upgrade,
             clock=self.script.clocks.get(action.who, 0.0),
         )
         self.tasks[action.who] = agent

@@ -5,7 +5,8 @@
     python -m tests.faults.replay SEED --log        show what sites, components and configurators log
 
 `--ecology composed` plays it where there are operations and a composite, `--busy` with code that is busy while it acts,
-`--large` as if the ecology were so large that not all lives are followed. A test that fails prints the command that
+`--large` as if the ecology were so large that not all lives are followed, `--upgrades` with tasks that change to what
+they would rather have. A test that fails prints the command that
 plays its history again.
 
 The exit code is 1 if an invariant was broken.
@@ -78,7 +79,7 @@ def told(recipe: Recipe, history: History) -> str:
 
 def command(recipe: Recipe) -> str:
     """The command that plays a history again, with what is not needed left out."""
-    options = [f"--{name}" for name in ("busy", "large") if getattr(recipe, name)]
+    options = [f"--{name}" for name in ("busy", "large", "upgrades") if getattr(recipe, name)]
     return " ".join([PROGRAM, str(recipe.seed), "--ecology", recipe.ecology.name, *options, "--shrink"])
 
 
@@ -90,13 +91,14 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--log", action="store_true", help="show what sites, components and configurators log")
     parser.add_argument("--busy", action="store_true", help="code is also busy while it acts, and hangs on")
     parser.add_argument("--large", action="store_true", help="only selected lives are followed")
+    parser.add_argument("--upgrades", action="store_true", help="tasks change to what they would rather have")
     parser.add_argument("--ecology", choices=ECOLOGIES, default="paper", help="where it happens (default: %(default)s)")
     return parser
 
 
 def recipe_of(given: argparse.Namespace) -> Recipe:
     """The recipe that the options of this program name."""
-    return Recipe(given.seed, ECOLOGIES[given.ecology], given.busy, given.large)
+    return Recipe(given.seed, ECOLOGIES[given.ecology], given.busy, given.large, given.upgrades)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -42,6 +42,8 @@ class TaskPlan:
     dismantles: bool = False
     drives: bool = True
     """Whether it is of the template of most tasks; else of the other one, without the actuator."""
+    upgrade: float | None = None
+    """After how many seconds it changes to what it would rather have; None: never."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,10 @@ class Script:
     """Whether the ecology counts as so large that a configurator follows only the lives that it has selected."""
     hangs_on: bool = False
     """Whether a process whose code hangs, and that no site has started, goes on; else it ends as all others do."""
+    period: float | None = None
+    """After how many seconds each component that acts issues its signals again; None: only when it is told to."""
+    mended: bool = False
+    """Whether in the end every component lives and is able to act, so that each task changes to the best there is."""
 
     def __str__(self) -> str:
         lines = [f"seed {self.seed} in the ecology {self.ecology.name}: {self.faults}"]
@@ -99,6 +105,18 @@ PAUSES = (0.5, 2.0, 10.0)
 SLOWNESS = (0.3, 3.0, 6.0, 12.0)
 BUSYNESS = (0.05, 1.0, 1.9, 3.0, 12.0, 30.0)
 """For how many seconds the code of a component may be busy while it acts; it hangs if that is longer than it may."""
+SETTLES = (0.5, 2.0, 5.0)
+"""After how many seconds tasks change to what they would rather have."""
+AWAY = (0.5, 2.0, 6.0)
+"""For how many seconds a component is gone that a task would rather have."""
+BEGINNING = 1.1
+"""Seconds after which a process that was started lives."""
+UNFIT = ("hush", "refuse", "slow")
+"""Why a task may not come to run with what it would rather have."""
+DISTURBING = ("fail", "crash", "hush", "refuse", "slow", "lose_power", "pause", "cut", "mute", "crash_task", "begin")
+"""What may happen while a task changes to what it would rather have, beside nothing."""
+PERIOD = 0.4
+"""After how many seconds components issue signals again where tasks change for the better."""
 MOMENTS = (0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)
 
 
@@ -146,6 +164,37 @@ def write(seed: int, without: tuple[str, ...] = (), ecology: FaultyEcology = PAP
     return Script(seed, ecology, faults, clocks, tasks, starts, tuple(actions))
 
 
+def with_upgrades(script: Script) -> Script:
+    """The same script, whose tasks change for the better: more components are lost and come back, and disturb that.
+
+    Outputs that tasks change to are expected to issue signals, and some of them issue none.
+    """
+    chance = random.Random(f"upgrades {script.seed}")
+    settle = chance.choice(SETTLES)
+    whom, processes = targets(script.ecology), script.ecology.processes
+    time, more = script.actions[-1].time + chance.choice(AWAY), []
+    for _ in range(chance.randint(1, 3)):
+        who = chance.choice(processes if chance.random() < 0.2 else script.ecology.preferred)
+        more.append(Action(time, chance.choice(("crash", "crash", "lose_power", "fail")), who))
+        time += chance.choice(AWAY)
+        more += [Action(time, "crash", who), Action(time, "start", who)]
+        time += BEGINNING
+        if chance.random() < 0.5:
+            kind = chance.choice(UNFIT)
+            more.append(Action(time, kind, who, seconds=chance.choice(SLOWNESS) if kind == "slow" else 0.0))
+        time += settle + chance.choice(MOMENTS)
+        if chance.random() < 0.7:
+            kind = chance.choice(DISTURBING)
+            some = whom[KINDS[kind][1]] if kind in KINDS else processes
+            victim = who if who in some and chance.random() < 0.4 else chance.choice(some)
+            other = chance.choice([one for one in some if one != victim]) if kind in PAIRED else ""
+            seconds = chance.choice(PAUSES if kind == "pause" else SLOWNESS) if kind in ("pause", "slow") else 0.0
+            more.append(Action(time, kind, victim, other, seconds))
+        time += chance.choice(MOMENTS)
+    tasks = {name: replace(plan, upgrade=settle) for name, plan in script.tasks.items()}
+    return replace(script, actions=(*script.actions, *more), tasks=tasks, period=PERIOD, mended=True)
+
+
 def with_busy_code(script: Script) -> Script:
     """The same script, in which code is also busy while it acts, so that calls and signals wait for it."""
     chance = random.Random(f"busy {script.seed}")
@@ -168,9 +217,12 @@ class Recipe:
     """Whether code is also busy while it acts, and hangs on."""
     large: bool = False
     """Whether the ecology counts as so large that not all lives are followed."""
+    upgrades: bool = False
+    """Whether tasks change to what they would rather have."""
 
     @property
     def script(self) -> Script:
         """The script that is made."""
         written = write(self.seed, ecology=self.ecology)
-        return replace(with_busy_code(written) if self.busy else written, large=self.large)
+        upgrading = with_upgrades(written) if self.upgrades else written
+        return replace(with_busy_code(upgrading) if self.busy else upgrading, large=self.large)

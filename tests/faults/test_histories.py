@@ -12,9 +12,9 @@ import pytest
 from tests.effort import NIGHTLY, examples
 from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import History
-from tests.faults.invariants import ENDS, STEPS
 from tests.faults.replay import account, played, shrink, told
 from tests.faults.script import KINDS, Action, Recipe, Script, write
+from tests.faults.watch import ENDS, STEPS
 
 HISTORIES = 10_000 if NIGHTLY else examples(750)  # 300 for every push
 BUSY = HISTORIES // 5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,10 +11,15 @@ import pytest
 
 from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults
+from selfconf.configurator import machine
+from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import ReleaseFrom
 from selfconf.configurator.events import Answered, Call
+from selfconf.configurator.state import Loss, State
 from selfconf.deployment.calls import Calls
 from selfconf.model.run_event import ComponentLost, RunEvent
+from selfconf.model.term import IRI
+from selfconf.protocol.activation import ActivationPhase, ActivationStep
 from selfconf.protocol.messages import Apply, Verdict, Wire
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import Inputs
@@ -21,11 +27,12 @@ from selfconf.sdk.operations import Operations
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import History
-from tests.faults.invariants import ENDS, NOTED, STEPS
-from tests.faults.script import Action, Script, TaskPlan
+from tests.faults.script import PERIOD, Action, Script, TaskPlan
+from tests.faults.watch import ENDS, NOTED, STEPS
 from tests.lab import iri
 
 CLAIM, FOLLOW, SET, START = Calls._claim, Inputs.follow, ComponentCode._set, ComponentCode._start
+LOSE = machine._lose
 FOLLOW_CALLS, REPORT = Operations.follow, InsideOfComposite._report
 LATER = Action(20.0, "emit", "sonar")
 """Until then the faults go on."""
@@ -75,6 +82,20 @@ def fails_at_once(self: InsideOfComposite, beginning: int, event: RunEvent) -> N
         self.runtime.fail("something inside of it is lost")
 
 
+def follows_new_sources_late(self: Inputs, message: Apply) -> None:
+    """A component that lets go of what it follows at once, and follows what it is told a second later."""
+    if message.gently and message.inputs:
+        self.end()
+        self._bus.later(1.0, lambda: FOLLOW(self, message))
+    else:
+        FOLLOW(self, message)
+
+
+def forgets_what_ran(state: State, component: IRI, loss: Loss) -> Reaction:
+    """A configurator that searches anew when a change for the better fails."""
+    return LOSE(replace(state, fallback=None), component, loss)
+
+
 def breaks(*_: Any) -> None:
     """A program with a mistake in it."""
     raise RuntimeError("a mistake")
@@ -87,8 +108,10 @@ class Mutation(NamedTuple):
     actions: tuple[Action, ...] = ()
     faults: Faults = Faults()
     ecology: FaultyEcology = PAPER
+    upgrades: bool = False
 
 
+INPUTS = "selfconf.sdk.inputs.Inputs"
 CALLS, LIVENESS = "selfconf.deployment.calls", "selfconf.deployment.liveness"
 RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
@@ -99,6 +122,8 @@ SHARES_ALL = {
 SILENT = {f"{LIVENESS}.Liveness.audit": nothing, f"{RUNTIME}._let_go": lets_go_silently}
 """Nobody tells, and nobody asks, whether a component has let go."""
 SECOND = Action(2.0, "begin", "task-2")
+BETTER = (Action(0.0, "crash", "tracker"), Action(5.0, "start", "tracker"))
+"""The tracker would rather be had than odometry."""
 MUTATIONS = {
     "one life acts": Mutation(
         {
@@ -159,6 +184,25 @@ MUTATIONS = {
         ecology=COMPOSED,
     ),
     "what is needed is answered": Mutation({"selfconf.sdk.operations.Operations._ask": nothing}, ecology=COMPOSED),
+    "an upgrade starves nobody": Mutation({f"{INPUTS}.follow": follows_new_sources_late}, BETTER, upgrades=True),
+    "what is new delivers first": Mutation(
+        {f"{INPUTS}._left_without": lambda self, inputs: {}},
+        (*BETTER, Action(5.5, "hush", "tracker"), LATER),
+        upgrades=True,
+    ),
+    "what runs on does not stop": Mutation(
+        {"selfconf.protocol.activation._START": dict.fromkeys(ActivationPhase, ActivationStep.RESTART)},
+        (*BETTER, LATER),
+        upgrades=True,
+    ),
+    "a failed upgrade leaves what ran": Mutation(
+        {"selfconf.configurator.machine._lose": forgets_what_ran},
+        (*BETTER, Action(5.5, "refuse", "tracker"), LATER),
+        upgrades=True,
+    ),
+    "the better is reached": Mutation(
+        {"selfconf.deployment.runner.TaskRunner._settle": nothing}, BETTER, upgrades=True
+    ),
     "nothing breaks": Mutation({f"{LIVENESS}.Liveness._ended": breaks}, (Action(2.0, "crash", "pippi"),)),
 }
 
@@ -168,6 +212,9 @@ def played(mutation: Mutation, folder: Path, seed: int = 1) -> History:
     tasks = {"task-1": TaskPlan(), "task-2": TaskPlan(), "task-3": TaskPlan(drives=False)}
     actions = tuple(sorted((Action(0.0, "begin", "task-1"), *mutation.actions), key=lambda action: action.time))
     script = Script(seed, mutation.ecology, mutation.faults, tasks=tasks, actions=actions)
+    if mutation.upgrades:
+        upgrading = {name: replace(plan, upgrade=1.0) for name, plan in tasks.items()}
+        script = replace(script, tasks=upgrading, period=PERIOD)
     history = History(script, folder)
     history.run()
     return history

@@ -1,0 +1,57 @@
+"""Histories whose tasks change to components that they would rather have: these come, go, fail and issue nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.faults.ecologies import CHOICE, COMPOSED, PAPER
+from tests.faults.replay import played
+from tests.faults.script import KINDS, Recipe, with_upgrades, write
+from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
+
+__all__ = ["folder"]
+UPGRADING = HISTORIES // 10
+"""In so many histories more, tasks change for the better."""
+
+
+def recipe(seed: int) -> Recipe:
+    """The recipe of one of these histories: code is busy in some, and others are large."""
+    ecology = (CHOICE, PAPER, CHOICE, COMPOSED)[seed % 4]
+    return Recipe(seed, ecology, busy=seed // 4 % 3 == 1, large=seed // 12 % 2 == 1, upgrades=True)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("batch", range(0, UPGRADING, BATCH // 2))
+def test_no_history_of_upgrades_breaks_an_invariant(batch: int, folder: Path) -> None:
+    for seed in range(batch, batch + BATCH // 2):
+        play_well(recipe(seed), folder)
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(36, id="what stood by has just issued a signal for another task"),
+        pytest.param(138, id="the better actuator crashes as it is to act, and the task dismantles on failures"),
+        pytest.param(150, id="the better source hangs as it starts, and the task dismantles on failures"),
+    ],
+)
+def test_a_history_of_upgrades_that_was_broken_once_is_not_any_more(seed: int, folder: Path) -> None:
+    play_well(recipe(seed), folder)
+
+
+@pytest.mark.parametrize(("seed", "ended"), [(28, [False, True]), (40, [True, False])])
+def test_upgrades_come_about_and_come_to_nothing(seed: int, ended: list[bool], folder: Path) -> None:
+    """Else their invariants would say nothing."""
+    history = played(recipe(seed).script, folder / recipe(seed).ecology.name)
+    assert history.watch.upgrades.ended == ended
+
+
+def test_a_script_with_upgrades_goes_on_where_the_one_without_ends() -> None:
+    for seed in range(100):
+        without, upgrading = write(seed, ecology=CHOICE), with_upgrades(write(seed, ecology=CHOICE))
+        assert upgrading.actions[: len(without.actions)] == without.actions
+        times = [action.time for action in upgrading.actions]
+        assert times == sorted(times)
+        assert {action.kind for action in upgrading.actions} <= {*KINDS, "hush"}
