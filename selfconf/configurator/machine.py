@@ -231,8 +231,11 @@ def _declined(state: State, event: Answered) -> Reaction:
     if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
         ended = event.detail or "it has begun another life"
         return _lose(state, event.component, Loss(Cause.CRASH, ended, startable=event.startable))
+    silent = event.verdict is None
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
-    return _lose(state, event.component, Loss(Cause.REFUSED, detail, event.life, False, event.verdict is not None))
+    # Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough.
+    again = silent and event.startable and event.call is not Call.WAKE and not repeats
+    return _lose(counted, event.component, Loss(Cause.REFUSED, detail, event.life, False, not silent, again))
 
 
 def _can_catch_up(event: Answered) -> bool:
@@ -297,6 +300,8 @@ def _failed(state: State, event: Failed) -> Reaction:
     if event.cause is Cause.SILENCE and not held.confirmed:
         return state, ()  # it may not have begun
     startable = event.startable and event.cause in PROCESS_ENDS
+    if startable:  # the next life has not made the deployment begin anew
+        state = replace(state, repeats={c: times for c, times in state.repeats.items() if c != event.component})
     loss = Loss(event.cause, event.detail, event.life or held.life, event.cause is Cause.YIELD, startable=startable)
     if event.cause not in (Cause.YIELD, Cause.LET_GO):
         return _lose(state, event.component, loss)

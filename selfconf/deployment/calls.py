@@ -134,6 +134,8 @@ class Calls:
         """The life of each component that has obeyed a call of this task, and not yet a release."""
         self._left_behind: dict[IRI, tuple[str, ...]] = {}
         """The lives that have obeyed a call of this task, and ended, or seemed to, before they obeyed a release."""
+        self._lost_lives: dict[IRI, str] = {}
+        """The life of each component that was lost last: left behind, or to be ended, as it did not obey a release."""
         self._called: set[IRI] = set()
         """The components that were asked to be held, or to act, whatever has come of it."""
         self._unborn: set[IRI] = set()
@@ -217,8 +219,8 @@ class Calls:
             if not replies.samples:
                 self._give_up(waking, replies.errors[0] if replies.errors else "its site does not answer")
 
-        ended = self._left_behind.get(effect.component, ("",))[-1]
-        self.bus.ask(self.keys.wake(found.site), encode(Wake(effect.component, ended)), CALL, answered)
+        wake = Wake(effect.component, self._lost_lives.get(effect.component, ""))
+        self.bus.ask(self.keys.wake(found.site), encode(wake), CALL, answered)
 
     def _give_up(self, waking: tuple[WakeUp, Undo], detail: str) -> None:
         """Do without a component that was to be started, unless it lives by now or is being started anew."""
@@ -344,6 +346,7 @@ class Calls:
         """Remember the life of a component that is held and does not live any more: it may only be frozen."""
         life = self._lives.pop(component, None)
         if life is not None:
+            self._lost_lives[component] = life
             self._left_behind[component] = (*self._left_behind.get(component, ()), life)[-LEFT_BEHIND:]
 
     def _release_left_behind(self, component: IRI, life: str) -> None:
@@ -385,10 +388,11 @@ class Calls:
         if self.bus.link and not self._lives_on(component):
             self.gone.add(component)
 
-    def _end(self, component: IRI) -> None:
-        """Have the site end a component that does not obey its release: it may act on for nobody."""
-        found, life = self.ecology.discovery.found.get(component), self._life(component)
-        if found is not None and found.startable and life is not None:
+    def _end(self, component: IRI, life: str) -> None:
+        """Have the site end a life of a component that does not obey its release: it may act on for nobody."""
+        found = self.ecology.discovery.found.get(component)
+        if found is not None and found.startable and life:
+            self._lost_lives[component] = life
             message = encode(End(component, life))
             self.bus.ask(self.keys.end(found.site), message, CALL, lambda replies: None)
 
@@ -439,7 +443,7 @@ class Calls:
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
             else:
                 if call is Call.RELEASE and not replies.complete:
-                    self._end(component)
+                    self._end(component, message.life)
                 inspect()
 
         def inspect() -> None:
@@ -498,6 +502,7 @@ class Calls:
                 self._report(CallDeclined(component, detail))
         elif call is Call.RELEASE:
             self._lives.pop(component, None)
+            self._lost_lives.pop(component, None)
             self._report(ComponentReleased(component, detail))
         elif isinstance(message, Apply):
             if message.values:

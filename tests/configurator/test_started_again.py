@@ -8,7 +8,7 @@ from selfconf.configurator.effects import Compose, Finish, ReleaseFrom, WakeUp
 from selfconf.configurator.events import Answered, Call, Failed
 from selfconf.configurator.state import Phase, State
 from selfconf.protocol.messages import Cause, Verdict
-from tests.configurator.builders import CONTROL, DRIVE, ODOMETRY, REFUSAL, TRACKER, History, navigation
+from tests.configurator.builders import CONTROL, DRIVE, ODOMETRY, REFUSAL, TRACKER, History, navigation, released
 
 
 def lost(cause: Cause = Cause.CRASH, startable: bool = True, patient: bool = False) -> History:
@@ -80,6 +80,50 @@ def test_what_says_that_its_life_is_over_is_waited_for_if_its_site_can_start_it(
     effects = history.composed(REFUSAL)
     assert effects == ([Compose(history.state.attempt, frozenset(), history.state.target)] if startable else effects)
     assert (history.state.phase is Phase.COMPOSING) is startable
+
+
+def silent(history: History, call: Call) -> None:
+    """The tracker, which its site can start, does not answer a call."""
+    while (TRACKER, call) not in history.state.pending:
+        history.answer(*min(history.state.pending))
+    history.hear(Answered(TRACKER, call, history.state.epoch, None, startable=True))
+
+
+@pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])
+def test_a_life_that_does_not_answer_is_called_once_more_as_its_site_ends_it_meanwhile(call: Call) -> None:
+    history = History().accepted()
+    history.composed(navigation())
+    silent(history, call)
+    assert released(history.effects[-2:]) == [TRACKER]
+    assert history.composed(REFUSAL) == [Compose(history.state.attempt, frozenset(), history.state.target)]
+    history.composed(navigation())
+    silent(history, Call.RESERVE)
+    history.composed(REFUSAL)
+    assert history.state.phase is Phase.DISMANTLING
+
+
+def test_each_life_that_does_not_answer_is_followed_by_another_as_often_as_its_site_starts_it() -> None:
+    history = History().accepted()
+    history.composed(navigation())
+    for _ in range(3):
+        silent(history, Call.RESERVE)
+        history.composed(REFUSAL)
+        history.composed(navigation())
+        history.all_answer(Call.WAKE)
+        history.hear(Failed(TRACKER, "", Cause.CRASH, "its life has ended", True))
+        history.composed(REFUSAL)
+        history.composed(navigation())
+        assert (TRACKER, Call.WAKE) in history.state.pending
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+
+
+def test_a_site_that_does_not_start_what_it_can_start_is_not_asked_again() -> None:
+    history = History().accepted()
+    history.composed(navigation())
+    silent(history, Call.WAKE)
+    history.composed(REFUSAL)
+    assert history.state.phase is Phase.DISMANTLING
 
 
 def test_what_crashes_again_while_it_is_waited_for_is_started_again_as_often_as_its_site_does() -> None:

@@ -429,6 +429,45 @@ def test_a_task_waits_for_a_component_whose_life_is_ending_and_has_its_site_star
     assert lab.acts("lost")[0].detail == LIFE_ENDS
 
 
+def hangs_in_reach_of_a_site(lab: Lab, lives: list[str]) -> None:
+    """The tracker answers no call in its first lives, and its site ends it and starts it again, whenever asked to."""
+    tracker = iri("person-tracker")
+
+    def begin(node: object = None) -> None:
+        lab.component("tracker")
+        runtime = lab.runtimes["tracker"]
+        lives.append(runtime.life)
+        if len(lives) < 3:
+            runtime._served()
+            runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
+
+    def end(request: Request) -> None:
+        if decode(request.payload, End).life == lab.runtimes["tracker"].life:
+            lab.crash("tracker")
+        request.finish()
+
+    lab.site("astrid", *TASK)
+    for name in TASK:
+        lab.component(name)
+    living_room(lab, "1", begin).serve(lab.keys.end("living-room"), end)
+    begin()
+
+
+def test_a_component_that_hangs_is_started_again_each_time_that_its_site_does_so(tmp_path: Path) -> None:
+    lab, lives, woken = Lab(tmp_path), list[str](), list[Wake]()
+    hangs_in_reach_of_a_site(lab, lives)
+
+    def listen(request: Request) -> None:
+        woken.append(decode(request.payload, Wake))
+        request.finish()
+
+    lab.network.node().serve(lab.keys.wake("living-room"), listen)
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 4 * (STARTING + 2 * CALL))
+    assert lab.active() == TASK | {"tracker"}
+    assert [wake.after for wake in woken] == lives[:2]  # so that the site counts them
+
+
 def test_a_component_that_hears_but_is_not_heard_is_released_though_it_seems_to_be_dead(lab: Lab) -> None:
     agent = lab.agent()
     assert lab.running(agent)
