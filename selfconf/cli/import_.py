@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from selfconf.cli.options import domain
+from selfconf.cli.options import add_format_argument, domain
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
 
@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--domain", metavar="N", type=domain, default=0, help="the ROS_DOMAIN_ID of these nodes (default: %(default)s)"
     )
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
 
 
 def run(given: argparse.Namespace) -> int:

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.cli.options import add_ecology_arguments
+from selfconf.cli.options import add_ecology_arguments, add_format_argument
 from selfconf.cli.terminal import complain, display, paint
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         " ended, and what the sites of other machines tell)",
     )
     add_ecology_arguments(parser)
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
 
 
 def run(given: argparse.Namespace) -> int:

@@ -100,6 +100,11 @@ def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", metavar="S", type=seconds_option, help="give up a search after so many seconds")
 
 
+def add_format_argument(parser: argparse.ArgumentParser) -> None:
+    """The option of a command that prints its results as text or as JSON."""
+    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+
+
 def add_ecology_arguments(parser: argparse.ArgumentParser) -> None:
     """The options by which a command finds the living ecology."""
     parser.add_argument(

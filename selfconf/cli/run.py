@@ -18,8 +18,9 @@ from selfconf.cli.options import (
     add_budget_arguments,
     add_ecology_arguments,
     add_endpoint_argument,
+    add_format_argument,
     add_task_arguments,
-    complain_of,
+    complain_of_left_out,
     joined,
     method_of,
     one_ecology,
@@ -60,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--name",
         metavar="NAME",
+        type=_name,
         help="the name of the task (default: that of its template, with a number where a task has it already)",
     )
     parser.add_argument(
@@ -84,7 +86,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="hand the task to the sites, which go on with it, and return; `selfconf stop NAME` ends it",
     )
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
     add_budget_arguments(parser)
     add_ecology_arguments(parser)
 
@@ -94,6 +96,13 @@ def _upgrade(given: argparse.Namespace) -> float | None:
     if given.settle is not None and not given.upgrade:
         raise AuthorError("--settle says when to change to better components, which --upgrade asks for; give both")
     return (SETTLE if given.settle is None else given.settle) if given.upgrade else None
+
+
+def _name(text: str) -> str:
+    """The name of a task, as the option takes it; what is no name for another reason is found out later."""
+    if not text:
+        raise argparse.ArgumentTypeError("'' is no name of a task; leave the option out for that of its template")
+    return text
 
 
 def _priority(text: str) -> int:
@@ -231,8 +240,8 @@ def _fetched(given: argparse.Namespace, task: TaskSpecification, method: Method)
 
     one_ecology(given)
     ecology = EndpointEcology(given.endpoint)
-    with endpoint_files(ecology, task, method) as folder:
-        complain_of(ecology)
+    with endpoint_files(ecology, task, method) as (folder, left_out):
+        complain_of_left_out(left_out)
         yield folder
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 from selfconf.cli.terminal import STATE_COLOURS, paint
 from selfconf.model.term import IRI
 from selfconf.model.wording import one_line
@@ -23,7 +23,7 @@ EXAMPLE = """  selfconf status --format json"""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
     add_ecology_arguments(parser)
 
 

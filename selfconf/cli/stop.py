@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 
-from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 
 EXAMPLE = """  selfconf stop"""
 
@@ -14,7 +14,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("task", metavar="TASK", nargs="?", help="only this task; by default all of the ecology")
     parser.add_argument("--configurator", metavar="NAME", help="only what this configurator has deployed")
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
     add_ecology_arguments(parser)
 
 

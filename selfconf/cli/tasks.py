@@ -6,14 +6,14 @@ import argparse
 import json
 import time
 
-from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 
 EXAMPLE = """  selfconf tasks --format json"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
     add_ecology_arguments(parser)
 
 

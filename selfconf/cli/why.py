@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 
-from selfconf.cli.options import add_ecology_arguments, complain_of, joined
+from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 
 EXAMPLE = """  selfconf why position
   selfconf why position --format json
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="ask what `selfconf serve --history DIR` has kept, in place of the living ecology; it goes on meanwhile",
     )
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
     add_ecology_arguments(parser)
 
 
