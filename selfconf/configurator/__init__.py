@@ -13,7 +13,8 @@ it (`ReserveOf`), wait for it (`QueueFor`, `AwaitRelease`) or not (`Decline`), a
 
 Of a state: its `Phase` (`DEPLOYING` are those of a deployment), its `Policy` after a failure, and why a component is
 lost (`Loss`). Of a configuration: which outputs each input follows (`wiring`), which values each component gets
-(`parameter_values`), and who may call whom (`callers`: a `Caller` by component, operation by operation in `Callers`).
+(`parameter_values`), and which may call which (`callers`: a `Caller` by component, operation by operation in
+`Callers`).
 """
 
 from selfconf.configurator.effects import (

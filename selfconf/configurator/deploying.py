@@ -6,9 +6,9 @@ the starting order has confirmed. A component that acts already, and gets other 
 source of it is lost, else not before its new sources have confirmed: make before break. What is not needed any more is
 released when everything has confirmed.
 
-Why in the order of the IRIs: whoever waits for a component holds none that comes later, so tasks cannot wait for each
-other in a circle (Havender 1968). In a repair, which holds components already, one that is held by another task counts
-as taken, unless that task is of lower priority: it is made to let go.
+Why in the order of the IRIs: a task that waits for a component holds none that comes later, so tasks cannot wait for
+each other in a circle (Havender 1968). In a repair, which holds components already, one that is held by another task
+counts as taken, unless that task is of lower priority: it is made to let go.
 
 A repair that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
 reservation, and everything else acts already.

@@ -84,7 +84,7 @@ class ApplyTo:
     inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
     callers: Callers = field(default_factory=dict)
-    """Who may call its operations."""
+    """Which components may call its operations."""
     gently: bool = False
     """Whether what an input followed before is let go of only when the new output delivers."""
 

@@ -75,7 +75,7 @@ class Answered:
     newest: int = 0
     detail: str = ""
     holder: Holder | None = None
-    """Who holds the component, where that is another task."""
+    """The holder of the component, where that is another task."""
     startable: bool = False
     """Whether the site of the component can start it again."""
 
@@ -116,7 +116,7 @@ class Appeared:
 
 @immutable
 class Rewired:
-    """Other components than before issue the outputs of a component, or call by it: who is connected has to be told."""
+    """Other components than before issue the outputs of a component, or call by it: what is connected hears that."""
 
     component: IRI
 

@@ -85,7 +85,7 @@ PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
 DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
 """The phases of act 4."""
 MOST_REPEATS = 10
-"""How often one component may make a deployment begin anew, by what it says of its epoch or of who holds it."""
+"""How often one component may make a deployment begin anew, by what it says of its epoch or of its holder."""
 MOST_AHEAD = 100 * 366 * 86_400_000
 """By how much a component may say that a newer epoch was, in milliseconds as epochs are: no clock is that wrong."""
 
@@ -125,9 +125,9 @@ def step(state: State, event: Event) -> Reaction:
 
 
 def _adopted(state: State, event: Adopted) -> Reaction:
-    """Go on with what runs: every component keeps what it does, and hears for whom it does that from now on.
+    """Go on with what runs: every component keeps what it does, and hears for which task from now on.
 
-    It is applied to with the epoch that it acts in: one whose FAIL nobody has heard refuses that.
+    It is applied to with the epoch that it acts in: one whose FAIL has not been heard refuses that.
     """
     if state.phase is not Phase.IDLE:
         return state, ()
@@ -493,7 +493,7 @@ def _improved(state: State, event: Composed) -> Reaction:
 
 
 def _rewired(state: State, component: IRI) -> Reaction:
-    """Tell those that are connected to a component what stands behind it now, once all are told whom they are for.
+    """Tell those that are connected to a component what stands behind it now, after all have received their links.
 
     The component is one of this configuration, or the composite that this is the inside of, which is what is outside.
     """

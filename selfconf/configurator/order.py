@@ -27,7 +27,7 @@ class Caller(NamedTuple):
 
 
 Callers = Mapping[str, tuple[Caller, ...]]
-"""Who may call each operation of a component, by the name of its output."""
+"""Which components may call each operation of a component, by the name of its output."""
 
 
 def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
@@ -44,7 +44,7 @@ def wiring(configuration: Configuration) -> dict[IRI, dict[str, tuple[Wire, ...]
 
 
 def callers(configuration: Configuration) -> dict[IRI, Callers]:
-    """For each component of a configuration, who may call each of its operations."""
+    """For each component of a configuration, which may call each of its operations."""
     found: dict[IRI, dict[str, list[Caller]]] = {component: {} for component in configuration.components}
     for connection in configuration.connections:
         if connection.output.endswith(CALL_MARK) and connection.source in found:

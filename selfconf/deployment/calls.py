@@ -143,7 +143,7 @@ class Calls:
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
         self.gone: set[IRI] = set()
-        """The components without a life for so long that what is left of an earlier one acts for nobody, if it is not
+        """The components without a life for so long that what is left of an earlier one acts for no task, if it is not
         only frozen, and those whose sites have said that their processes have ended; what is owed to them stays owed,
         as one that was frozen goes on with what it did."""
 
@@ -176,7 +176,7 @@ class Calls:
             self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
 
     def heard_fail(self, fail: Fail) -> None:
-        """Of a crash a site speaks: it has seen the process of the component end, or is ending it."""
+        """Handle a FAIL that a site sends for a crashed component: its process has ended, or is being ended."""
         if fail.cause is Cause.CRASH and fail.component in (self._state().held.keys() | self._state().owed.keys()):
             self.gone.add(fail.component)
 
@@ -284,7 +284,7 @@ class Calls:
         self._report(ActivationSent(effect.component))
 
     def _ended(self, component: IRI, life: str) -> None:
-        """A component that is to act has ended, which nobody has told: its site may start it again."""
+        """A component that is to act has ended without a FAIL: its site may start it again."""
         detail, now = "it does not live any more", self.ecology.life(component)
         self._report(ComponentUnreachable(component, Call.APPLY.value, detail))
         self._step(Failed(component, life, Cause.CRASH, detail))
@@ -327,7 +327,7 @@ class Calls:
     def _release_unseen(self, effect: ReleaseFrom, message: Release) -> None:
         """Tell a component whose life seems to have ended that it is released, as it may hear this without being heard.
 
-        It is told again only if somebody was asked and did not answer. One that cannot be reached has lost sight of its
+        It is sent again only if a life was asked and did not answer. One that cannot be reached has lost sight of its
         configurator as well, and turns itself off; one that is frozen is released when its life shows again.
         """
         component = effect.component
@@ -350,9 +350,9 @@ class Calls:
             self._left_behind[component] = (*self._left_behind.get(component, ()), life)[-LEFT_BEHIND:]
 
     def _release_left_behind(self, component: IRI, life: str) -> None:
-        """Tell a life that was frozen that it is released, whatever other lives of the component were told since.
+        """Tell a life that was frozen that it is released, whatever other lives of the component have received since.
 
-        Unless it is wanted again: then it is told so.
+        Unless it is wanted again: then it hears that.
         """
         left = life in self._left_behind.get(component, ()) and self.ecology.lives_on(component, life)
         if not left or self._state().ended:
@@ -384,12 +384,12 @@ class Calls:
             self.release(effect)
 
     def _is_gone(self, component: IRI) -> None:
-        """A life that has been gone for longer than its grace acts for nobody, unless this node is cut off."""
+        """A life that has been gone for longer than its grace acts for no task, unless this node is cut off."""
         if self.bus.link and not self._lives_on(component):
             self.gone.add(component)
 
     def _end(self, component: IRI, life: str) -> None:
-        """Have the site end a life of a component that does not obey its release: it may act on for nobody."""
+        """Have the site end a life of a component that does not obey its release: it may act on without a task."""
         found = self.ecology.discovery.found.get(component)
         if found is not None and found.startable and life:
             self._lost_lives[component] = life
@@ -513,7 +513,7 @@ class Calls:
             self._caught_up(component, answer.life)
         applied = answer.verdict is Verdict.DONE and call is Call.APPLY
         if applied and self.moved(component, answer.outputs, answer.callers):
-            self._step(Rewired(component))  # before the answer: those that it calls are told, then all is complete
+            self._step(Rewired(component))  # before the answer: those that it calls hear of it, then all is complete
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)

@@ -146,7 +146,7 @@ class Keeper:
         else:
             self._requests[record.task] = replace(request, report=lambda event: self._report(record.task, event))
 
-    # Who runs what.
+    # Which site runs what.
 
     def _site_changed(self, key: str, alive: bool) -> None:
         site, lives = owner_of(key), self._living
@@ -154,7 +154,7 @@ class Keeper:
             return
         if alive:
             lives.setdefault(site, set()).add(key)
-            # When this site began it may have been cut off from that one, and nobody else will say what that one keeps.
+            # When this site began it may have been cut off from that one, and no other site says what that one keeps.
             self._to_ask.add(site)
             self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._take_all)
         elif site in lives:

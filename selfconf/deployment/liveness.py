@@ -33,7 +33,7 @@ CUT_OFF = 0.25
 ASK_SITE_AGAIN = 5.0
 """Seconds after which a site that lives, but has not answered in full, is taken for news, and so is asked again."""
 NEWS_TOGETHER = 0.05
-"""Seconds for which news of lives that nobody waits for are collected: after a lost link there may be thousands."""
+"""Seconds for which news of lives that no call waits for are collected: after a lost link there may be thousands."""
 AUDIT = 1.0
 """Seconds between two looks at what runs: a component may have let go of its task, or have failed, unnoticed."""
 AUDITED = 20
@@ -143,7 +143,7 @@ class Liveness:
             self._step(Appeared({component: life} if component is not None else {}))
 
     def _note_news(self, chunk: str, life: str) -> None:
-        """A component lives that is not followed; thousands may be told at once, so they are fed together."""
+        """A component lives that is not followed; thousands may come at once, so they are fed together."""
         if not self._news:
             self.bus.later(NEWS_TOGETHER, self._feed_news)
         self._news[chunk] = life

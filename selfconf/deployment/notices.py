@@ -1,9 +1,9 @@
-"""What a configurator does and notices, told to those who look on.
+"""What a configurator does and notices, sent to observers.
 
-Nothing of a run depends on it: a notice is made only while somebody listens, and the network may drop it, so that an
+Nothing of a run depends on it: a notice is made only while an observer listens, and the network may drop it, so that an
 observer that is slow, frozen or gone holds nothing up. The latest events are kept, for one that comes late or has found
-a gap in the sequence. How a run has ended is not dropped, as nobody could be asked for it any more: that is one notice,
-which goes the way of the end of its life.
+a gap in the sequence. How a run has ended is not dropped, as no configurator could be asked for it any more: that is
+one notice, which goes the way of the end of its life.
 """
 
 from __future__ import annotations

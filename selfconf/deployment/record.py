@@ -39,7 +39,7 @@ class DeploymentRecord:
         self._failures: dict[IRI, tuple[IRI, str, str, float]] = {}
         """The newest failure of each component, the newest last: a task that runs for months has many of each."""
         self._heard = False
-        """Whether somebody wants to have each configuration told: who asks may ask too late."""
+        """Whether an observer wants to receive each configuration: one that asks may ask too late."""
         self._publisher = bus.publisher(keys.configuration(name), Urgency.SIGNAL, self._matched)
         self._served = [
             bus.serve(keys.configuration(name), self._serve_configuration),
@@ -69,7 +69,7 @@ class DeploymentRecord:
         self._tell()
 
     def _tell(self) -> None:
-        """Tell those who listen what is deployed."""
+        """Send what is deployed to observers."""
         if self._heard and self._deployed is not None:
             self._publisher.put(self.turtle().encode())
 

@@ -55,7 +55,7 @@ class RunRequest:
     priority: int = 0
     """Of several tasks that want one component, the one of the highest priority has it."""
     believed: Beliefs | None = None
-    """With keys: whose a component is that several sites advertise, as far as somebody has said so."""
+    """With keys: the site that owns a component which several advertise, as far as a person has said so."""
     outside: Outside | None = None
     """What is outside of the task, if it is the inside of a composite."""
     upgrade: float | None = None
@@ -69,9 +69,9 @@ class RunRequest:
     aside: Callable[[Callable[[], None]], None] = lambda work: work()
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
     abandon: Callable[[], None] = lambda: None
-    """Called once when the task has ended: what still runs aside for it may end, as nobody waits for it."""
+    """Called once when the task has ended: what still runs aside for it may end, as no caller waits for it."""
     record: TaskRecord | None = None
-    """The task as sites keep it, for those who ask which one it is; None: nobody is told."""
+    """The task as sites keep it, the answer to a program that asks which one it is; None: there is none."""
     report: EventListener = lambda event: None
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None

@@ -292,7 +292,7 @@ class TaskRunner:
             self._improve = self.bus.later(self.request.upgrade, partial(self._step, Improvable()))
 
     def _look_whether_free(self) -> None:
-        """Look again, after a while, for what would be rather had: only those that wait are told that it is free."""
+        """Look again, after a while, for what would be rather had: only tasks that wait hear that it is free."""
         self._improve_later()
         if self.request.upgrade is not None:
             self._improve_later = self.bus.later(LONGEST_PAUSE, partial(self._step, Improvable()))
@@ -329,7 +329,7 @@ class TaskRunner:
             self._await_another_chance()
 
     def _may_be_able(self, component: IRI, loss: Loss) -> bool:
-        """Whether a component lives, or its site can start it, and it obeys what it was told last."""
+        """Whether a component lives, or its site can start it, and it obeys what it received last."""
         if component in self._out_of_control and not loss.busy:
             return False
         found = self.ecology.discovery.found.get(component)
@@ -571,7 +571,7 @@ class TaskRunner:
             self._step(WaitedLong(free.component, self.state.epoch))
 
     def status(self) -> Status:
-        """What is deployed, by whom, since when."""
+        """What is deployed, by which configurator, since when."""
         return Status(
             configurator=self.name,
             phase="waiting" if self.state.phase is Phase.REFUSED else self.state.phase.value,

@@ -78,7 +78,7 @@ class Hold:
 
 @immutable
 class Activation:
-    """Whether a component acts, for whom, and who waits for it."""
+    """Whether a component acts, for which tasks, and which wait for it."""
 
     phase: ActivationPhase = ActivationPhase.IDLE
     holds: tuple[Hold, ...] = ()

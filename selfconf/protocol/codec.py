@@ -76,7 +76,7 @@ KINDS: dict[type, str] = {
 LARGEST = 1 << 20
 """A control message of more bytes than this is refused unread."""
 MOST_WIRES = 4096
-"""How many outputs the inputs of a component can be told to follow in one call."""
+"""How many outputs the inputs of a component can be set to follow in one call."""
 MOST_ADVERTISED = 20_000
 """For how many components one site can speak; what it says of more is left out."""
 _WHOLE = 1 << 63

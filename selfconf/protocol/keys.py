@@ -15,7 +15,7 @@
     selfconf/{ecology}/c/{shard}/{component}/live/{life}    a component is alive (liveliness token)
     selfconf/{ecology}/c/{shard}/{component}/out/{port}     what an output issues (put)
     selfconf/{ecology}/c/{shard}/{component}/fail           FAIL (put)
-    selfconf/{ecology}/c/{shard}/{component}/free           it is free, and for whom (put)
+    selfconf/{ecology}/c/{shard}/{component}/free           it is free, and for which task (put)
     selfconf/{ecology}/c/{shard}/{component}/moved          what issues the outputs of a composite (put)
     selfconf/{ecology}/c/{shard}/{component}/@op/{name}/{caller}  an operation that it offers (call)
     selfconf/{ecology}/c/{shard}/{component}/@ctl/{call}    reserve, apply, release, state (call)

@@ -112,7 +112,7 @@ class Verdict(str, Enum):
     STALE = "stale"
     """The epoch is older than the newest one the component has obeyed."""
     BUSY = "busy"
-    """Another task holds the component; it is remembered who asked, and told when the component is free."""
+    """Another task holds the component; the task that asked is remembered, and hears when the component is free."""
     REFUSED = "refused"
     """The component itself refuses, or its code broke; `detail` says why."""
     NOT_HELD = "not held"
@@ -155,7 +155,7 @@ class CallAnswer:
     """Of a composite whose inside is being started, or a component of which an input is being handed over gently: for
     how many seconds the caller may wait for that."""
     stopping: bool = False
-    """Whether the code of the component was told to stop, and is not at rest yet: it may still act."""
+    """Whether the code of the component was asked to stop, and is not at rest yet: it may still act."""
 
 
 @immutable
@@ -256,10 +256,10 @@ class Page:
 
 @immutable
 class Introduction:
-    """A certificate that is shown to a site, which lets in whom its authority vouches for, and shows its own."""
+    """A certificate that is shown to a site, which lets its holder in if the authority issued it, and shows its own."""
 
     certificate: str
-    """The certificate, as PEM. It is no secret: it helps nobody who lacks its key."""
+    """The certificate, as PEM. It is no secret: it is of no use without its key."""
     known: bool = False
     """In an answer: whether the site knew the one that asks, so that its rules stay as they are."""
     beside: tuple[str, ...] = ()
@@ -268,10 +268,10 @@ class Introduction:
 
 @immutable
 class Access:
-    """What somebody may do at the hubs of a site, as keys, and as a sentence that says it."""
+    """What a holder may do at the hubs of a site, as keys, and as a sentence that says it."""
 
     principal: str
-    """A common name; empty for everybody with a certificate of the authority."""
+    """A common name; empty for every holder of a certificate of the authority."""
     sentence: str
     says: tuple[str, ...] = ()
     """Under which keys it may say something."""
@@ -282,15 +282,15 @@ class Access:
     about: tuple[str, ...] = ()
     """The components that it speaks for, by their chunks."""
     told: tuple[str, ...] = ()
-    """What it is told of what it hears; empty: all of it. Another site is told by each host what is said there."""
+    """What reaches it of what it hears; empty: all of it. Another site hears from each host what is said there."""
 
 
 @immutable
 class RefusedAttempt:
-    """What somebody has tried, and may not."""
+    """What a client has tried, and may not."""
 
     principal: str
-    """A common name; empty for one who has shown no certificate that is believed."""
+    """A common name; empty for a client that has shown no trusted certificate."""
     attempt: str
     """What was tried, such as `Query`, or why the certificate is not believed."""
     key: str
@@ -370,7 +370,7 @@ class Status:
 
 @immutable
 class Notice:
-    """An event of a run, for those who look on: nothing depends on its arrival."""
+    """An event of a run, for observers: nothing depends on its arrival."""
 
     configurator: str
     sequence: int
