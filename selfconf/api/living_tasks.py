@@ -221,7 +221,7 @@ class LivingTasks:
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
     def _unheard(self, silent: Set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
-        """What is to be said of configurators that could not be told to stop, once what they hold has come to rest."""
+        """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest."""
         if silent:  # one that was only slow may have ended meanwhile, and a suspended one is no longer seen to live
             living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
             yield from map(_said_of_silent, sorted(living & silent))
@@ -250,7 +250,7 @@ class LivingTasks:
         )
 
     def out_of_control(self) -> Mapping[IRI, str]:
-        """The components that were told to stop and do not come to rest in time, sorted, and how each of them is.
+        """The components that were asked to stop and do not come to rest in time, sorted, and how each of them is.
 
         Whether a task is left that knows of them or not: each component is asked. It takes time where one is stopping.
         """
@@ -320,7 +320,7 @@ def _said_of_silent(configurator: str) -> str:
 
 
 def _raise_for(troubles: Iterable[str]) -> None:
-    """Raise NetworkError if there is trouble to be told."""
+    """Raise NetworkError if there is trouble to report."""
     said = "; ".join(troubles)
     if said:
         raise NetworkError(said)

@@ -1,4 +1,4 @@
-"""What a component does that is blind: it is told, and an actuator rests until it sees again.
+"""What a component does while a required input is unfed: its code is called, and an actuator rests until it is fed.
 
 An input is unfed from the loss of its last source to the first signal of the next. An actuator, a component without
 outputs, of which a required input has been unfed for longer than it tolerates is stopped, and started again by that

@@ -101,7 +101,7 @@ class Component:
 
         It should return soon, for nothing else reaches the component meanwhile: after 8 seconds the component counts as
         hung, unless it asks for more by `sc:deadline`. What takes longer belongs on a thread of its own, which calls
-        `fail` if it comes to nothing. Parameters have their values, and whoever feeds this component has started.
+        `fail` if it comes to nothing. Parameters have their values, and the sources of this component have started.
         """
 
     def stopped(self) -> None:
@@ -115,8 +115,8 @@ class Component:
 
         Raise Refused to say why there is none. An answer is what JSON has, bytes, or an array, of 1 MiB at most. For
         one that takes its time return a `concurrent.futures.Future`, so that nothing else waits: its result is the
-        answer, and a Refused that it raises the reason why there is none. It is cancelled when nobody waits for it any
-        more: the component is stopped, or the caller has waited long enough or is connected no more.
+        answer, and a Refused that it raises the reason why there is none. It is cancelled when no caller waits for it
+        any more: the component is stopped, or the caller has waited long enough or is connected no more.
         """
         raise Refused(f"{operation!r} is advertised, and not written yet")
 
@@ -131,10 +131,10 @@ class Component:
         """An input that had lost its last source has another, whose first signal is received next."""
 
     def connected(self, operation: str) -> None:
-        """An operation that this component needs is connected to whoever offers it; called after `started`."""
+        """An operation that this component needs is connected to a component that offers it; called after `started`."""
 
     def disconnected(self, operation: str) -> None:
-        """An operation that this component needs is connected to nobody any more, while the component goes on."""
+        """An operation that this component needs is not connected any more, while the component goes on."""
 
     def parameter_set(self, name: str, value: Any) -> None:
         """An operational parameter has a value: text for strings and IRIs, else a number or a truth value.
@@ -160,7 +160,7 @@ class Component:
         seconds: float = 2.0,
         media: str = "",
     ) -> None:
-        """Call an operation that this component needs: whoever the configuration has connected to it is asked, once.
+        """Call an operation that this component needs: the component that is connected to it is asked, once.
 
         `request` is what is sent along, of what signals can carry, and of 1 MiB at most; `media` is the media type of
         bytes. `answered` is called with what

@@ -49,7 +49,7 @@ class ComponentCode:
         self._deadline = DEADLINE if profile.deadline is None else profile.deadline
         self._start_deadline = STARTING_DEADLINE if profile.deadline is None else profile.deadline
         self.stopping = False
-        """Whether the code was told to stop, and is not at rest yet."""
+        """Whether the code was asked to stop, and is not at rest yet."""
         self.turn = 0
         """Counts starts and stops: what belongs to an earlier one is not run any more."""
         self._wanted_turn = self._acting_turn = self._started_turn = -1

@@ -16,10 +16,10 @@ acts for no more.
 *Handing over.* Where a call asks for it (`gently`), an input goes on following the old output until the new one has
 issued a signal. A new output that issues nothing in time while the old one does is reported as silent, and again as
 long as both is so; what becomes of that is for the configurator to say. An output that has nothing to issue, such as a
-doorbell, cannot be told from one that never will: where the old one has issued nothing in that time either, and both
+doorbell, looks like one that never will: where the old one has issued nothing in that time either, and both
 live, the new one takes its place, and the input has lost nothing.
 
-*Latching.* An input asks each output that it begins to follow for its last signal, whoever else follows that output.
+*Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class InputFollower(Protocol):
 
     @property
     def settled(self) -> bool:
-        """Whether it does what it was told."""
+        """Whether it does what it was asked."""
         ...
 
     @property
@@ -517,7 +517,7 @@ class InputSubscription:
         """The output is lost, unless it has issued a signal after that time; one that stands by may act again later."""
         if self.lost or self._heard_at > heard:
             return
-        self._queue.keep(0)  # before the input is told: what comes after that is news, and feeds it
+        self._queue.keep(0)  # before the input hears of it: what comes after that is news, and feeds it
         if not self.muted:
             self.lost = True
             self._report_lost(self._port)

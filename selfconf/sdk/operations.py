@@ -5,18 +5,18 @@ does, behind the stamp of the caller: the text of the stamp, a line feed, the pa
 component that is called, with its stamp.
 
 *Who may call* is what the configuration says: the components that it has connected to the operation, for the tasks
-that the component acts for. Whoever else asks is refused. Who calls stands in the key of the question as well as in
+that the component acts for. Any other is refused. The caller stands in the key of the question as well as in
 the stamp, since rules about keys can hold every component to its own name (`selfconf.access.rules`), and none can look
 into a stamp.
 
 *At most once.* A call is made once. If it comes to nothing, the caller may not know whether the component was about to
-do what it was asked: so it is told what is known, and nothing is repeated on its behalf. A request that comes twice is
-served once. One that nobody waits for any more when the code has time for it, or whose caller is connected no more, is
-not served at all.
+do what it was asked: so it receives what is known, and nothing is repeated on its behalf. A request that comes twice is
+served once. One that no caller waits for any more when the code has time for it, or whose caller is connected no more,
+is not served at all.
 
 *Later.* The code of a component may return a future in the place of an answer: it then goes on with other things, and
-the request is answered when the future comes to something. A future is cancelled when nobody waits for it any more: the
-component is stopped, the caller is connected no more, or has waited for as long as it said beside its request.
+the request is answered when the future comes to something. A future is cancelled when no caller waits for it any more:
+the component is stopped, the caller is connected no more, or has waited for as long as it said beside its request.
 
 *Bounds.* A request and an answer have at most `MOST_PAYLOAD` bytes; at most `MOST_CALLS` requests wait for the code of
 a component, or for its futures, and at most as many of its own calls for their answers.
@@ -327,7 +327,7 @@ def _read_patience(attachment: bytes) -> float:
     """For how many seconds the caller of a request waits; 0 if it does not say so. Raises ValueError for other text."""
     seconds = float(attachment[:32]) if attachment else 0.0
     if not 0.0 <= seconds <= LONGEST_PATIENCE:
-        raise ValueError(f"nobody waits for {seconds:g} s")
+        raise ValueError(f"no caller waits for {seconds:g} s")
     return seconds
 
 

@@ -2,7 +2,7 @@
 
 Two processes that begin at the same moment do not see each other before both are there, so each looks again a moment
 after its beginning. Two that were cut off from each other, or of which one was frozen, meet later: while a component is
-held for a task it follows its own lives, so that no two act. One that nobody holds does nothing, and need not look.
+held for a task it follows its own lives, so that no two act. One that no task holds does nothing, and need not look.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class OtherLives:
         self._unfollow = self._bus.watch(self._lives, self._noticed)
 
     def _noticed(self, key: str, alive: bool) -> None:
-        """Look who lives: a new watch of Zenoh now and then tells of a life that has ended, such as the one before."""
+        """Look which lives there are: a new watch of Zenoh at times tells of an ended life, such as the one before."""
         if alive and life_of(key) < self._life:
             self._look()
 

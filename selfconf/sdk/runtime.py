@@ -349,7 +349,7 @@ class ComponentRuntime:
             answer(trouble)
 
     def _verdict(self, verdict: Verdict, task: str, detail: str = "", *, measured: bool = False) -> CallAnswer:
-        """The answer with a verdict; it says how things are with the component for a task, else for who holds it.
+        """The answer with a verdict; it says how things are with the component for a task, else for its holder.
 
         `measured`: also how old the component is, what memory it takes, and how much it has issued.
         """
@@ -379,7 +379,7 @@ class ComponentRuntime:
         )
 
     def _busy(self, task: str) -> CallAnswer:
-        """Who stands in the way: a task that holds the component, or one for which it is kept."""
+        """The answer that another task is in the way: one that holds the component, or one for which it is kept."""
         first = self.activation.first
         kept = (one for one in self.activation.waiting if one.task == self.activation.kept_for)
         claim = first.claim if first is not None else next(kept, None)
@@ -429,7 +429,7 @@ class ComponentRuntime:
     # Being on and off.
 
     def _become(self, activation: Activation, step: ActivationStep) -> None:
-        """Take on an activation; the code stops if it says so, and is started by whoever called for it."""
+        """Take on an activation; the code stops if it says so, and is started by what called for it."""
         self.activation = activation
         if step in (ActivationStep.STOP, ActivationStep.RESTART):
             self._stop()

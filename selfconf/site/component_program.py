@@ -44,7 +44,7 @@ ENDING_CHECK = 0.02
 TERMINATION = 2.0
 """Seconds that a process may take to end before it is killed."""
 UNKILLABLE = 3.0
-"""Seconds after which a process counts as gone even so: it is killed, and nobody may have waited for its remains."""
+"""Seconds after which a process counts as gone even so: it is killed, and its parent may not have waited for it."""
 MOST_WATCHED = 8
 """Of how many components of a process the lives are followed: they share a process, and if that hangs, they all do."""
 NO_CRASH = (0, 2)
@@ -138,7 +138,7 @@ class ComponentProgram:
             self._check_in(ENDING_CHECK)
 
     def is_life(self, component: IRI, life: str) -> bool:
-        """Whether a life of a component is that of the present process, as far as can be told."""
+        """Whether a life of a component is that of the present process, as far as is known."""
         watch = self._watches.get(component)
         return life == self._life or (watch is not None and watch.is_life(life))
 
@@ -155,7 +155,7 @@ class ComponentProgram:
         self._limit.crashed(self._bus.now())
 
     def close(self) -> None:
-        """Start nothing any more; the process is ended by whoever closes. May be called from any thread."""
+        """Start nothing any more; the process is ended by the caller. May be called from any thread."""
         self._closed = True
 
     def _launch(self) -> None:
@@ -176,7 +176,7 @@ class ComponentProgram:
         try:
             words = shlex.split(self.command) or [""]
             self.group = ProcessGroup(words, self._folder, environment)
-            if self._closed:  # after the group is known: either it is ended here, or by whoever closes
+            if self._closed:  # after the group is known: either it is ended here, or by the caller of `close`
                 self.group.kill()
         except OSError as error:
             raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
@@ -267,7 +267,7 @@ class ComponentProgram:
     def _ended(self, code: int) -> None:
         """The process has ended by itself."""
         again = code not in NO_CRASH
-        # One that ends before it lives is not started again, but whoever asks for it may not ask without a limit.
+        # One that ends before it lives is not started again, but what asks for it may not ask without a limit.
         if again or not any(watch.lived for watch in self._watches.values()):
             self._count_crash()
         outlook = self._outlook() if again else ""

@@ -59,11 +59,11 @@ class LifeWatch:
         return bool(self._lives)
 
     def is_life(self, life: str) -> bool:
-        """Whether a life of the component is that of the process, as far as can be told."""
+        """Whether a life of the component is that of the process, as far as is known."""
         return life == self._life or (life in self._lives and self._life not in self._lives)
 
     def was_life(self, life: str) -> bool:
-        """Whether a life that may have ended was that of the process, as far as can be told."""
+        """Whether a life that may have ended was that of the process, as far as is known."""
         return life == self._life or (life in self._had and self._life not in self._had)
 
     def lifeless(self, frozen: bool) -> str | None:

@@ -32,7 +32,7 @@ from selfconf.site.log_file import LogFile
 CHUNK = 1 << 13
 """How many bytes are read at a time."""
 MOST_A_SECOND = 1 << 19
-"""How many bytes a second are read of one pipe: who prints more has to wait, and does not keep the site busy."""
+"""How many bytes a second are read of one pipe: a process that prints more waits, and does not keep the site busy."""
 PIPE_HOLDS = 1 << 16
 """How many bytes Linux keeps in a pipe."""
 SHOWN_AT_ONCE = 1000

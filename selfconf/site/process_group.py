@@ -70,9 +70,9 @@ class ProcessGroup:
         return True
 
     def _signalled(self, number: int) -> bool:
-        """Send a signal to all of the group; return whether there was anybody to receive it.
+        """Send a signal to all of the group; return whether there was a process to receive it.
 
-        The number of a group belongs to nobody else as long as the program has not been waited for, or one of the
+        The number of a group belongs to no other group as long as the program has not been waited for, or one of the
         group is left.
         """
         try:

@@ -111,7 +111,7 @@ class ComponentProcesses:
             self._printed = None
 
     def _printing(self) -> PrintedLines:
-        """Who reads what the processes print, from the first process on."""
+        """The reader of what the processes print, from the first process on."""
         if self._printed is None:
             self._printed = PrintedLines(None if self._log_path is None else LogFile(self._log_path))
         return self._printed

@@ -45,7 +45,7 @@ class RestartLimit:
         return self._recent(now) <= 1
 
     def wait(self, now: float, restarts: int) -> float:
-        """Seconds until it may be started by whoever asks for it: none, unless it has crashed too often."""
+        """Seconds until it may be started on request: none, unless it has crashed too often."""
         excess = self._recent(now) - restarts
         return 0.0 if excess <= 0 else self._crashes[excess - 1] + CRASH_WINDOW - now
 

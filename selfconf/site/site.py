@@ -33,7 +33,7 @@ FILE_CHECK_SHARE = 0.02
 """Which part of the time may be spent on that: where there are very many files, they are looked at less often."""
 
 MOST_REASON = 1000
-"""How many characters are told of why a component cannot act."""
+"""How many characters are sent of why a component cannot act."""
 
 
 class _ServedAdvertisement(NamedTuple):
@@ -66,8 +66,8 @@ class Site:
         """`environment` is what a started component finds its ecology by; None: this site starts none.
 
         `log_path` is the file that keeps what components print; None: it is only shown. `keys_of` makes the folder of
-        keys of the process of a component; None: there are no keys. `insecure` is told to whoever asks: the site
-        listens beyond its host without keys. `changed` hears what is on the shelf, now and when that is another.
+        keys of the process of a component; None: there are no keys. `insecure` is in the answer to each question: the
+        site listens beyond its host without keys. `changed` hears what is on the shelf, now and when that is another.
         """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
         self.processes = ComponentProcesses(bus, self.keys, environment, log_path, keys_of)
