@@ -34,7 +34,7 @@ from selfconf.search.strategies import possible
 from selfconf.search.what_if import consequences
 
 STANDBY = 2
-"""How many candidates per role an input is told of in advance."""
+"""How many candidates per role an input hears of in advance."""
 
 
 def _matches_more(partition: Partition, hierarchy: Hierarchy) -> bool:
@@ -86,7 +86,7 @@ class Composer:
         self._partition = Partition(())
 
     def leave_unfed(self, inputs: Set[str]) -> None:
-        """Compose the inside of a composite, from now on, with some inputs of the composite fed by nobody."""
+        """Compose the inside of a composite, from now on, with some inputs of the composite unfed."""
         if inputs != self._unfed:
             self._unfed, self._given = inputs, None
 

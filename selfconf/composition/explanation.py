@@ -33,8 +33,8 @@ def explained(
     refusal = replace(refusal, near_misses=found)
     refusal = limit.within(lambda: with_nearest_recruits(composer, ecology, refusal, known), refusal)
     refusal = limit.within(lambda: composer.mended(ecology, refusal), refusal)
-    nobody: tuple[LetRecruit, ...] = ()
-    recruiting = limit.within(lambda: tuple(recruiting_instead(composer, ecology, refusal)), nobody)
+    none_found: tuple[LetRecruit, ...] = ()
+    recruiting = limit.within(lambda: tuple(recruiting_instead(composer, ecology, refusal)), none_found)
     refusal = replace(refusal, repairs=(*recruiting, *refusal.repairs))
     if wider is not None and limit.within(lambda: composer.possible_under(ecology, wider), False):
         return replace(refusal, hint="with --reasoning subclass there is a configuration")

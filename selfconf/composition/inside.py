@@ -81,7 +81,7 @@ class Inside:
         if isinstance(outcome, Configuration):
             return outcome
         unfed_ones = ", ".join(port_in_words(name).removeprefix("the ") for name in sorted(unfed))
-        alone = f"; nobody feeds its optional {unfed_ones}" if unfed else ""
+        alone = f"; no component feeds its optional {unfed_ones}" if unfed else ""
         return f"its inside cannot be configured now: {why_none(outcome)}{alone}"
 
 

@@ -81,7 +81,7 @@ def _sources(problem: Problem, sink: IRI) -> tuple[int, ...]:
 
 
 class _Question:
-    """What one role asks for, by its shape or along its interactions, and who comes near to it."""
+    """What one role asks for, by its shape or along its interactions, and which components come near to it."""
 
     def __init__(
         self,

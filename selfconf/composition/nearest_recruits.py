@@ -1,4 +1,4 @@
-"""What a refusal says of recruits: who comes nearest to feeding an input, and whether it would help to recruit."""
+"""What a refusal says of recruits: what comes nearest to feeding an input, and whether it would help to recruit."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ RECRUITING_STEPS = 100_000
 def with_nearest_recruits(
     composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal, known: Hierarchy
 ) -> Refusal:
-    """A refusal that names, for each input that a recruit could have fed, those who come nearest to it."""
+    """A refusal that names, for each input that a recruit could have fed, the components nearest to it."""
     problem = Problem(composer.task.task, composer.partition(ecology), composer.hierarchy)
     near: list[NearMiss] = []
     reasons = []
@@ -57,7 +57,7 @@ def _nearest(
     reason: InputUnfed,
     signals: SignalLikeness,
 ) -> Iterator[NearMiss]:
-    """Those who could nearly be recruited for an input, the nearest first."""
+    """Yield the components that could nearly be recruited for an input, the nearest first."""
     number = next(number for number, role in enumerate(problem.roles) if role.iri == reason.role)
     yield from _kept_out(composer, ecology, problem, reason, number)
     profiles = [r.profile for r in problem.supply.recruits if number in r.roles and r.component != reason.component]
@@ -73,7 +73,7 @@ def _nearest(
 def _kept_out(
     composer: Composer, ecology: Mapping[IRI, Advertisement], problem: Problem, reason: InputUnfed, number: int
 ) -> Iterator[NearMiss]:
-    """Those who issue what an input wants, and of whom the role of that number recruits none for one thing alone."""
+    """Yield the components that issue what an input wants, and that a role does not recruit for one thing alone."""
     wanted = Input(reason.input, reason.wanted.signals, condition=reason.wanted.condition)
     may = {recruit.component for recruit in problem.supply.recruits if number in recruit.roles}
     issuing = [
@@ -106,7 +106,7 @@ def _obstacle(
 
 
 def _not_fed(problem: Problem, profile: Profile, unfed: Input) -> NotFedItself:
-    """Why an input of a component is not fed: nobody issues what it wants, or those are not fed themselves."""
+    """Why an input of a component is not fed: no component issues what it wants, or none that does is fed itself."""
     way: list[IRI] = [profile.component]
     lacking: Input | None = unfed
     while lacking is not None and way.index(way[-1]) == len(way) - 1:  # it has come to no component twice
@@ -143,7 +143,7 @@ def _unfed(problem: Problem, profile: Profile) -> Input | None:
 def recruiting_instead(
     composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal
 ) -> Iterator[LetRecruit]:
-    """Of the roles with unfed inputs that recruit nobody, each that makes the task possible if it recruits."""
+    """Of the roles with unfed inputs that do not recruit, each that makes the task possible if it recruits."""
     template = composer.task.task.template
     unfed = dict.fromkeys(r.role for one in refusal.reasons for r in one.requirements if isinstance(r, InputFed))
     for iri in [iri for iri in unfed if not template.role(iri).recruits][:RECRUITING_ROLES]:

@@ -2,7 +2,7 @@
 
 Seen from inside, a composite is a component with its ports turned round: what the template receives it issues, and what
 the template gives it needs; an operation that the template offers it calls, and one that the template needs it answers.
-An optional input of the composite that nobody feeds it does not issue.
+An optional input of the composite that no component feeds it does not issue.
 It plays a role of its own, by its own IRI, which feeds the roles of the input ports and is
 fed by those of the output ports. So the search, its certificate and its refusals know of ports what they know of roles;
 only the deployment leaves it out, and takes its connections for the ports.
@@ -53,7 +53,7 @@ def with_outside_candidate(
 ) -> Partition:
     """The partition of a task that is the inside of a composite, with the only candidate for what is outside.
 
-    `unfed` are the names of the inputs of the composite that nobody feeds.
+    `unfed` are the names of the inputs of the composite that no component feeds.
     """
     ports = [one.port for one in task.template.ports]
     profile = Profile(

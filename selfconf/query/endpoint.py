@@ -1,6 +1,6 @@
 """A SPARQL 1.1 endpoint, asked over HTTP: an Oxigraph server, a Fuseki, whatever holds the ecology.
 
-No redirect is followed: a POST loses its query on the way, and no server chooses whom else this machine talks to.
+No redirect is followed: a POST loses its query on the way, and no server chooses with what else this machine talks.
 Whatever else goes wrong between here and there is a NetworkError, also an answer that breaks off or is none.
 """
 

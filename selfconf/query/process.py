@@ -48,7 +48,7 @@ class Question:
     memory: int = MEMORY
     seconds: float = ANSWER_SECONDS
     endpoint: str | None = None
-    """Who is asked; without it the dataset."""
+    """The endpoint that is asked; without it the dataset."""
 
 
 class Shown(NamedTuple):

@@ -143,7 +143,7 @@ def test_an_optional_input_that_nobody_feeds_is_fed_to_nobody_inside(
     if player is None:
         assert isinstance(inside, str)
         assert inside.startswith("its inside cannot be configured now: the input 'h' (Hint) of a cannot be fed")
-        assert inside.endswith("; nobody feeds its optional input 'hint'")
+        assert inside.endswith("; no component feeds its optional input 'hint'")
     else:
         assert isinstance(inside, Configuration)
         assert inside.components == (iri(player),)

@@ -2,7 +2,7 @@
 
 An action is three services and two topics (the design "Actions" of ROS 2). A goal is sent under a UUID of its own; once
 the server has accepted it, its result is asked for, which the server answers when the goal has come to an end. A goal
-that nobody waits for any more is cancelled: its caller has waited long enough or is connected no more, the node is
+that no caller waits for any more is cancelled: its caller has waited long enough or is connected no more, the node is
 stopped, or the time of the action is over. The feedback of all goals of an action is an output of its node. The topic
 of the states of goals says nothing that is not answered as well.
 
@@ -28,7 +28,7 @@ from selfconf.ros_services import CANCEL_GOAL
 from selfconf.sdk import Refused, Signal
 
 ACTION_SECONDS = 3600.0
-"""How long a goal may take; whoever calls an operation that is an action may wait for less."""
+"""How long a goal may take; a caller of an operation that is an action may wait for less."""
 PART = "/_action/"
 """What stands between the name of an action and those of its services and topics."""
 SUCCEEDED = 4

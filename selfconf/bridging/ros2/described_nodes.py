@@ -119,7 +119,7 @@ def described_node(token: RosToken, ports: NodePorts, ledger: ImportLedger | Non
 
 
 def _no_qualities(_: RosQuality) -> tuple[tuple[str, str], ...]:
-    """A service is reliable by being one; nobody chooses by the quality of it."""
+    """A service is reliable by being one; no client chooses by the quality of it."""
     return ()
 
 

@@ -17,11 +17,11 @@ from selfconf.bus.port import Bus, Replies
 BRIDGE_NODE = "selfconf_bridge"
 """The name of the node as which a bridge is seen in ROS 2."""
 MOST_SENTENCES = 5000
-"""How many different complaints are told; what causes them may have any number of names."""
+"""How many different complaints are reported; what causes them may have any number of names."""
 
 
 class OwnPublisher(NamedTuple):
-    """As whom the bridge publishes on a topic or calls a service, and the numbers of its messages."""
+    """The identity under which the bridge publishes on a topic or calls a service, and the numbers of its messages."""
 
     identifier: bytes
     numbers: itertools.count[int]
@@ -48,7 +48,7 @@ class RosDomain:
         self._lock = threading.Lock()
 
     def sources(self, key: str) -> TopicSources:
-        """Who publishes on the key of a topic."""
+        """The publishers on the key of a topic."""
         with self._lock:
             return self._topics.setdefault(key, TopicSources())
 
@@ -63,7 +63,7 @@ class RosDomain:
         return bool(self._servers.get(key))
 
     def own(self, key: str) -> OwnPublisher:
-        """As whom the bridge publishes on the key of a topic, or calls a service, for as long as it is there."""
+        """The identity under which the bridge publishes on a topic, or calls a service, for as long as it is there."""
         with self._lock:
             return self._own.setdefault(key, OwnPublisher(secrets.token_bytes(16), itertools.count(1)))
 

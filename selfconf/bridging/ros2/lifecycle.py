@@ -2,8 +2,8 @@
 
 The state of such a node is asked for, and changed step by step, by the services that every one of them has (the design
 "Managed nodes" of ROS 2; `lifecycle_msgs`). A transition that fails or is not answered is FAIL of the node, and so is
-one out of the active state that nobody here has asked for. A node that was active already stays so in the end. Where a
-task ends while the node is being activated, the answer to that is awaited, and the node put back then.
+one out of the active state that no component here has asked for. A node that was active already stays so in the end.
+Where a task ends while the node is being activated, the answer to that is awaited, and the node put back then.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class NodeLifecycle:
         self._activated = self._active = False
         """Whether the node was activated here; whether it is active, as far as is known."""
         self._resting = True
-        """Whether nobody wants the node to be active."""
+        """Whether no task wants the node to be active."""
         self._unfollow: Undo = lambda: None
 
     def activate(self) -> None:

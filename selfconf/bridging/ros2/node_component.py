@@ -161,7 +161,7 @@ class NodeComponent(Component):
         return None if said.topic == place_of(self._domain.number, endpoint) else signal.value
 
     def _relay_to(self, endpoint: RosEndpoint) -> RelayedTopic:
-        """Declare in ROS 2 that the bridge publishes on the topic of an input, as whoever is subscribed asks for."""
+        """Declare in ROS 2 that the bridge publishes on the topic of an input, as its subscriber asks for."""
         bus, key = self._domain.bus, endpoint.key(self._domain.number)
         token = bridge_token(self._domain, PUBLISHER, endpoint)
         # Like rmw_zenoh: only where everything is kept does a publisher wait for a network that is short of room.

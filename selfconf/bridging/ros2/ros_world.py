@@ -72,7 +72,7 @@ class RosWorld:
 
     def open(self, bridge: Bridge) -> None:
         """Begin to follow the tokens of the domain. Raises NetworkError."""
-        ros_messages.load()  # here it holds up nobody
+        ros_messages.load()  # here it holds up nothing
         self._bridge, self._bus = bridge, self._connect()
         self._domain = RosDomain(self._bus, self._number, bridge.complain)
         begun = threading.Event()

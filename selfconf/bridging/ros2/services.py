@@ -5,8 +5,9 @@ answered by whatever the configuration has connected to the operation that its n
 a server of the service, as itself. Requests and responses travel as CDR from node to node, as messages do; where the
 other end is no node they are objects with the fields of the `.srv` definition, if that is known.
 
-Nobody answers in place of a server that ROS 2 has: a client that finds one there is not connected to another one too. A
-call does not say which client it is of: of several clients of one service the first that is connected counts for all.
+No component answers in place of a server that ROS 2 has: a client that finds one there is not connected to another one
+too. A call does not say which client it is of: of several clients of one service the first that is connected counts for
+all.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from selfconf.ros_messages import MessageError, MessageType
 from selfconf.sdk import Component, Refused, Response, Signal
 
 SERVICE_SECONDS = 60.0
-"""How long a service may take; whoever calls an operation that it is may wait for less."""
+"""How long a service may take; a caller of an operation that it is may wait for less."""
 
 
 def call_service(domain: RosDomain, endpoint: RosEndpoint, request: Signal) -> Future[Any]:
@@ -135,7 +136,7 @@ class ServedService:
         self._declared.append(domain.bus.announce(bridge_token(domain, SERVER, endpoint).key()))
 
     def end(self) -> None:
-        """Serve no more; who waits for an answer is told so."""
+        """Serve no more; a client that waits for an answer hears that."""
         for undo in self._declared:
             undo()
         for request in list(self._open):

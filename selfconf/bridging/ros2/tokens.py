@@ -4,7 +4,7 @@
     @ros2_lv/<domain>/<session>/<node>/<entity>/MP|MS|SS|SC/<enclave>/<namespace>/<name>/<topic>/<type>/<hash>/<quality>
 
 In names a slash is written as a percent sign, and an empty name is one. (The design of rmw_zenoh, as of jazzy, kilted
-and lyrical. In humble a type has no hash, so that nobody could say whether two types are one.)
+and lyrical. In humble a type has no hash, so that no program could say whether two types are one.)
 """
 
 from __future__ import annotations

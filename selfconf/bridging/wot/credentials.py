@@ -1,4 +1,4 @@
-"""The credentials by which things let a bridge in: who it is to whom, read from a file that nobody else can read.
+"""The credentials by which things let a bridge in: a secret for each origin, from a file that no other user can read.
 
 The file is a JSON object: for each origin, such as `https://192.0.2.7:8443`, an object with what its security scheme
 needs: `username` and `password`, or `token`, or `key`. A credential goes to the origin under which it stands and to no
@@ -25,12 +25,12 @@ _USUAL_PORTS = {"http": 80, "https": 443}
 
 @immutable
 class ThingCredentials:
-    """What some origins are told, by its name; `repr` shows none of it."""
+    """The secrets of each origin, by its name; `repr` shows none of it."""
 
     by_origin: Mapping[str, Mapping[str, str]] = field(default_factory=dict, repr=False)
 
     def for_url(self, url: str) -> Mapping[str, str]:
-        """What the origin of a URL is told; nothing if the file does not speak of it."""
+        """The secrets of the origin of a URL; none if the file does not speak of it."""
         return self.by_origin.get(origin(url), {})
 
 

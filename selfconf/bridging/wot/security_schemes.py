@@ -48,7 +48,7 @@ class ProofOfIdentity:
 
 
 def proof_of_identity(name: str, definition: Any, told: Mapping[str, str], where: str) -> ProofOfIdentity | None:
-    """What the scheme of a name adds to a request to an origin that is told some credentials; None for nothing.
+    """What the scheme of a name adds to a request to an origin with some credentials; None for nothing.
 
     Raises UnusableFormError.
     """

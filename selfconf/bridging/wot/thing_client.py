@@ -1,6 +1,6 @@
 """HTTP as a bridge speaks it: bounded in time and in bytes, without redirects, cookies, proxies or compression.
 
-What a thing answers is judged here, so that whoever asks receives a value or a `ThingError`, whose text is a sentence.
+What a thing answers is judged here, so that a caller receives a value or a `ThingError`, whose text is a sentence.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The component that stands for a thing: it reads, follows, writes and calls while it is active.
 
 The code of the component itself only hands over: requests are made on the event loop of the world, so that a thing that
-takes its time holds up nobody. A request that goes wrong is FAIL, with its sentence as the reason. A call that the
+takes its time holds up no other. A request that goes wrong is FAIL, with its sentence as the reason. A call that the
 thing answers with an error of HTTP is refused, and no more: the thing is there, and does what its description says.
 """
 

@@ -2,7 +2,7 @@
 
 The feedback of an action is an output of the node that serves it; a component that calls an action may leave it unused.
 
-A subscriber that nobody publishes to waits without harm, and in most systems some do, so an input may stay unfed unless
+A subscriber without a publisher waits without harm, and in most systems some do, so an input may stay unfed unless
 the systems that have the node connect it. A client needs its operation in the same way.
 """
 

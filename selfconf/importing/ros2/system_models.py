@@ -1,4 +1,4 @@
-"""Models of ROS 2 systems (`.rossystem`): the nodes that run, the interfaces that they expose, and who is connected."""
+"""Models of ROS 2 systems (`.rossystem`): the nodes that run, the interfaces that they expose, their connections."""
 
 from __future__ import annotations
 

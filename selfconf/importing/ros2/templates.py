@@ -1,7 +1,7 @@
 """A system of ROS 2 nodes as a template: a role for each node, and an interaction for each connection.
 
 A role asks for the node that plays it in the system: by its kind, its name and the name of the system. An interaction
-names both ports, because by type alone a system has about half as many connections again that nobody meant.
+names both ports, because by type alone a system has about half as many connections again that were not meant.
 """
 
 from __future__ import annotations

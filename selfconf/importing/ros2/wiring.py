@@ -1,4 +1,4 @@
-"""Who is connected to whom in systems of ROS 2 nodes: the names in a model, resolved to interfaces of nodes.
+"""Which nodes are connected in systems of ROS 2: the names in a model, resolved to interfaces of nodes.
 
 A system may have other systems as its parts. They are flattened: their nodes are nodes of the whole, so that a
 connection of the whole may name an interface of a part, and their connections are connections of the whole.

@@ -1,7 +1,7 @@
 """The properties, events and actions of a thing as ports and operations.
 
 A property that can be read, and an event, is an output; a property that can be written is an input that may stay
-unfed, because the thing does not wait for anybody to write it; an action is an operation. The `@type`s of an
+unfed, because the thing does not wait until it is written; an action is an operation. The `@type`s of an
 affordance are its signal types. One without any is kept: an interaction can name it.
 """
 
@@ -25,8 +25,8 @@ READS, WRITES = frozenset(("readproperty", "observeproperty")), frozenset(("writ
 _UNUSED = {
     "forms": ("forms", "they say how a thing is reached, an advertisement says what it is"),
     "uriVariables": ("URI variables", "a port has none"),
-    "subscription": ("data of subscriptions and cancellations", "whoever follows an output says nothing to it"),
-    "cancellation": ("data of subscriptions and cancellations", "whoever follows an output says nothing to it"),
+    "subscription": ("data of subscriptions and cancellations", "an input that follows an output says nothing to it"),
+    "cancellation": ("data of subscriptions and cancellations", "an input that follows an output says nothing to it"),
     "dataResponse": ("responses to events", "an output hears no answer"),
 }
 """The members of affordances that have no counterpart, in words, and why not."""
