@@ -218,7 +218,7 @@ class _Reader:
         return value
 
     def called(self, s: Node) -> str:
-        """Name a subject; one without a name of its own by whoever points at it."""
+        """Name a subject; one without a name of its own by what points at it."""
         if isinstance(s, URIRef):
             return _curie(s)
         return next((f"{_curie(o)} {_curie(p)}" for o, p in self.graph.subject_predicates(s)), "a blank node")

@@ -110,7 +110,7 @@ class Stage:
 
     def serve(self) -> None:
         """Show the ecology in a browser, and wait until the page is there."""
-        # Somebody else may take the usual port between the look at it and the server's own.
+        # Another program may take the usual port between the look at it and the server's own.
         if not (self._served(_free(USUAL_PORT)) or self._served(0)):
             raise DemoError("the page cannot be served")
 
@@ -244,7 +244,7 @@ def _world_arguments(given: DemoOptions, stage: Stage, record: Path) -> list[str
 
 
 def _radio(given: DemoOptions) -> int:
-    _tell("The radio plays in the living room; then somebody pulls the plug of a speaker.")
+    _tell("The radio plays in the living room; then a person pulls the plug of a speaker.")
     sound = Path(tempfile.mkdtemp(prefix="selfconf-sound-"))
     try:
         with Crew({**given.environment, "SIM_SOUND": str(sound)}) as crew:

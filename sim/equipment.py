@@ -94,7 +94,7 @@ class AbsolutePosition(Component):
         """The simulated time of the newest pose it told."""
 
     def started(self) -> None:
-        """A pose at once: whoever follows need not wait for the next period."""
+        """A pose at once: an input that follows need not wait for the next period."""
         self.tick()
 
     def tick(self) -> None:

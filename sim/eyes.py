@@ -78,7 +78,7 @@ class StereoEye(Component):
         """What was found in it: that only the tracker knows."""
 
     def started(self) -> None:
-        """Say which camera looks: outside of the living room nobody is told."""
+        """Say which camera looks: outside of the living room only this line shows it."""
         say("eye", name=self.name, time=self._world.time)
 
     def tick(self) -> None:

@@ -38,7 +38,7 @@ def summary(account: Account) -> Iterator[str]:
 
 
 def result(account: Account) -> dict[str, Any]:
-    """The run as figures: outcome, error in metres, who failed and why, the gap and the search in seconds."""
+    """The run as figures: outcome, error in metres, what failed and why, the gap and the search in seconds."""
     assert account.end is not None
     loss = account.losses[0] if account.losses else None
     return {

@@ -13,7 +13,7 @@ from sim.geometry import Pose
 
 
 class GoalError(ValueError):
-    """A behavioural goal that nobody could pursue: whoever set it can mend it. `goal` is its text."""
+    """A behavioural goal that no component could pursue: the author of the task can mend it. `goal` is its text."""
 
     def __init__(self, goal: str, reason: str) -> None:
         super().__init__(goal, reason)

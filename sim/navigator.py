@@ -1,6 +1,6 @@
 """The Thinking Cap: a navigator that takes a behavioural goal and lives on pose messages.
 
-Each pose message is answered with one decision, so that nobody's poses means nobody's set-points. The
+Each pose message is answered with one decision, so that without poses there are no set-points. The
 pose is smoothed with the odometry; the way to the goal is planned from there through the apartment; the
 navigator heads for a point a little ahead on that way (pure pursuit), turned aside by what the sonars
 hear.

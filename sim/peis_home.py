@@ -5,10 +5,10 @@
 One thread owns PyBullet and calls the components. Each control period of 0.1 s of simulated time the sensors look,
 the components hear what has arrived, and the physics goes on. In real time the period ends by the clock. With
 `--speed max` it ends as soon as the drive has answered the newest pose, or after `PATIENCE` seconds of real time if
-nobody answers, so that the run is fast while somebody navigates and real time while the configurator works.
+it does not answer, so that the run is fast while Astrid navigates and real time while the configurator works.
 
 It ends when Astrid has stood still at a place long enough to have arrived, when simulated time is up, or when
-it is told to. What happened goes to stdout, a line of JSON for each event, and in full to the record.
+it is asked to. What happened goes to stdout, a line of JSON for each event, and in full to the record.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class PeisHome:
         self._began = time.monotonic()
 
     def run(self, seconds: float) -> str:
-        """Let time pass until she has arrived, time is up or it is told to end; which of these."""
+        """Let time pass until she has arrived, time is up or it is asked to end; which of these."""
         while not self.told():
             self._sense()
             self._wait()

@@ -10,7 +10,7 @@ from sim.geometry import Pose, wrap
 class Progress:
     """Watches whether driving gets anywhere: `patience` and `hope` are seconds.
 
-    Stuck is who does not move for as long as the patience lasts, and who moves, but comes no nearer for
+    A robot is stuck that does not move for as long as the patience lasts, or moves, but comes no nearer for
     as long as the hope lasts. A pause without poses starts both anew.
     """
 

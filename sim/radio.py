@@ -26,7 +26,7 @@ STATIONS: dict[str, tuple[int | None, ...]] = {"94.3": ODE_TO_JOY, "101.9": FRER
 
 
 class StationError(ValueError):
-    """Nobody broadcasts there: whoever tuned the radio can mend it. `station` is what was asked for."""
+    """No station broadcasts there: the author of the task can mend it. `station` is what was asked for."""
 
     def __init__(self, station: str) -> None:
         super().__init__(station)

@@ -1,7 +1,7 @@
 """The radio as programs: `python -m sim.radio_set tuner`, `python -m sim.radio_set left-speaker` and so on.
 
 A speaker writes what it plays to `$SIM_SOUND/NAME.wav`, if that is set, when it is turned off. SIGUSR1 pulls its plug:
-it notices, and raises FAIL. For whoever measures a run it writes a line of JSON when it begins and ends to play.
+it notices, and raises FAIL. For measurements of a run it writes a line of JSON when it begins and ends to play.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class RadioTuner(Component):
         self.every(CHUNK / RATE, self._send)
 
     def parameter_set(self, name: str, value: Any) -> None:
-        """Take a station; refuse one that nobody broadcasts on."""
+        """Take a station; refuse one that no station broadcasts on."""
         try:
             self._tuner = Tuner(str(value))
         except StationError as error:
@@ -53,7 +53,7 @@ class RadioSpeaker(Component):
     def __init__(self) -> None:
         self._speaker = Speaker()
         self._playing = False
-        signal.signal(signal.SIGUSR1, lambda _, __: self.fail("somebody has pulled the plug"))
+        signal.signal(signal.SIGUSR1, lambda _, __: self.fail("a person has pulled the plug"))
 
     def started(self) -> None:
         """Plugged in again, and silent so far."""
@@ -68,7 +68,7 @@ class RadioSpeaker(Component):
             say("plays", speaker=self.name, process=os.getpid())
 
     def stopped(self) -> None:
-        """Silence; what was played is written to a file if somebody wants it."""
+        """Silence; what was played is written to a file if the environment names one."""
         if self._playing:
             seconds, level = round(self._speaker.seconds, 1), round(self._speaker.level, 3)
             say("silent", speaker=self.name, process=os.getpid(), seconds=seconds, level=level)

@@ -68,7 +68,7 @@ class RouteMap:
     def _sees(self, a: Spot, b: Spot) -> bool:
         for obstacle in self._obstacles:
             here, there = obstacle.local(a), obstacle.local(b)
-            # Who stands closer to something than the clearance may leave it, but not come closer.
+            # A robot closer to something than the clearance may leave it, but not come closer.
             margin = min(self._clearance, obstacle.gap(here), obstacle.gap(there)) - 1e-6
             if obstacle.meets(here, there, margin):
                 return False

@@ -1,4 +1,4 @@
-"""What the programs of a scene tell whoever runs it: a line of JSON on stdout for each event."""
+"""What the programs of a scene report to the one that runs it: a line of JSON on stdout for each event."""
 
 from __future__ import annotations
 

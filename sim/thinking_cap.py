@@ -1,7 +1,7 @@
 """The Thinking Cap as a program: a reactive navigator that takes a behavioural goal and drives by poses.
 
-It answers each pose with a set-point, so that it falls silent when poses cease, and the drive then stops. For whoever
-measures a run it writes one line of JSON to stdout when the first pose of a new source arrives.
+It answers each pose with a set-point, so that it falls silent when poses cease, and the drive then stops. For
+measurements of a run it writes one line of JSON to stdout when the first pose of a new source arrives.
 """
 
 from __future__ import annotations

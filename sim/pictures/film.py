@@ -119,7 +119,7 @@ def _feather(shape: tuple[int, int]) -> Array:
 
 
 def _captioned(scene: Image.Image, view: Viewpoint, run: RunRecord, moment: Moment) -> Image.Image:
-    """Return the frame with a caption below: who supplies the pose, or what failed, and the time."""
+    """Return the frame with a caption below: what supplies the pose, or what failed, and the time."""
     frame = Image.new("RGB", (scene.width, scene.height + CAPTION), PAPER)
     frame.paste(scene, (0, 0))
     root = document(*frame.size)

@@ -1,4 +1,4 @@
-"""What is known of a finished run: where the robot was, who told it so, and what failed."""
+"""What is known of a finished run: where the robot was, by which component it knew that, and what failed."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Supply:
 
 @dataclass(frozen=True)
 class Failure:
-    """A FAIL: when and where the robot was, who raised it, and why, in plain words."""
+    """A FAIL: when and where the robot was, which component raised it, and why, in plain words."""
 
     time: float
     x: float

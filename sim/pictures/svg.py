@@ -60,7 +60,7 @@ def shortened(text: str, style: Style, room: float) -> str:
 
 
 def document(wide: float, high: float, title: str = "") -> Element:
-    """Return an empty SVG document; its title is its name for those who cannot see it."""
+    """Return an empty SVG document; its title is its name for people that cannot see it."""
     size: Attributes = {"width": wide, "height": high, "viewBox": f"0 0 {number(wide)} {number(high)}", "role": "img"}
     root = Element("svg", {"xmlns": "http://www.w3.org/2000/svg"} | {key: number(size[key]) for key in size})
     if title:

@@ -217,7 +217,7 @@ def test_a_speaker_that_fails_is_replaced_and_a_browser_shows_it(
         page = browser.page(demo[0].page())
         page.value(WITNESS.format(replaced="-speaker", by="shelf-speaker"))
         demo[0].until("the page shows what has happened")
-        assert_seen(page, "somebody has pulled the plug")
+        assert_seen(page, "a person has pulled the plug")
         page.click("tuner")
         page.says(".log", "for looking on only" if keys else "started as process")
         demo[0].process.send_signal(signal.SIGINT)
