@@ -10,10 +10,10 @@
     else:
         print(answer.reasons, answer.near_misses, answer.repairs)
 
-`read` reads an ecology, `template` a task, `configure` answers it, `partition` shows who is eligible, `validate` checks
-files, `join` joins the living ecology, and `sites` lists those of this machine. `selfconf.values` has the types of what
-they answer with, as `PartitionTable` and the events of a run. A component is written with `selfconf.sdk` and tried
-without a network by `selfconf.testing`.
+`read` reads an ecology, `template` a task, `configure` answers it, `partition` shows what is eligible, `validate`
+checks files, `join` joins the living ecology, and `sites` lists those of this machine. `selfconf.values` has the types
+of what they answer with, as `PartitionTable` and the events of a run. A component is written with `selfconf.sdk` and
+tried without a network by `selfconf.testing`.
 """
 
 from importlib import import_module

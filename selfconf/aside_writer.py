@@ -25,7 +25,7 @@ _Piece = TypeVar("_Piece")
 
 
 class AsideWriter(Generic[_Piece]):
-    """Writes pieces in their order; its methods may be called from any thread, and wait for nobody but at the end."""
+    """Writes pieces in their order; its methods may be called from any thread, and wait only at the end."""
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class AsideWriter(Generic[_Piece]):
 
     def _run(self) -> None:
         while (piece := self._waiting.get()) is not None:
-            with contextlib.suppress(OSError):  # nobody reads it any more
+            with contextlib.suppress(OSError):  # its reader has gone
                 self._write(piece)
 
 
@@ -94,7 +94,7 @@ def write_line(text: str) -> None:
 
 
 class AsideHandler(logging.Handler):
-    """A handler of logs that writes lines to stderr, and makes nobody wait for that."""
+    """A handler of logs that writes lines to stderr, and makes no thread wait for that."""
 
     def __init__(self, form: str) -> None:
         """`form` is how a line looks, as `logging.Formatter` has it."""
@@ -106,7 +106,7 @@ class AsideHandler(logging.Handler):
         """Have a record written soon."""
         try:
             self._writer.put(self.format(record))
-        except Exception:  # as other handlers do: what cannot be worded breaks nobody's work
+        except Exception:  # as other handlers do: what cannot be worded breaks no work
             self.handleError(record)
 
     def close(self) -> None:

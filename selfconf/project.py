@@ -1,4 +1,4 @@
-"""The project file `selfconf.toml`: what the commands need not be told each time that they are typed in a project.
+"""The project file `selfconf.toml`: what need not be typed with each command in a project.
 
 It is looked for upward from the current folder, as other tools look for theirs. Each key is the option of that name
 (`--ecology`, `--ads` and so on); what is typed goes before what the environment says, and that before the file.

@@ -4,7 +4,7 @@ Across machines endpoints are given (`--connect`, or `SELFCONF_CONNECT`); on one
 writes a small file into the user's runtime folder. A file whose process is gone is passed over, and removed.
 
 One site of an ecology on a machine relays, on a port that follows from the ecology's name; all others are its clients
-(`selfconf.api.joining`). So whoever knows the name knows where to look for one that takes its place.
+(`selfconf.api.joining`). So a program that knows the name knows where to look for one that takes its place.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def runtime_folder() -> Path:
 
 
 def log_folder() -> Path:
-    """Where the sites of this user keep what their components print, unless they are told otherwise."""
+    """Where the sites of this user keep what their components print, unless an option says otherwise."""
     return runtime_folder() / "log"
 
 
@@ -157,7 +157,7 @@ class ClaimedName:
         """Let others have the name; may be called again."""
         file, self._file = self._file, None
         if file is not None:
-            Path(file.name).unlink(missing_ok=True)  # while it is locked, so that it is nobody else's
+            Path(file.name).unlink(missing_ok=True)  # while it is locked, so that no other program has it
             file.close()
 
 
@@ -260,7 +260,7 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
 
 
 def environment(ecology: str, endpoint: str, ontologies: Sequence[Path] = ()) -> dict[str, str]:
-    """The variables by which a program that is started finds an ecology, and the ontologies of who starts it."""
+    """The variables by which a program that is started finds an ecology, and the ontologies of its parent."""
     found = {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
     return {**found, ONTOLOGY_VARIABLE: os.pathsep.join(str(path.resolve()) for path in ontologies)}
 

@@ -128,7 +128,7 @@ class Termination:
     def __init__(
         self, bus: Bus, then: Callable[[], None] | None = None, told: Callable[[], None] = lambda: None
     ) -> None:
-        """`told` wakes whoever waits for the end, and is called where a signal is noticed, or on the bus's thread."""
+        """`told` wakes what waits for the end, and is called where a signal is noticed, or on the bus's thread."""
         self._bus, self._then, self._told, self._ending = bus, then, told, False
         self._parent = os.getppid()
         for number in ending_signals():
