@@ -34,6 +34,7 @@ def test_no_history_of_upgrades_breaks_an_invariant(batch: int, folder: Path) ->
     [
         pytest.param(36, id="what stood by has just issued a signal for another task"),
         pytest.param(138, id="the better actuator crashes as it is to act, and the task dismantles on failures"),
+        pytest.param(316, id="a task of higher priority asks meanwhile for what runs"),
         pytest.param(150, id="the better source hangs as it starts, and the task dismantles on failures"),
     ],
 )

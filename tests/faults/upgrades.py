@@ -152,9 +152,8 @@ class UpgradeWatch:
             return
         acting = {life.runtime.life for life in self._acting(agent, going.before) if self._is_fed(life)}
         going.acting = {name: one for name, one in going.acting.items() if name in acting}
-        going.suffered = going.suffered or not {*going.before.components} <= {
-            life.component for life, _ in going.acting.values()
-        }
+        well = {life.component for life, _ in going.acting.values()} - state.lost.keys()  # one may be asked to yield
+        going.suffered = going.suffered or not well.issuperset(going.before.components)
         for life, _ in going.acting.values():
             self._look_at_inputs(life, going)
         if state.fallback is None and state.phase not in (Phase.RESERVING, Phase.DEPLOYING):
