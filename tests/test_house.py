@@ -48,6 +48,20 @@ def test_a_function_with_many_branches_needs_a_comment(tmp_path: Path, monkeypat
     assert survey.complex_functions() == {"selfconf/a.py::bare": "17"}
 
 
+def test_a_component_is_not_spoken_of_as_a_person(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "selfconf").mkdir()
+    (tmp_path / "selfconf" / "a.py").write_text(
+        '"""No component, and a person.\n\nWhoever is told\nso."""\nx = 1  # nobody\n'
+    )
+    (tmp_path / "selfconf" / "b.js").write_text("// The task that holds it.\n")
+    monkeypatch.setattr(survey, "ROOT", tmp_path)
+    assert survey.persons_for_parts() == {
+        "selfconf/a.py::whoever": "line 3",
+        "selfconf/a.py::is told": "line 3",
+        "selfconf/a.py::nobody": "line 5",
+    }
+
+
 def test_classes_functions_and_constants_are_names_and_imports_are_not() -> None:
     text = "from x import y\nA = 1\nB: int = 2\nclass C: ...\ndef d(): ...\n_e = 3\nif A:\n    f = 1\n"
     assert list(survey.public_names(ast.parse(text))) == ["A", "B", "C", "d"]

@@ -305,7 +305,7 @@ class LinePrinter:
                 self._report(event)
             except OSError as error:  # the reader of the lines is gone, or the disk is full: end rather than run unseen
                 silence(self._stream)
-                if isinstance(error, BrokenPipeError):  # whoever has gone may have read both
+                if isinstance(error, BrokenPipeError):  # the reader that has gone may have read both
                     silence(sys.stderr)
                 else:
                     self.trouble = error
