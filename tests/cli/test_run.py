@@ -210,6 +210,13 @@ def test_a_run_has_one_ecology(home: Home) -> None:
     assert "--ads and --endpoint are two ecologies" in run.complaints
 
 
+def test_an_empty_name_is_no_name_of_a_task(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    (tmp_path / "navigate.ttl").write_text(NAVIGATE)
+    for more in ([], ["--detach"]):
+        outcome = command.run(capsys, "run", str(tmp_path / "navigate.ttl"), "--name", "", *more)
+        assert outcome.is_one_sentence("'' is no name of a task", "leave the option out")
+
+
 def test_no_peer_is_one_sentence_and_exit_code_2(home: Home) -> None:
     run = home.run()
     assert run.ended() == 2
