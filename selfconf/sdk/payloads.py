@@ -13,7 +13,7 @@ import math
 import sys
 from functools import cache
 from types import ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 from selfconf.protocol.messages import SignalEncoding
 from selfconf.protocol.stamps import PLAIN
@@ -40,7 +40,24 @@ _SAME = {"l": "q", "n": "q", "L": "Q", "N": "Q"}
 LARGEST_JSON = 1 << 22
 """Bytes of a signal of JSON at most: read, it takes up to fifty times that memory. Arrays and bytes may be larger."""
 _OF_JSON = (dict, list, str, int, float)
-_WRITER = json.JSONEncoder(separators=(",", ":"), allow_nan=False)
+
+
+def _unsayable(value: object) -> NoReturn:
+    """Say why JSON has no such value. Raises TypeError.
+
+    A number of NumPy, and its array without dimensions, look like numbers of Python and are none.
+    """
+    kind = type(value).__name__
+    try:
+        single = memoryview(value).ndim == 0  # type: ignore[arg-type]  # whether it has a buffer is the question
+    except (TypeError, ValueError):
+        single = False
+    if single:
+        raise TypeError(f"a single element of type {kind} is no number of Python, and `.item()` makes one of it")
+    raise TypeError(f"an object of type {kind} is nothing of JSON")
+
+
+_WRITER = json.JSONEncoder(separators=(",", ":"), allow_nan=False, default=_unsayable)
 """One for all signals: `json.dumps` makes one for each, which takes a third of the time of a small signal."""
 
 

@@ -33,6 +33,15 @@ def test_everything_else_is_a_value_of_json(value: Any) -> None:
     assert as_bytes(value) is None
 
 
+@pytest.mark.parametrize("value", [numpy.array(2.5), numpy.int64(1), numpy.bool_(True), {"x": numpy.array(1)}])
+def test_a_single_element_of_an_array_is_refused_with_what_makes_a_number_of_it(value: Any) -> None:
+    assert as_bytes(value) is None
+    single = value["x"] if isinstance(value, dict) else value
+    with pytest.raises(UnsayableError, match=rf"type {type(single).__name__} .* `\.item\(\)` makes one of it"):
+        as_json(value)
+    assert as_json(single.item())
+
+
 @pytest.mark.parametrize("value", [object(), float("nan"), numpy.float32(1), {1: {2}}])
 def test_what_json_cannot_say_is_refused(value: Any) -> None:
     with pytest.raises(UnsayableError):
