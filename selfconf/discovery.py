@@ -80,6 +80,11 @@ class Discovery:
     complaints: list[str] = field(default_factory=list)
     """What was left out, and why, in sentences."""
 
+    def name_of_site(self, found: FoundAdvertisement) -> str:
+        """What the site of an advertisement is called in `sites`: with its life, where another has its name as well."""
+        named = _name_with_life(found.site, found.site_life)
+        return named if named in self.sites else found.site
+
 
 Beliefs = Callable[[], Mapping[IRI, str]]
 """Whose a component is that several sites advertise, by their names, as far as somebody has said so."""
@@ -495,6 +500,10 @@ def _few(complaints: list[str], whose: str) -> list[str]:
     return complaints if more <= 0 else [*complaints[:MOST_COMPLAINTS], f"left out {more} further answers {whose}"]
 
 
+def _name_with_life(name: str, life: str) -> str:
+    return f"{name} ({life or 'no life given'})"
+
+
 class _Names:
     """What sites are called in lists: by their names, and by their lives where several have one name."""
 
@@ -506,7 +515,7 @@ class _Names:
     def of(self, site: SiteLife) -> str:
         """The name of a site that tells it from all others."""
         name, life = site
-        return name if len(self._lives.get(name, ())) < 2 else f"{name} ({life or 'no life given'})"
+        return name if len(self._lives.get(name, ())) < 2 else _name_with_life(name, life)
 
     def complaints(self) -> list[str]:
         """A sentence for each name that several sites have."""

@@ -24,6 +24,7 @@ class ComponentState(NamedTuple):
     component: IRI
     types: tuple[IRI, ...]
     site: str
+    """Its site; where several have one name, with the life of the site."""
     state: str
     """`alive`, `dormant` or `absent`, as `LivingEcology.state` says it."""
     active: bool = False
@@ -83,12 +84,13 @@ def component_states(discovery: Discovery, keys: Keys, replies: Replies) -> Iter
     for component, found in sorted(discovery.found.items()):
         types = tuple(sorted(found.advertisement.profile.types - {SC.Component}))
         state = "dormant" if found.startable else "absent"
-        one = ComponentState(component, types, found.site, state, reason=found.unable)
+        site = discovery.name_of_site(found)
+        one = ComponentState(component, types, site, state, reason=found.unable)
         heard = answers.get(component)
         if heard is not None:
             task = task_name(heard.task)
             told = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.life
-            one = ComponentState(component, types, found.site, "alive", *told, stopping=heard.stopping)
+            one = ComponentState(component, types, site, "alive", *told, stopping=heard.stopping)
         yield one
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from selfconf.api.component_states import ComponentState, component_states, issue_rates
 from selfconf.bus.port import Replies, Sample
 from selfconf.discovery import Discovery, FoundAdvertisement
@@ -41,6 +43,16 @@ def test_what_a_component_says_is_its_state_and_the_others_are_dormant_or_absent
     )
     assert (found[LAMP].state, found[LAMP].life, found[LAMP].age) == ("dormant", "", 0.0)
     assert states()[CLOCK].state == "absent"
+
+
+def test_of_two_sites_of_one_name_each_component_names_its_own() -> None:
+    lives = {CLOCK: "1", LAMP: "2"}
+    found = {component: replace(one, site_life=lives[component]) for component, one in FOUND.items()}
+    replies = Replies((answer(CLOCK),))
+    both = {one.component: one for one in component_states(Discovery(found, ("home (1)", "home (2)")), KEYS, replies)}
+    assert {component: one.site for component, one in both.items()} == {CLOCK: "home (1)", LAMP: "home (2)"}
+    assert both[LAMP].body()["site"] == "home (2)"
+    assert {one.site for one in component_states(Discovery(found, ("home",)), KEYS, replies)} == {"home"}
 
 
 def test_a_component_that_has_not_come_to_rest_is_shown_as_stopping() -> None:
