@@ -97,6 +97,8 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     """The properties of the cost for which no component of the ecology has a number."""
     what_if: tuple[Consequence, ...] | None = field(default=None, kw_only=True, repr=False, compare=False)
     """What would replace each component if it failed, where that was asked for and there was time."""
+    left_out: tuple[LeftOut, ...] = field(default=(), kw_only=True, repr=False, compare=False)
+    """The components that count for nothing, as what they say cannot be judged, or not in time."""
 
     @classmethod
     def of(
@@ -106,10 +108,11 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
         optimum: Optimum | None = None,
         unknown: tuple[IRI, ...] = (),
         what_if: tuple[Consequence, ...] | None = None,
+        left_out: tuple[LeftOut, ...] = (),
     ) -> Answer:
         """A configuration of a task as an answer to it."""
         facts = {one.name: getattr(configuration, one.name) for one in fields(Configuration)}
-        return cls(**facts, task=task, optimum=optimum, unknown=unknown, what_if=what_if)
+        return cls(**facts, task=task, optimum=optimum, unknown=unknown, what_if=what_if, left_out=left_out)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bindings", FrozenMapping(self.bindings))
@@ -216,7 +219,7 @@ class Inquiry:
         self.composer = method.composer(self.task)
         partitioner = self.composer.partitioner
         wider = (method.wider() if ecology.remote else None) or partitioner.hierarchy
-        self.ecology = ecology.for_task(partitioner, wider)
+        self.ecology, not_read = ecology.for_task(partitioner, wider)
         priority = self.task.document.task.priority
         held = {c: holder for c, holder in ecology.holders().items() if holder.priority >= priority}
         self._sharers = {c: held[c] for c in held if c in self.ecology and self.ecology[c].profile.is_shareable}
@@ -235,12 +238,12 @@ class Inquiry:
             for role, candidates in zip(self.task.roles, partition.candidates, strict=True)
         }
         """How many components are eligible for each role."""
-        self.left_out = tuple(
-            LeftOut(self._place(component), component, why.reason)
-            for component, why in sorted(self.composer.not_judged().items())
+        not_judged = sorted(self.composer.not_judged().items())
+        self.left_out: tuple[LeftOut, ...] = (
+            *not_read,
+            *(LeftOut(self._place(component), component, why.reason) for component, why in not_judged),
         )
         """The components that play no role, or feed nothing, as what they say cannot be judged, or not in time."""
-        ecology.note_not_judged(self.left_out)
 
     def _place(self, component: IRI) -> Place:
         """Where a component is described."""
@@ -263,11 +266,11 @@ class Inquiry:
             found = self._composed(limit)
         self.seconds["search"] = time.perf_counter() - began
         if isinstance(found, Undecided):
-            return found
+            return replace(found, left_out=self.left_out)
         if isinstance(found, Refusal):
             free = {c: one for c, one in self.ecology.items() if c not in self.holders}
             usable = self.composer.usable(self.holders.keys(), found)
-            found = replace(found.told_of_held(usable), held=self._held(usable, limit))
+            found = replace(found.told_of_held(usable), held=self._held(usable, limit), left_out=self.left_out)
             return refusal_with_places(self.composer, free if self.holders else self.ecology, found, self.method, limit)
         optimum = found if isinstance(found, Optimum) else None
         plain = found.configuration if isinstance(found, Optimum) else found
@@ -278,6 +281,7 @@ class Inquiry:
             optimum,
             unknown=() if optimum is None else self._unknown(optimum),
             what_if=None if consequences is None else tuple(consequences),
+            left_out=self.left_out,
         )
 
     def _composed(self, limit: TimeLimit) -> Optimum | Outcome:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, BlankNode, Literal, Term
@@ -26,11 +27,15 @@ if TYPE_CHECKING:
     from selfconf.query import Question, Shown
 
 
+@immutable
 class Components(Tabular, Mapping[IRI, Profile]):
     """The components of an ecology by IRI, each with its profile; prints as a table."""
 
-    def __init__(self, advertisements: Mapping[IRI, Advertisement]) -> None:
-        self._advertisements = advertisements
+    _advertisements: Mapping[IRI, Advertisement]
+    __repr__ = Tabular.__repr__
+
+    def __eq__(self, other: object) -> bool:
+        return Mapping.__eq__(self, other)  # as any mapping is
 
     def __getitem__(self, component: IRI) -> Profile:
         return self._advertisements[component].profile
@@ -54,12 +59,14 @@ class Components(Tabular, Mapping[IRI, Profile]):
             ]
 
 
+@immutable
 class Solutions(Tabular, Sequence[Mapping[str, Term]]):
     """The solutions of a SELECT query, each the values of its variables by name; prints as a table."""
 
-    def __init__(self, variables: Sequence[str], rows: Sequence[Mapping[str, Term]], cut: bool = False) -> None:
-        self.variables, self._rows, self.cut = tuple(variables), rows, cut
-        """`cut` tells that there are more solutions than were asked for."""
+    variables: tuple[str, ...]
+    _rows: tuple[Mapping[str, Term], ...]
+    cut: bool = False
+    """Whether there are more solutions than were asked for."""
 
     def __getitem__(self, number: Any) -> Any:
         return self._rows[number]
@@ -74,7 +81,7 @@ class Solutions(Tabular, Sequence[Mapping[str, Term]]):
         return ([short(row[name]) if name in row else "" for name in self.variables] for row in self._rows)
 
     def __repr__(self) -> str:
-        return super().__repr__() if self.variables else count(len(self), "solution")
+        return Tabular.__repr__(self) if self.variables else count(len(self), "solution")
 
 
 class Ecology(ABC):
@@ -88,21 +95,16 @@ class Ecology(ABC):
     """
 
     _left_out: tuple[LeftOut, ...] = ()
-    _not_judged: tuple[LeftOut, ...] = ()
     _complaints: tuple[str, ...] = ()
-    remote = False
+    remote: ClassVar[bool] = False
     """Whether only what a task may want is fetched."""
-    read_seconds = 0.0
+    read_seconds: float = 0.0
     """How long its advertisements took to be read, where that was before any task."""
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
-        """The advertisements that do not count, and why; last those that the last question could not judge."""
-        return (*self._left_out, *self._not_judged)
-
-    def note_not_judged(self, left_out: tuple[LeftOut, ...]) -> None:
-        """Keep what a question has found that it cannot judge, or not in time, in place of that of the one before."""
-        self._not_judged = left_out
+        """The advertisements that do not count, and why; an answer has those that its question could not judge."""
+        return self._left_out
 
     @property
     def complaints(self) -> tuple[str, ...]:
@@ -126,9 +128,14 @@ class Ecology(ABC):
     def advertisements(self) -> Mapping[IRI, Advertisement]:
         """All advertisements by component."""
 
-    def for_task(self, partitioner: Partitioner, wider: Hierarchy) -> Mapping[IRI, Advertisement]:
-        """The advertisements among which a task looks for components; `wider` is the widest hierarchy it may see."""
-        return self.advertisements()
+    def for_task(
+        self, partitioner: Partitioner, wider: Hierarchy
+    ) -> tuple[Mapping[IRI, Advertisement], tuple[LeftOut, ...]]:
+        """The advertisements among which a task looks for components, and those of its question that do not count.
+
+        `wider` is the widest hierarchy that the task may see.
+        """
+        return self.advertisements(), ()
 
     def dataset(self) -> Dataset:
         """The ecology as RDF, one named graph for each advertisement."""
@@ -156,8 +163,8 @@ class Ecology(ABC):
             return self.asked(replace(question, form="turtle")).text
         if "boolean" in body:
             return bool(body["boolean"])
-        found = [{name: _term(cell) for name, cell in row.items()} for row in body["results"]["bindings"]]
-        return Solutions(body["head"]["vars"], found, shown.cut)
+        found = ({name: _term(cell) for name, cell in row.items()} for row in body["results"]["bindings"])
+        return Solutions(tuple(body["head"]["vars"]), tuple(map(FrozenMapping, found)), shown.cut)
 
     def asked(self, question: Question) -> Shown:
         """The answer to a question as text, in the format that it asks for."""
@@ -178,13 +185,21 @@ class Ecology(ABC):
         return self.components._repr_html_()
 
 
+@immutable
 class LoadedEcology(Ecology):
     """An ecology whose advertisements were read from files, text or graphs."""
 
-    def __init__(
-        self, index: AdvertisementIndex, left_out: tuple[LeftOut, ...] = (), names: Iterable[str] = ()
-    ) -> None:
-        self._index, self._left_out, self.names = index, left_out, tuple(names)
+    _index: AdvertisementIndex
+    _left_out: tuple[LeftOut, ...] = ()
+    names: tuple[str, ...] = ()
+    """What it was read from."""
+    read_seconds: float = 0.0
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    def __hash__(self) -> int:
+        return id(self)
 
     def advertisements(self) -> AdvertisementIndex:
         """All advertisements by component, and by the types of the components."""
@@ -195,25 +210,25 @@ class LoadedEcology(Ecology):
         return plain(f"<ecology of {count(len(self), 'component')}{origin}>")
 
 
+@immutable
 class EndpointEcology(Ecology):
     """An ecology behind a SPARQL endpoint: it is asked for what a task may want, and for nothing else."""
 
-    remote = True
-
-    def __init__(self, url: str) -> None:
-        self.url = url
+    url: str
+    remote: ClassVar[bool] = True
 
     def advertisements(self) -> Mapping[IRI, Advertisement]:
         """Raises ProgrammerError: an endpoint may hold a million of them; ask it by `query`."""
         raise ProgrammerError(f"the ecology at {self.url} is not loaded as a whole; ask it by query()")
 
-    def for_task(self, partitioner: Partitioner, wider: Hierarchy) -> Mapping[IRI, Advertisement]:
+    def for_task(
+        self, partitioner: Partitioner, wider: Hierarchy
+    ) -> tuple[Mapping[IRI, Advertisement], tuple[LeftOut, ...]]:
         """The advertisements of the components that some role of a task may want. Raises NetworkError."""
         from selfconf.query import read_endpoint
 
         found, left_out = read_endpoint(self.url, (*partitioner.roles, *partitioner.suppliers.values()), wider)
-        self._left_out = tuple(left_out)
-        return found
+        return found, tuple(left_out)
 
     def asked(self, question: Question) -> Shown:
         """The answer of the endpoint as text."""

@@ -13,12 +13,15 @@ from selfconf.api.answer import Method
 from selfconf.api.ecology import EndpointEcology
 from selfconf.api.task import TaskSpecification
 from selfconf.errors import AuthorError
+from selfconf.model.left_out import LeftOut
 from selfconf.rdf.turtle import to_turtle
 
 
 @contextmanager
-def endpoint_files(ecology: EndpointEcology, task: TaskSpecification, method: Method) -> Iterator[Path]:
-    """A folder with the advertisements of an endpoint that a task may want, while the block runs.
+def endpoint_files(
+    ecology: EndpointEcology, task: TaskSpecification, method: Method
+) -> Iterator[tuple[Path, tuple[LeftOut, ...]]]:
+    """A folder with the advertisements of an endpoint that a task may want, while the block runs, and what is left out.
 
     The commands in them will be started on this machine, so what they say has to come from where it claims to. Raises
     AuthorError for an endpoint on another machine that is not reached over HTTPS, and NetworkError.
@@ -29,11 +32,11 @@ def endpoint_files(ecology: EndpointEcology, task: TaskSpecification, method: Me
             "its way; give an https:// URL, or an endpoint on this machine"
         )
     composer = method.composer(task.complete())
-    found = ecology.for_task(composer.partitioner, method.wider() or composer.hierarchy)
+    found, left_out = ecology.for_task(composer.partitioner, method.wider() or composer.hierarchy)
     with tempfile.TemporaryDirectory(prefix="selfconf-") as folder:
         for number, component in enumerate(sorted(found)):
             Path(folder, f"{number}.ttl").write_text(to_turtle(found[component].triples), "utf-8")
-        yield Path(folder)
+        yield Path(folder), left_out
 
 
 def _trustworthy(url: str) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from dataclasses import field
 
 from selfconf.api.answer import Inquiry, Method
 from selfconf.api.arguments import Paths
@@ -12,6 +12,8 @@ from selfconf.api.tables import Tabular
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import exclusions_nearest_first
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.left_out import LeftOut
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.partition import Candidate
 from selfconf.model.template import Role
@@ -21,14 +23,17 @@ from selfconf.rdf.eligibility import CompiledRole, Exclusion
 from selfconf.render import Names, holder_text
 
 
+@immutable
 class RolePartition(Tabular):
     """The candidates of one role, and what keeps the other components out."""
 
-    def __init__(self, inquiry: Inquiry, role: Role, compiled: CompiledRole, candidates: Sequence[Candidate]) -> None:
-        self._inquiry, self._compiled = inquiry, compiled
-        self.role = role
-        self.candidates = tuple(candidates)
-        """The eligible components with what they allow the free parameters to be, in the order of trying."""
+    _inquiry: Inquiry
+    role: Role
+    _compiled: CompiledRole = field(compare=False)
+    candidates: tuple[Candidate, ...]
+    """The eligible components with what they allow the free parameters to be, in the order of trying."""
+    _excluded: list[tuple[Exclusion, ...]] = field(default_factory=list, init=False, compare=False)
+    """What is excluded, once that was asked for."""
 
     @property
     def eligible(self) -> tuple[IRI, ...]:
@@ -45,15 +50,17 @@ class RolePartition(Tabular):
     @property
     def held(self) -> Mapping[IRI, Holder]:
         """The eligible components that other tasks hold, as of the same or a higher priority, each with its holder."""
-        return {c: self._inquiry.holders[c] for c in self.eligible if c in self._inquiry.holders}
+        return FrozenMapping({c: self._inquiry.holders[c] for c in self.eligible if c in self._inquiry.holders})
 
-    @cached_property
+    @property
     def excluded(self) -> tuple[Exclusion, ...]:
         """The components that are not eligible, each with its obstacles; the nearest ones first."""
-        composer = self._inquiry.composer
-        known = self._inquiry.method.wider() or composer.hierarchy
-        number = composer.partitioner.roles.index(self._compiled)
-        return exclusions_nearest_first(composer, self._inquiry.ecology, number, known)
+        if not self._excluded:
+            composer = self._inquiry.composer
+            known = self._inquiry.method.wider() or composer.hierarchy
+            number = composer.partitioner.roles.index(self._compiled)
+            self._excluded.append(exclusions_nearest_first(composer, self._inquiry.ecology, number, known))
+        return self._excluded[0]
 
     def obstacles(self, component: IRI) -> tuple[Obstacle, ...]:
         """What keeps a component out of the role; nothing if it is eligible.
@@ -81,14 +88,28 @@ class RolePartition(Tabular):
         yield from ([names(one.component), "no", ", ".join(map(str, one.obstacles))] for one in self.excluded)
 
 
+@immutable
 class PartitionTable(Tabular, Mapping[str, RolePartition]):
     """F1 ... Fn by the local name, CURIE or IRI of the role, in the order of the roles; prints as a table."""
 
-    def __init__(self, inquiry: Inquiry) -> None:
+    inquiry: Inquiry
+    roles: tuple[RolePartition, ...]
+    __repr__ = Tabular.__repr__
+
+    @classmethod
+    def of(cls, inquiry: Inquiry) -> PartitionTable:
+        """The partition for a task in an ecology."""
         partition = inquiry.composer.partition(inquiry.ecology)
         roles = zip(inquiry.task.roles, inquiry.composer.partitioner.roles, partition.candidates, strict=True)
-        self.inquiry = inquiry
-        self.roles = tuple(RolePartition(inquiry, *row) for row in roles)
+        return cls(inquiry, tuple(RolePartition(inquiry, *row) for row in roles))
+
+    @property
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """The components that are eligible for nothing, as what they say cannot be judged, or not in time."""
+        return self.inquiry.left_out
+
+    def __eq__(self, other: object) -> bool:
+        return Mapping.__eq__(self, other)  # as any mapping is
 
     @property
     def names(self) -> Names:
@@ -137,4 +158,4 @@ def partition(
     >>> partition(template("examples/clock/tell-the-time.ttl"), read("examples/clock"))["source"].eligible
     (<https://example.org/my-home#clock>,)
     """
-    return PartitionTable(Inquiry(task, ecology, Method.of(reasoning=reasoning, ontologies=ontologies)))
+    return PartitionTable.of(Inquiry(task, ecology, Method.of(reasoning=reasoning, ontologies=ontologies)))

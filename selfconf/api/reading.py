@@ -64,9 +64,8 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
             raise AuthorError("a SPARQL endpoint is an ecology by itself; read the other sources by themselves")
         return EndpointEcology(endpoints[0])
     began = time.perf_counter()
-    ecology = LoadedEcology(*gathered(_texts(given)), names=tuple(map(_name, given)))
-    ecology.read_seconds = time.perf_counter() - began
-    return ecology
+    index, left_out = gathered(_texts(given))
+    return LoadedEcology(index, left_out, tuple(map(_name, given)), time.perf_counter() - began)
 
 
 def _are_several(source: Source | Iterable[Source]) -> TypeGuard[Iterable[Source]]:

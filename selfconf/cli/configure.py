@@ -55,10 +55,9 @@ def run(given: argparse.Namespace) -> int:
     with closing(given_ecology(given)) as ecology:
         inquiry = Inquiry(task, ecology, method)
         gc.freeze()  # the partition stays until the command ends, as the files do
-        if given.ads is None:
+        complain_of_left_out(inquiry.left_out)
+        if given.ads is None:  # what does not conform among files was named when they were read
             complain_of(ecology)
-        else:  # what does not conform was named when it was read
-            complain_of_left_out(inquiry.left_out)
     answer = inquiry.answer(given.what_if)
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
         complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from selfconf.cli.options import (
     add_ecology_arguments,
     add_endpoint_argument,
+    add_format_argument,
     add_task_arguments,
     complain_of,
     complain_of_left_out,
@@ -42,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     add_task_arguments(parser, "as for configure; a partition is the same for each")
     add_endpoint_argument(parser)
-    parser.add_argument("--format", choices=["text", "json"], default="text", help="default: %(default)s")
+    add_format_argument(parser)
     parser.add_argument(
         "--show", choices=["shape", "sparql"], help="print each role as the SHACL shape or SPARQL query it stands for"
     )
@@ -67,14 +68,13 @@ def run(given: argparse.Namespace) -> int:
         strategy = "best" if given.why else "first"
         inquiry = Inquiry(task, ecology, Method.of(strategy, given.reasoning, given.ontology))
         gc.freeze()  # the partition stays until the command ends, as the files do
-        if given.ads is None:
+        complain_of_left_out(inquiry.left_out)
+        if given.ads is None:  # what does not conform among files was named when they were read
             complain_of(ecology)
-        else:  # what does not conform was named when it was read
-            complain_of_left_out(inquiry.left_out)
     if given.show:
         display(_exported(inquiry, given.show))
         return 0
-    found = PartitionTable(inquiry)
+    found = PartitionTable.of(inquiry)
     why = alternatives(inquiry) if given.why else {}
     if given.format == "json":
         display(json.dumps(_body(found, why), indent=2, ensure_ascii=False))

@@ -14,6 +14,7 @@ from typing import ClassVar, Literal
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable
+from selfconf.model.left_out import LeftOut
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import CALL_MARK, Place, WantedSignal, port_in_words
 from selfconf.model.relaxation import Relaxation
@@ -253,6 +254,8 @@ class Refusal:
     """Whether each reason was proved to need all of its requirements; not when the steps for that were used up."""
     smallest: bool = True
     """Whether each reason was proved to have the fewest requirements that cannot hold together."""
+    left_out: tuple[LeftOut, ...] = field(default=(), kw_only=True, repr=False, compare=False)
+    """The components that count for nothing, as what they say cannot be judged, or not in time."""
 
     @property
     def minimality(self) -> str:
@@ -295,6 +298,8 @@ class Undecided:
     """The time that was allowed, if it was time that ended the search."""
     unaided: bool = False
     """Whether there was no clause-learning solver at hand."""
+    left_out: tuple[LeftOut, ...] = field(default=(), kw_only=True, repr=False, compare=False)
+    """The components that count for nothing, as what they say cannot be judged, or not in time."""
 
     def __bool__(self) -> Literal[False]:
         return False

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import pickle
 from collections.abc import Sequence
+from dataclasses import FrozenInstanceError
 from typing import Any
 
 import pytest
@@ -17,7 +19,7 @@ from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
 from selfconf.query import Question
 from selfconf.rdf.vocabulary import RDF, XSD
 from tests.cli.endpoints import Scripted, http
-from tests.lab import ADVERTISEMENTS, PREFIXES, iri
+from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 pytestmark = pytest.mark.usefixtures("asked_here")
 
@@ -30,10 +32,30 @@ def test_components_are_found_by_iri_with_their_profiles(home: sc.Ecology) -> No
     assert bool(sc.read("@prefix : <x:> ."))
 
 
-def test_what_is_said_of_an_ecology_cannot_be_changed(home: sc.Ecology) -> None:
-    for name in ("left_out", "complaints", "components"):
+def test_an_ecology_and_what_is_said_of_it_cannot_be_changed(home: sc.Ecology) -> None:
+    for name in ("left_out", "complaints", "components", "names", "note"):
         with pytest.raises(AttributeError):
             setattr(home, name, ())
+    solutions = home.query("SELECT ?c { ?c a rob:PositionSensor }")
+    assert isinstance(solutions, Solutions)
+    for value, name in (
+        (home.components, "_advertisements"),
+        (solutions, "cut"),
+        (EndpointEcology("http://x/"), "url"),
+    ):
+        with pytest.raises(FrozenInstanceError):
+            setattr(value, name, ())
+    with pytest.raises(TypeError):
+        solutions[0]["c"] = iri("other")
+
+
+def test_ecologies_components_and_solutions_are_pickled(home: sc.Ecology) -> None:
+    solutions = home.query("SELECT ?c { ?c a rob:PositionSensor } ORDER BY ?c")
+    sc.partition(sc.template(NAVIGATE).bind(robot=":Astrid", goal="x"), home)  # which groups what is alike
+    for value in (home.components, solutions):
+        assert pickle.loads(pickle.dumps(value)) == value
+    again = pickle.loads(pickle.dumps(home))
+    assert (repr(again), again.components, hash(again) == hash(home)) == (repr(home), home.components, False)
 
 
 def test_what_a_question_cannot_judge_is_left_out_and_named() -> None:
@@ -43,15 +65,17 @@ def test_what_a_question_cannot_judge_is_left_out_and_named() -> None:
         ':s a sc:Component, :S ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ] .'
     )
     roles = ":t a sc:Template ; sc:roles ( :a :b ) . :a a sc:Role ; sh:class :S ; sc:feeds :b . :b a sc:Role ; sh:class"
-    assert home.left_out == ()
-    assert not sc.configure(sc.template(f"{PREFIXES}{roles} :K ."), home)
-    (left_out,) = home.left_out
+    refusal = sc.configure(sc.template(f"{PREFIXES}{roles} :K ."), home)
+    assert not refusal
+    (left_out,) = refusal.left_out
     assert left_out.component == iri("k")
     assert left_out.reason.startswith("what its input accepts cannot be judged: ")
-    (obstacle,) = sc.partition(sc.template(f"{PREFIXES}{roles} :K ."), home)["b"].obstacles(iri("k"))
+    table = sc.partition(sc.template(f"{PREFIXES}{roles} :K ."), home)
+    (obstacle,) = table["b"].obstacles(iri("k"))
     assert str(obstacle) == f"is not judged: {left_out.reason}"
-    sc.partition(sc.template(f"{PREFIXES}{roles} :S ."), home)
-    assert home.left_out == ()  # another question, which does not look at that
+    assert table.left_out == (left_out,)
+    assert sc.partition(sc.template(f"{PREFIXES}{roles} :S ."), home).left_out == ()  # does not look at that
+    assert home.left_out == ()  # what a question finds is said by its answer, as others may ask at once
 
 
 def test_components_print_as_a_table(home: sc.Ecology) -> None:
@@ -198,10 +222,10 @@ def test_a_query_ends_in_time(paper: LoadedEcology, asked_here: pytest.MonkeyPat
 
 
 def test_solutions_without_a_variable_are_counted() -> None:
-    assert repr(Solutions([], [{}, {}])) == "2 solutions"
-    assert Solutions(["x"], [{"x": iri("a")}, {}])[0] == {"x": iri("a")}
-    assert "<td" in Solutions(["x"], [{"x": Literal("<b>")}, {}])._repr_html_()
-    assert "<b>" not in Solutions(["x"], [{"x": Literal("<b>")}])._repr_html_()
+    assert repr(Solutions((), ({}, {}))) == "2 solutions"
+    assert Solutions(("x",), ({"x": iri("a")}, {}))[0] == {"x": iri("a")}
+    assert "<td" in Solutions(("x",), ({"x": Literal("<b>")}, {}))._repr_html_()
+    assert "<b>" not in Solutions(("x",), ({"x": Literal("<b>")},))._repr_html_()
 
 
 def test_an_endpoint_is_never_loaded_as_a_whole() -> None:

@@ -21,7 +21,8 @@ def test_what_a_task_may_want_is_in_files_while_the_block_runs(clock: sc.TaskSpe
     texts = {name: Path(f"examples/clock/{name}.ttl").read_text() for name in ("clock", "display")}
     unwanted = Path("examples/peis-home/motor-drive.ttl").read_text()
     with oxigraph(unwanted, {f"x:{name}": text for name, text in texts.items()}) as url:
-        with endpoint_files(EndpointEcology(url), clock, Method()) as folder:
+        with endpoint_files(EndpointEcology(url), clock, Method()) as (folder, left_out):
+            assert left_out == ()
             assert sc.validate(folder).conforms
             local = sc.read(folder)
             assert sorted(component.short for component in local.components) == ["clock", "display"]

@@ -27,6 +27,16 @@ def test_roles_are_found_by_local_name_curie_and_iri(task: sc.TaskSpecification,
     assert found.sufficient
 
 
+def test_a_partition_cannot_be_changed(task: sc.TaskSpecification, home: sc.Ecology) -> None:
+    found = sc.partition(task, home)
+    for value, name in ((found, "roles"), (found["drive"], "candidates"), (found["drive"], "excluded")):
+        with pytest.raises(AttributeError):
+            setattr(value, name, ())
+    with pytest.raises(TypeError):
+        found["drive"].held[found["drive"].eligible[0]] = None  # type: ignore[index]  # that is what is tested
+    assert found["drive"].excluded is found["drive"].excluded
+
+
 def test_each_excluded_component_has_its_obstacles(task: sc.TaskSpecification, home: sc.Ecology) -> None:
     drive = sc.partition(task, home)["drive"]
     assert len(drive.eligible) + len(drive.excluded) == len(home)

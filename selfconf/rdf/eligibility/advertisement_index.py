@@ -56,6 +56,9 @@ class AdvertisementIndex(Mapping[IRI, Advertisement]):
         known.append((signature, found.values()))
         return found.values()
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return AdvertisementIndex, (self._by_component,)  # the groups are found anew
+
     def __getitem__(self, component: IRI) -> Advertisement:
         return self._by_component[component]
 
