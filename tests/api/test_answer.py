@@ -23,6 +23,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.model.wants import Wants
+from selfconf.project import STRATEGIES
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import SC
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
@@ -221,7 +222,10 @@ def test_what_strangers_wrote_steers_neither_a_page_nor_a_terminal() -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"strategy": "worst"}, "there is no strategy 'worst'; choose one of 'first', 'paper', 'best'"),
+        (
+            {"strategy": "worst"},
+            f"there is no strategy 'worst'; choose one of {', '.join(map(repr, STRATEGIES))}",
+        ),
         ({"reasoning": "owl"}, "there is no reasoning 'owl'; choose one of 'syntactic', 'subclass', 'owl-rl'"),
     ],
 )
