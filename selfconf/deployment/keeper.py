@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import logging
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
@@ -49,11 +50,17 @@ class Keeper:
     """Keeps the tasks of an ecology at one site, and runs those that it is to run."""
 
     def __init__(
-        self, bus: Bus, ecology: str, site: str, folder: TaskFolder, request_for: Callable[[TaskRecord], RunRequest]
+        self,
+        bus: Bus,
+        ecology: str,
+        site: str,
+        folder: TaskFolder,
+        request_for: Callable[[TaskRecord], RunRequest],
+        clock: Callable[[], float] = time.time,
     ) -> None:
-        """`request_for` reads a task; it raises SelfconfError for one that cannot be read."""
+        """`request_for` reads a task; it raises SelfconfError for one that cannot be read. `clock` is the site's."""
         self.bus, self.ecology, self.keys, self.site = bus, ecology, Keys(ecology), site
-        self.folder, self._request_for = folder, request_for
+        self.folder, self._request_for, self._clock = folder, request_for, clock
         self.runners: dict[str, TaskRunner] = {}
         self._requests: dict[str, RunRequest | None] = {}
         self._respites: dict[str, float] = {}
@@ -200,7 +207,12 @@ class Keeper:
                 self._respites[record.task] = self.bus.now() + RESPITE
 
         runner = TaskRunner(
-            self.bus, self.ecology, replace(request, ended=ended), task=record.task, beginning=record.beginning
+            self.bus,
+            self.ecology,
+            replace(request, ended=ended),
+            clock=self._clock,
+            task=record.task,
+            beginning=record.beginning,
         )
         self.runners[record.task] = runner
         if record.configuration:

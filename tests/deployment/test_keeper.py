@@ -36,6 +36,8 @@ class Keepers:
         self.lab, self.folder = lab, folder
         self.buses: dict[str, Bus] = {}
         self.keepers: dict[str, Keeper] = {}
+        self.ahead: dict[str, float] = {}
+        """By how many seconds the clock of a site is ahead of the others, from when it begins on."""
         for name in ("a", "b", "c"):
             self.begin(name)
         lab.let_pass(0.1)
@@ -43,7 +45,8 @@ class Keepers:
     def begin(self, name: str) -> None:
         """Start a site that keeps tasks, with the disk that it had."""
         bus = self.buses[name] = self.lab.network.node()
-        self.keepers[name] = Keeper(bus, "lab", name, TaskFolder(self.folder / name), request_for)
+        kept, ahead = TaskFolder(self.folder / name), self.ahead.get(name, 0.0)
+        self.keepers[name] = Keeper(bus, "lab", name, kept, request_for, lambda: self.lab.network.time + ahead)
         bus.announce(self.lab.keys.site_life(name, f"{name}{len(self.lab.network.nodes)}"))
 
     def end(self, name: str) -> None:
@@ -102,6 +105,23 @@ def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> No
     assert keepers.lab.active() == TASK | {"tracker"}
     keepers.lab.components["tracker"].fail("lost")
     assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"odometry"})
+
+
+def test_the_next_site_goes_on_though_its_clock_is_behind(keepers: Keepers) -> None:
+    first = keeper_of(RECORD.task, "abc")
+    keepers.end(first)
+    keepers.ahead[first] = 300.0
+    keepers.begin(first)
+    keepers.lab.let_pass(1.0)
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: keepers.running() == [first])
+    assert keepers.keepers[first].runners[RECORD.task].state.epoch >= 300_000
+    keepers.lab.crash("drive")
+    assert keepers.lab.until(lambda: keepers.keepers[first].runners[RECORD.task].state.phase is Phase.REFUSED)
+    keepers.end(first)
+    keepers.lab.let_pass(3.0)  # the next one has begun anew, and waits
+    keepers.lab.component("drive")
+    assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"tracker"}, 5.0)
 
 
 def test_a_failure_that_nobody_heard_is_found_by_the_next_site(keepers: Keepers) -> None:

@@ -1,9 +1,10 @@
 """Histories of tasks that live in the sites: sites die, come back with their disks, hang, and lose sight of each other.
 
 A history is decided by its seed. Two tasks that want the same drive are handed to sites, of which some die, begin again
-with the disk that they had, are paused, or are cut off from one other; tasks are stopped; the tracker fails. At every
-step of the network it is looked at whom the components act for. Then the faults cease, every site begins again and
-reaches every other, and after a while each task must be run by the one site that is to run it, or be over everywhere.
+with the disk that they had, are paused, or are cut off from one other, and whose clocks differ by minutes; tasks are
+stopped; the tracker fails. At every step of the network it is looked at whom the components act for. Then the faults
+cease, every site begins again and reaches every other, and after a while each task must be run by the one site that is
+to run it, or be over everywhere.
 
     python -m tests.faults.kept_tasks FIRST LAST
 """
@@ -32,6 +33,9 @@ from tests.lab import NAVIGATE, Lab, task_of
 KEEPING = ("a", "b", "c")
 """The sites that suffer; the two of the lab, which advertise the components, keep tasks as well, and are spared."""
 TASKS = (TaskRecord("patrol~1", 1, priority=1, beginning=5.0), TaskRecord("tidy~2", 1, beginning=6.0))
+BEGAN = 1_800_000_000.0
+"""When a history begins, in seconds since 1970."""
+CLOCKS = (0.0, 0.0, -300.0, 300.0)
 FAULTY = 25.0
 """Seconds in which things go wrong."""
 SETTLED = 90.0
@@ -69,6 +73,9 @@ class KeptHistory:
         self.network = self.lab.network
         self.lab.navigation()
         self._disks = folder / "disks"
+        self._wrong = random.Random(f"clocks {seed}")
+        self._clocks: dict[str, float] = {}
+        """By how many seconds the clock of each site is wrong."""
         self.keepers: dict[str, Keeper] = {}
         self._nodes: dict[str, MemoryBus] = {}
         self.told: list[str] = []
@@ -103,7 +110,8 @@ class KeptHistory:
 
     def _begin(self, name: str) -> None:
         node = self._nodes[name] = self.network.node()
-        self.keepers[name] = Keeper(node, "lab", name, TaskFolder(self._disks / name), request_for)
+        folder, ahead = TaskFolder(self._disks / name), self._clocks.setdefault(name, self._wrong.choice(CLOCKS))
+        self.keepers[name] = Keeper(node, "lab", name, folder, request_for, lambda: BEGAN + self.network.time + ahead)
         if name in KEEPING:  # the others are announced by their sites
             node.announce(self.lab.keys.site_life(name, f"{name}{len(self.network.nodes)}"))
 
