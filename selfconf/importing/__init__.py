@@ -6,7 +6,8 @@
 
 For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `document_at` makes one of what
 a URL has answered, asked for what is `ACCEPTED`, within `FETCH_SECONDS` and up to `LARGEST_SOURCE` bytes.
-`described_things` reads each `DescribedThing` of them and notes in an `ImportLedger` what it leaves out. An
+`described_things` reads each `DescribedThing` of them and notes in an `ImportLedger` what it leaves out;
+`one_or_several` are the values of a member of its description. An
 `ImportedComponent` with its `ImportedPort`s and `ImportedOperation`s is a component; as an `ImportedDocument`,
 `described_text` writes it as Turtle, in which a `NestedNode` has no name and a `TermList` is a list. `NodeReader` makes
 a component of a ROS 2 node's `NodeInterface`s, each of an `InterfaceKind`; `ROS2` are the terms for them, and
@@ -36,7 +37,7 @@ from selfconf.importing.naming import slug
 from selfconf.importing.ros2 import ROS2, InterfaceKind, NodeInterface, NodeReader, feedback_port
 from selfconf.importing.sources import ACCEPTED, FETCH_SECONDS, LARGEST_SOURCE, SourceDocument, document_at, gather
 from selfconf.importing.turtle_text import described_text
-from selfconf.importing.wot import DescribedThing, described_things
+from selfconf.importing.wot import DescribedThing, described_things, one_or_several
 
 __all__ = [
     "ACCEPTED",
@@ -68,5 +69,6 @@ __all__ = [
     "gather",
     "import_descriptions",
     "import_documents",
+    "one_or_several",
     "slug",
 ]

@@ -14,6 +14,7 @@ from urllib.parse import urljoin, urlsplit, urlunsplit
 
 from selfconf.bridging.wot.credentials import ThingCredentials, origin
 from selfconf.bridging.wot.security_schemes import UnusableFormError, proof_of_identity
+from selfconf.importing import one_or_several
 from selfconf.model.immutable import immutable
 
 USUAL_METHODS = {
@@ -75,7 +76,8 @@ class ThingForms:
         self, affordance: Mapping[str, Any], operation: str, subprotocols: Iterable[str] = ("",)
     ) -> ThingForm | None:
         """The first form for an operation that can be used, by one of some subprotocols, the first preferred."""
-        forms = [one for one in _as_list(affordance.get("forms")) if isinstance(one, dict) and _serves(one, operation)]
+        said = one_or_several(affordance.get("forms"))
+        forms = [one for one in said if isinstance(one, dict) and _serves(one, operation)]
         for subprotocol in subprotocols:
             for form in forms:
                 if form.get("subprotocol", "") == subprotocol:
@@ -91,7 +93,7 @@ class ThingForms:
         if method not in _KNOWN_METHODS:
             raise UnusableFormError(f"a form has the HTTP method {str(method)[:20]!r}")
         where, told = origin(url), self._credentials.for_url(url)
-        names = _as_list(form.get("security", self._security))
+        names = one_or_several(form.get("security", self._security))
         found = [proof_of_identity(str(name), self._definitions.get(str(name)), told, where) for name in names]
         proofs = [proof for proof in found if proof is not None]
         media = form.get("contentType", JSON)
@@ -133,8 +135,4 @@ def _plain(url: str) -> str:
 
 def _serves(form: Mapping[str, Any], operation: str) -> bool:
     """Whether a form is for an operation; one that does not say it is for those of its affordance but to observe."""
-    return operation in _as_list(form["op"]) if "op" in form else operation in WITHOUT_OP
-
-
-def _as_list(value: Any) -> list[Any]:
-    return [] if value is None else value if isinstance(value, list) else [value]
+    return operation in one_or_several(form["op"]) if "op" in form else operation in WITHOUT_OP

@@ -15,6 +15,7 @@ from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.sources import SourceDocument
 from selfconf.importing.units import unit_of
 from selfconf.importing.wot.contexts import TermMeanings
+from selfconf.importing.wot.json_text import one_or_several
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.rdf.vocabulary import XSD
@@ -47,7 +48,7 @@ class AffordanceReader:
     def types(self, holder: Any, what: str = "port") -> tuple[IRI, ...]:
         """The IRIs of the `@type` of something, each once; what is unknown is noted."""
         found: dict[IRI, None] = {}
-        for term in _as_list(holder.get("@type") if isinstance(holder, dict) else None):
+        for term in one_or_several(holder.get("@type") if isinstance(holder, dict) else None):
             if not isinstance(term, str):
                 self._leave_out("types that are no strings", "a type is a term of some vocabulary")
                 continue
@@ -108,7 +109,7 @@ class AffordanceReader:
                 continue
             for member, (what, why) in _UNUSED.items():
                 if member in affordance:
-                    self._leave_out(what, why, len(_as_list(affordance[member])))
+                    self._leave_out(what, why, len(one_or_several(affordance[member])))
             if any(member in affordance for member in _WORDS):
                 self._leave_out("titles and descriptions of affordances", "their names are kept")
             yield name, affordance
@@ -148,12 +149,8 @@ def _operations(affordance: dict[str, Any]) -> tuple[bool, bool]:
     Where each of its forms says for what it is, that counts too: a form without `op` is for both.
     """
     reads, writes = affordance.get("writeOnly") is not True, affordance.get("readOnly") is not True
-    forms = [form for form in _as_list(affordance.get("forms")) if isinstance(form, dict)]
+    forms = [form for form in one_or_several(affordance.get("forms")) if isinstance(form, dict)]
     if forms and all("op" in form for form in forms):
-        said = {operation for form in forms for operation in _as_list(form["op"]) if isinstance(operation, str)}
+        said = {operation for form in forms for operation in one_or_several(form["op"]) if isinstance(operation, str)}
         reads, writes = reads and bool(said & READS), writes and bool(said & WRITES)
     return reads, writes
-
-
-def _as_list(value: Any) -> list[Any]:
-    return [] if value is None else value if isinstance(value, list) else [value]

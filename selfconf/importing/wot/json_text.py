@@ -56,6 +56,11 @@ def parse_json(source: SourceDocument) -> JsonText:
     return JsonText(value, tuple(repeated))
 
 
+def one_or_several(value: Any) -> list[Any]:
+    """What a member of a Thing Description holds: its value, or the values in its array; nothing where it is none."""
+    return [] if value is None else value if isinstance(value, list) else [value]
+
+
 def _check_depth(text: str, shown: str) -> None:
     """Raises AuthorError where it is nested too deep; short of that many brackets there is nothing to look at."""
     if text.count("{") + text.count("[") <= DEEPEST_JSON:

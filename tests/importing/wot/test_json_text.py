@@ -6,7 +6,7 @@ import pytest
 
 from selfconf.errors import AuthorError
 from selfconf.importing.sources import SourceDocument
-from selfconf.importing.wot.json_text import DEEPEST_JSON, JsonText, parse_json
+from selfconf.importing.wot.json_text import DEEPEST_JSON, JsonText, one_or_several, parse_json
 
 
 def source(text: str) -> SourceDocument:
@@ -46,3 +46,10 @@ def test_brackets_in_strings_are_not_depth_and_a_pair_of_surrogates_is_a_charact
 def test_as_deep_as_it_may_be() -> None:
     assert parse_json(source("[" * DEEPEST_JSON + "]" * DEEPEST_JSON + " " * 10)).value
     assert parse_json(source(f"[{'[],' * DEEPEST_JSON}{'[' * (DEEPEST_JSON - 1)}{']' * (DEEPEST_JSON - 1)}]")).value
+
+
+@pytest.mark.parametrize(
+    ("value", "several"), [(None, []), ("a", ["a"]), (["a", "b"], ["a", "b"]), ([], []), ({"a": 1}, [{"a": 1}])]
+)
+def test_a_member_holds_one_value_or_several_or_none(value: object, several: list[object]) -> None:
+    assert one_or_several(value) == several
