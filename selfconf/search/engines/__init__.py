@@ -5,6 +5,7 @@
 * `ReducedSearch` is depth-first search over a reduced problem, and `first_solution` the least solution found by it.
 * `hall_set` finds roles that lack components (a `HallSet`) by bipartite matching, `unmatchable` the options that are in
   no matching; a `MaintainedMatching` follows a depth-first search.
+* `probed` removes options that would leave other roles too few components.
 * `exclusive_groups` are groups of options of which at most one can play, and what counting them proves.
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
   `least_by_clauses` find any or the least solution by several of them, `least_of_clauses` the least one of the clauses
@@ -21,6 +22,7 @@ from selfconf.search.engines.hitting_sets import smallest_core
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses, least_of_clauses
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
+from selfconf.search.engines.probing import probed
 from selfconf.search.engines.reduced_search import ReducedSearch, first_solution
 
 __all__ = [
@@ -38,6 +40,7 @@ __all__ = [
     "least_by_clauses",
     "least_of_clauses",
     "minimise",
+    "probed",
     "smallest_core",
     "solver_available",
     "unmatchable",

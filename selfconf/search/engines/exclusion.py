@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import accumulate, pairwise
+from itertools import accumulate, chain, pairwise
 
 from selfconf.model.immutable import immutable
 from selfconf.search.engines.matching import HallSet, unmatchable
@@ -124,16 +124,13 @@ class _Conflicts:
             self._by_components()
 
     def _by_needs(self, fed_by: Mapping[int, set[int]]) -> None:
-        having: dict[int, list[int]] = {need: [] for needs in fed_by.values() for need in needs}
-        for number, option in enumerate(self.options if having else ()):
-            for need in option.kind.needs:
-                if need in having:
-                    having[need].append(number)
+        fed_by = {source: often for source, needs in fed_by.items() if (often := self._often_supported(source, needs))}
+        having = self._having(set[int]().union(*fed_by.values()))
         left = CONFLICTS_PER_OPTION * len(self.options)
         across = self.across
         for source, needs in fed_by.items():
             lacking = self._lacking(source, needs)
-            few = max(1, len(self.reduced.options[source]) // SHARE_UNFIT)
+            few = self._few(source)
             self.stated |= needs - lacking.keys()
             for need, numbers in lacking.items():
                 left -= len(numbers)
@@ -148,6 +145,28 @@ class _Conflicts:
                     across[number] |= need_it
                 for number in have:
                     across[number] |= lack
+
+    def _having(self, needs: set[int]) -> dict[int, list[int]]:
+        """Return for some needs the options that have them."""
+        having: dict[int, list[int]] = {need: [] for need in needs}
+        for number, option in enumerate(self.options if needs else ()):
+            for need in option.kind.needs:
+                if need in having:
+                    having[need].append(number)
+        return having
+
+    def _few(self, source: int) -> int:
+        """Return how many options of a role do not support a need, at most, if it is to say much."""
+        return max(1, len(self.reduced.options[source]) // SHARE_UNFIT)
+
+    def _often_supported(self, source: int, needs: set[int]) -> set[int]:
+        """Return the needs that enough options of a role support to say much; all, where counting takes too long."""
+        supports = [option.kind.supports for option in self.reduced.options[source]]
+        if SHARE_UNFIT * sum(map(len, supports)) >= len(supports) * len(needs):
+            return needs
+        enough = len(supports) - self._few(source)
+        counted = Counter(chain.from_iterable(supports))
+        return {need for need in needs if counted[need] >= enough}
 
     def _lacking(self, source: int, needs: set[int]) -> dict[int, list[int]]:
         """Return for each need that is not supported by all options of a role those that do not support it."""

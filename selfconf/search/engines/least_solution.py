@@ -29,6 +29,8 @@ from selfconf.search.reduction import Option, ReducedProblem
 
 BRIEF = 1_000
 """Conflicts and questions of the first solver before it has company, and gets numbers beyond one as clauses."""
+NEARLY = 2
+"""Where one in this number of all slots is settled by then, the first solver has as many again."""
 ALONE = 10_000
 """Conflicts of the first solver after that before CaDiCaL joins in, some tenths of a second."""
 ALONE_OF_TWO = 40_000
@@ -107,6 +109,8 @@ class _Descent:
         with ExitStack() as stack:
             first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
             self.advance(first, BRIEF)
+            if not self.finished and len(self.settled) * NEARLY >= len(self.slots):
+                self.advance(first, BRIEF)  # to prepare company takes as long as hundreds of conflicts
             if not self.finished:
                 self._search_together(first, encoding, stack)
         if self.possible is False:

@@ -44,6 +44,7 @@ from selfconf.search.engines import (
     exclusive_groups,
     first_solution,
     least_by_clauses,
+    probed,
     solver_available,
     unmatchable,
 )
@@ -164,6 +165,9 @@ def least_of(
         excluded = unmatchable(remaining.slots, components)
         assert not isinstance(excluded, HallSet)
         remaining = _without(remaining, excluded)
+        fewer = probed(remaining)
+        if fewer is not remaining:
+            return least_of(fewer, budget, by_clauses)
         matching = MaintainedMatching(remaining.slots, remaining.components())
     if solver_available():
         return by_clauses(remaining, budget)

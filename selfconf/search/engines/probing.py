@@ -1,0 +1,53 @@
+"""Probing: an option is tried alone in its slot, and removed if that leaves other slots too few components.
+
+*Why.* Matching counts the components that are options of some roles (Hall's theorem), and arc consistency removes the
+options whose needs have no support; neither sees what the other would see after a choice. Let one role decide which
+inputs can be fed at all, as who issues the licences does: with each of its options another part of the people is left,
+and each part may be too few. Clause learning refutes such a choice in exponential time, counting by cases.
+
+*What is kept.* This is singleton consistency (Debruyne and Bessiere, IJCAI 1997) with arc consistency and Hall's
+condition: an option is removed if, with no other one in its slot, a role has no option left, or some slots have fewer
+components than they need. Such an option is in no solution, so that every solution stays, and with them the least.
+
+*Cost.* A pass over all needs and supports for each option of a role that others need, while there are few of these.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+from selfconf.search.engines.matching import hall_set
+from selfconf.search.reduction import Option, ReducedProblem, pruned
+
+MOST_PROBED = 20_000
+"""How many needs and supports are read at most, some milliseconds."""
+
+
+def probed(given: ReducedProblem) -> ReducedProblem:
+    """Return a problem without the options that were tried and are in no solution; the same one if there are none."""
+    left = MOST_PROBED
+    size = sum(1 + len(kind.needs) + len(kind.supports) for kind in given.kinds())
+    for role, slots in Counter(given.slots).items():
+        options = given.options[role]
+        if slots > 1 or not any(option.kind.supports for option in options):
+            continue
+        left -= size * len(options)
+        if left < 0:
+            break
+        kept = tuple(option for option in options if _fits(_with_only(given, role, (option,))))
+        if len(kept) < len(options):
+            given = pruned(_with_only(given, role, kept))
+            if given.wiped_out() is not None:
+                break
+    return given
+
+
+def _fits(given: ReducedProblem) -> bool:
+    """Return whether arc consistency leaves each role options, and all slots enough components."""
+    left = pruned(given)
+    return left.wiped_out() is None and hall_set(left.slots, left.components()) is None
+
+
+def _with_only(given: ReducedProblem, role: int, options: tuple[Option, ...]) -> ReducedProblem:
+    return replace(given, options=(*given.options[:role], options, *given.options[role + 1 :]))
