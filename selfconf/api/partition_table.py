@@ -10,7 +10,7 @@ from selfconf.api.arguments import Paths
 from selfconf.api.ecology import Ecology
 from selfconf.api.tables import Tabular
 from selfconf.api.task import TaskSpecification
-from selfconf.composition import exclusions_nearest_first
+from selfconf.composition import ranked_exclusions
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.left_out import LeftOut
@@ -59,7 +59,7 @@ class RolePartition(Tabular):
             composer = self._inquiry.composer
             known = self._inquiry.method.wider() or composer.hierarchy
             number = composer.partitioner.roles.index(self._compiled)
-            self._excluded.append(exclusions_nearest_first(composer, self._inquiry.ecology, number, known))
+            self._excluded.append(ranked_exclusions(composer, self._inquiry.ecology, number, known))
         return self._excluded[0]
 
     def obstacles(self, component: IRI) -> tuple[Obstacle, ...]:

@@ -14,7 +14,7 @@ import sys
 from typing import NamedTuple
 
 from selfconf.api.detached import recorded_task
-from selfconf.composition import exclusions_nearest_first
+from selfconf.composition import ranked_exclusions
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
@@ -49,7 +49,7 @@ def role_fits(record: TaskRecord, advertisement: Advertisement) -> list[RoleFit]
     alone = {advertisement.profile.component: advertisement}  # no role sees more than the advertisement of a candidate
     found = []
     for number, role in enumerate(composer.partitioner.roles):
-        excluded = exclusions_nearest_first(composer, alone, number, known)
+        excluded = ranked_exclusions(composer, alone, number, known)
         slips = near_misses_by_type(role, composer.partitioner, composer.gathered(alone), known)
         related = [miss.obstacle for miss in slips]
         obstacles = related or [obstacle for one in excluded for obstacle in one.obstacles]

@@ -204,7 +204,7 @@ class Composer:
             return False
         return possible(Problem(self.task.task, there, hierarchy), Budget(self.steps))
 
-    def mended(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
+    def with_relaxations(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
         problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
         eligible = {

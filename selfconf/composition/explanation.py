@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from selfconf.composition.composer import Composer
-from selfconf.composition.nearest import nearest_first
-from selfconf.composition.nearest_recruits import recruiting_instead, with_nearest_recruits
+from selfconf.composition.near_misses import ranked_near_misses
+from selfconf.composition.recruit_near_misses import recruiting_instead, with_recruit_near_misses
 from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
@@ -29,10 +29,10 @@ def explained(
     is a configuration under it. None where the composer has seen a hierarchy already.
     """
     known = composer.hierarchy if wider is None else wider
-    found = limit.within(lambda: nearest_first(composer, ecology, refusal, known), refusal.near_misses)
+    found = limit.within(lambda: ranked_near_misses(composer, ecology, refusal, known), refusal.near_misses)
     refusal = replace(refusal, near_misses=found)
-    refusal = limit.within(lambda: with_nearest_recruits(composer, ecology, refusal, known), refusal)
-    refusal = limit.within(lambda: composer.mended(ecology, refusal), refusal)
+    refusal = limit.within(lambda: with_recruit_near_misses(composer, ecology, refusal, known), refusal)
+    refusal = limit.within(lambda: composer.with_relaxations(ecology, refusal), refusal)
     none_found: tuple[LetRecruit, ...] = ()
     recruiting = limit.within(lambda: tuple(recruiting_instead(composer, ecology, refusal)), none_found)
     refusal = replace(refusal, repairs=(*recruiting, *refusal.repairs))

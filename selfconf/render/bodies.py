@@ -90,12 +90,12 @@ def undecided_body(undecided: Undecided) -> dict[str, Any]:
 
 def refusal_body(refusal: Refusal) -> dict[str, Any]:
     """A refusal; each fact has its `place` where that is known."""
-    repairs: list[dict[str, Any]] = [
-        {"code": repair.code, "role": repair.role, "message": str(repair), **_additions(repair), **_place(repair)}
-        for repair in refusal.repairs
+    relaxations: list[dict[str, Any]] = [
+        {"code": one.code, "role": one.role, "message": str(one), **_additions(one), **_place(one)}
+        for one in refusal.repairs
     ]
     if refusal.hint:
-        repairs.append({"code": "reasoning", "message": refusal.hint})
+        relaxations.append({"code": "reasoning", "message": refusal.hint})
     return {
         "template": refusal.template,
         "reasons": [
@@ -114,7 +114,7 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
             }
             for miss in refusal.near_misses
         ],
-        "repairs": repairs,
+        "repairs": relaxations,
         **({"held": [{"component": c, **holder_body(h)} for c, h in refusal.held]} if refusal.held else {}),
         **({"missing_sites": list(refusal.missing_sites)} if refusal.missing_sites else {}),
     }
@@ -135,9 +135,9 @@ def holder_body(holder: Holder) -> dict[str, Any]:
     }
 
 
-def _additions(repair: Relaxation) -> dict[str, Any]:
+def _additions(relaxation: Relaxation) -> dict[str, Any]:
     """The components to be added, if it is that: an output has a name where an interaction asks for one."""
-    if not isinstance(repair, AddComponents):
+    if not isinstance(relaxation, AddComponents):
         return {}
     return {
         "additions": [
@@ -156,9 +156,9 @@ def _additions(repair: Relaxation) -> dict[str, Any]:
                 ],
                 "values": {name: None if value is None else value_body(value) for name, value in one.values},
             }
-            for one in repair.additions
+            for one in relaxation.additions
         ],
-        **({"shared": list(repair.shared)} if repair.shared else {}),
+        **({"shared": list(relaxation.shared)} if relaxation.shared else {}),
     }
 
 

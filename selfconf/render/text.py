@@ -154,7 +154,7 @@ def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
         lines.append(f"  and {len(refusal.held) - most} more that are held")
     if refusal.repairs or refusal.hint:
         lines.append("what would mend it")
-        lines += [_placed(f"  {repair}", repair) for repair in refusal.repairs]
+        lines += [_placed(f"  {relaxation}", relaxation) for relaxation in refusal.repairs]
     if refusal.hint:
         lines.append(f"  {refusal.hint}")
     return "\n".join((*lines, *_missing(refusal.missing_sites, most)))

@@ -145,7 +145,7 @@ def _refused(found: TaskStory, term: str) -> list[str]:
         f"  nearly, as {_name(miss.get('role'))}: {_name(miss.get('component'))}, but {miss.get('obstacle')}"
         for miss in near
     ]
-    sentences += [f"  what would change it: {repair.get('message')}" for repair in refusal.get("repairs", ())]
+    sentences += [f"  what would change it: {relaxation.get('message')}" for relaxation in refusal.get("repairs", ())]
     return sentences
 
 

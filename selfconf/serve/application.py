@@ -17,8 +17,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from selfconf.serve.board import CHANGE, Board
 from selfconf.serve.directory import Directory, event_stream
+from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
-from selfconf.serve.mends import Mends
 from selfconf.serve.metrics import PROMETHEUS, Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.origins import Origins
@@ -46,7 +46,7 @@ def application(
     sparql: SparqlEndpoint,
     onlookers: Onlookers,
     fits: Fits,
-    mends: Mends,
+    explained: ExplainedRefusals,
     linked: Callable[[], bool],
     hosts: Collection[str] = LOOPBACK,
     origins: Collection[str] = (),
@@ -89,7 +89,7 @@ def application(
         Route("/changes", changes),
         Route("/look", onlookers.respond),
         Route("/fit", fits.respond),
-        Route("/mend", mends.respond),
+        Route("/mend", explained.respond),
         *(Route(path, sparql.respond, methods=SPARQL_METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
         Route("/.well-known/wot", directory.itself),
         Route("/things", directory.things),

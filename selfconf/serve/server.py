@@ -26,9 +26,9 @@ from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.connections import BoundedConnection
+from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
 from selfconf.serve.history import History
-from selfconf.serve.mends import Mends
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
@@ -150,8 +150,10 @@ async def _serve(
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
     onlookers = Onlookers(bus, board, may_hear)
-    fits, mends, hosts = Fits(board), Mends(board), LOOPBACK if local else ()
-    app = application(board, metrics, sparql, onlookers, fits, mends, lambda: bool(bus.link), hosts, options.origins)
+    fits, explained, hosts = Fits(board), ExplainedRefusals(board), LOOPBACK if local else ()
+    app = application(
+        board, metrics, sparql, onlookers, fits, explained, lambda: bool(bus.link), hosts, options.origins
+    )
 
     def take(change: EcologyChange) -> None:
         try:

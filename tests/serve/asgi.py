@@ -15,8 +15,8 @@ from selfconf.bus.port import Bus
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
+from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
-from selfconf.serve.mends import Mends
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql_endpoint import SparqlEndpoint
@@ -61,7 +61,7 @@ def served(
         sparql,
         Onlookers(bus, board),
         Fits(board),
-        Mends(board),
+        ExplainedRefusals(board),
         lambda: linked,
         hosts,
         origins,

@@ -5,7 +5,7 @@ import { Diagram } from "/page/diagram.js";
 import { Model, worded } from "/page/model.js";
 import { Fits } from "/page/fits.js";
 import { Look } from "/page/look.js";
-import { Mends } from "/page/mends.js";
+import { ExplainedRefusals } from "/page/refusals.js";
 import { below, forget, showComponents, showDetail, showTasks, taskHead } from "/page/panels.js";
 import { lend, prepareQuery } from "/page/query.js";
 import { Timeline } from "/page/timeline.js";
@@ -13,8 +13,8 @@ import { Timeline } from "/page/timeline.js";
 const model = new Model();
 let chosen = null, selected = "", drawing = false, belowSays = "";
 const diagram = new Diagram(by("canvas"), select);
-const look = new Look(), fits = new Fits(), mends = new Mends();
-fits.changed = mends.changed = draw;
+const look = new Look(), fits = new Fits(), refusals = new ExplainedRefusals();
+fits.changed = refusals.changed = draw;
 const timeline = new Timeline(model, draw);
 
 function draw() {
@@ -54,7 +54,7 @@ function render() {
   say(by("legend"), last ? `The task is over: ${task.phase}. This ran last; the line below leads back to what ran before.` : LEGEND);
   canvas.hidden = Boolean(task && !task.configuration && task.refusal);
   canvas.dataset.says = configuration ? "" : task ? nothing(task) : "No task runs. What lives is listed beside.";
-  const refusal = mends.refusal(chosen, task, model.at === null);
+  const refusal = refusals.refusal(chosen, task, model.at === null);
   const facts = JSON.stringify([chosen, task?.lost, task?.owed, task?.dropped, refusal]);
   if (facts !== belowSays) {
     belowSays = facts;

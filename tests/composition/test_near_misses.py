@@ -9,7 +9,7 @@ import pytest
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
-from selfconf.composition.nearest import exclusions_nearest_first
+from selfconf.composition.near_misses import ranked_exclusions
 from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.partition import NearMiss
@@ -112,7 +112,7 @@ def test_what_a_partition_leaves_out_is_ranked_as_well() -> None:
     task = bindings.complete(templates.read_task(turtle.parse(PREFIXES + ROLE, "t.ttl")))
     names = ("a", "Colour"), ("b", "Taxed"), ("c", "Price")
     ecology = {one.component: one for one in read([PREFIXES + "".join(issuing(*one) for one in names)])}
-    found = exclusions_nearest_first(Composer(task), ecology, 0, known(*BELOW))
+    found = ranked_exclusions(Composer(task), ecology, 0, known(*BELOW))
     assert [(one.component.short, list(map(str, one.obstacles))) for one in found] == [
         ("b", ["issues Taxed, which lies below Price"]),
         ("a", ["issues no Price"]),

@@ -1,4 +1,4 @@
-"""What would mend a task that waits or was refused, as its configurator told it: found out apart, bounded in time."""
+"""The refusal of a task that waits or was refused, explained apart from its configurator, bounded in time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from selfconf.api.answer import Method
 from selfconf.api.detached import task_record
 from selfconf.configurator.state import Policy
 from selfconf.deployment.runner import TaskRunner
-from selfconf.serve import mends
+from selfconf.serve import explained_refusals
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from tests.lab import NAVIGATE, Lab, iri
@@ -37,25 +37,27 @@ def agent(lab: Lab, robot: str) -> TaskRunner:
     return lab.agent(bound=tuple(wanted.items()), record=record)
 
 
-def mended(lab: Lab, board: Board, task: str) -> Any:
+def explained(lab: Lab, board: Board, task: str) -> Any:
     """What is answered about a task while the ecology goes on."""
     return meanwhile(lab, asked(served(board), f"/mend?task={quote(task)}")).json
 
 
-def test_what_would_mend_a_task_is_told_or_why_not(lab: Lab, board: Board, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_relaxations_of_a_task_are_found_or_why_not(
+    lab: Lab, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert lab.running(agent(lab, ":Astrid"))
     watched(lab, board)
     (task,) = board.running()
     board.apply(EcologyChange(tasks={task: {"lost": {iri("astrid-drive"): {}}}, "old": {}}))
-    told = mended(lab, board, task)
+    told = explained(lab, board, task)
     assert [one["role"] for one in told["reasons"]] == [iri("drive")]
     assert any("let the role drive take pippi-drive" in one["message"] for one in told["repairs"])
-    assert mended(lab, board, "old") == {"detail": "its configurator has not told its task"}
-    monkeypatch.setattr(mends, "MENDING", 0.01)
-    assert mended(lab, board, task) == {"detail": "what would mend it was not found in 0.01 s"}
+    assert explained(lab, board, "old") == {"detail": "its configurator has not told its task"}
+    monkeypatch.setattr(explained_refusals, "EXPLAINED_WITHIN", 0.01)
+    assert explained(lab, board, task) == {"detail": "what would mend it was not found in 0.01 s"}
 
 
-def test_what_would_have_mended_a_task_that_was_refused_at_once_is_told(lab: Lab, board: Board) -> None:
+def test_a_task_that_was_refused_at_once_is_explained(lab: Lab, board: Board) -> None:
     watched(lab, board)
     agent(lab, ":Emil")
     lab.let_pass(2.0)
@@ -63,7 +65,7 @@ def test_what_would_have_mended_a_task_that_was_refused_at_once_is_told(lab: Lab
     assert board.running() == []
     ((task, body),) = board.state()["tasks"].items()
     assert (body["phase"], body["over"]) == ("refused", True)
-    told = mended(lab, board, task)
+    told = explained(lab, board, task)
     assert iri("drive") in {one["role"] for one in told["reasons"]}
     assert iri("astrid-drive") in {one["component"] for one in told["near_misses"]}
 

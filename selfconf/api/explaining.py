@@ -1,8 +1,9 @@
-"""Why a task has no configuration among given advertisements, what nearly fits, and what would mend it.
+"""Why a task has no configuration among given advertisements, with near misses and relaxations.
 
-`python -m selfconf.api.mending` finds it out in a process of its own, which can be ended. It reads a JSON object from
-stdin with the text `record` (a message of the kind `task`), the texts `advertisements` (Turtle, one component each) and
-the IRIs `lost` of components that do not count. It writes a refusal, or an object with the `detail` of why it has none.
+`python -m selfconf.api.explaining` finds it out in a process of its own, which can be ended. It reads a JSON object
+from stdin with the text `record` (a message of the kind `task`), the texts `advertisements` (Turtle, one component
+each) and the IRIs `lost` of components that do not count. It writes a refusal, or an object with the `detail` of why it
+has none.
 """
 
 from __future__ import annotations
@@ -24,16 +25,16 @@ from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.advertisements import Advertisement, read_advertisements
 from selfconf.render import refusal_body
 
-MENDING_SECONDS = 10.0
+EXPLAINING_SECONDS = 10.0
 """How long the search and its explanation may take, where the task does not say."""
 
 
-def what_would_mend(
+def explained_refusal(
     record: TaskRecord, ecology: Mapping[IRI, Advertisement], lost: Collection[IRI]
 ) -> dict[str, object]:
     """The refusal of a task with all that the time allows to find out, or why there is none. Raises SelfconfError."""
     _, method, composer = recorded_task(record)
-    limit = TimeLimit(method.seconds or MENDING_SECONDS)
+    limit = TimeLimit(method.seconds or EXPLAINING_SECONDS)
     found = composed(composer, ecology, frozenset(lost), None, limit)
     if not isinstance(found, Refusal):
         return {"detail": "what lives now has a configuration, or the search has not ended in its time"}
@@ -51,7 +52,7 @@ def main() -> None:
         for text in asked["advertisements"]:
             good, _ = read_advertisements(text.encode(), "")  # what does not conform plays in no task
             ecology.update({one.component: one for one in good})
-        told = what_would_mend(decode(asked["record"].encode(), TaskRecord), ecology, set(map(IRI, asked["lost"])))
+        told = explained_refusal(decode(asked["record"].encode(), TaskRecord), ecology, set(map(IRI, asked["lost"])))
     except (SelfconfError, MemoryError, RecursionError) as error:
         told = {"detail": str(error) or type(error).__name__}
     print(json.dumps(told))

@@ -36,7 +36,7 @@ MOST_NEAR = 2_000
 """How many near misses a refusal has for one role at most."""
 
 
-def nearest_first(
+def ranked_near_misses(
     composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal, known: Hierarchy
 ) -> tuple[NearMiss, ...]:
     """The near misses of a refusal, role by role: first probable slips of the type, then by likeness.
@@ -142,7 +142,7 @@ class _Question:
         return sorted(found, key=lambda miss: isinstance(miss.obstacle, UnfitOutput) and miss.obstacle.hopeless)
 
 
-def exclusions_nearest_first(
+def ranked_exclusions(
     composer: Composer, ecology: Mapping[IRI, Advertisement], number: int, known: Hierarchy
 ) -> tuple[Exclusion, ...]:
     """What keeps components out of a role, by number: those of its class first, then those with few obstacles.

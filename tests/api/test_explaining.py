@@ -1,4 +1,4 @@
-"""What would mend a task is found out apart from its configurator: with near misses, without what is lost."""
+"""A refusal is explained apart from its configurator: with near misses and relaxations, without what is lost."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from selfconf.api.mending import what_would_mend
+from selfconf.api.explaining import explained_refusal
 from selfconf.protocol.codec import encode
 from selfconf.rdf import turtle
 from tests.api.test_role_fits import advertisement, record
@@ -17,8 +17,8 @@ from tests.lab import ADVERTISEMENTS, iri
 ECOLOGY = {one.component: one for one in map(advertisement, ADVERTISEMENTS.values())}
 
 
-def test_a_refusal_is_told_with_what_would_mend_it() -> None:
-    told = what_would_mend(record(), ECOLOGY, {iri("astrid-drive")})
+def test_a_refusal_is_explained_with_its_relaxations() -> None:
+    told = explained_refusal(record(), ECOLOGY, {iri("astrid-drive")})
     assert "let the role drive take pippi-drive, although its support is Pippi, not Astrid" in json.dumps(
         told["repairs"]
     )
@@ -26,7 +26,7 @@ def test_a_refusal_is_told_with_what_would_mend_it() -> None:
 
 
 def test_where_there_is_a_configuration_it_is_said_that_there_is_no_refusal() -> None:
-    assert "has a configuration" in str(what_would_mend(record(), ECOLOGY, set())["detail"])
+    assert "has a configuration" in str(explained_refusal(record(), ECOLOGY, set())["detail"])
 
 
 @pytest.mark.process
@@ -35,7 +35,7 @@ def test_a_process_of_its_own_says_it_or_what_is_wrong() -> None:
     told = []
     for text in (encode(record()).decode(), "{}"):
         asked = {"record": text, "advertisements": texts, "lost": [iri("astrid-drive")]}
-        command = [sys.executable, "-m", "selfconf.api.mending"]
+        command = [sys.executable, "-m", "selfconf.api.explaining"]
         done = subprocess.run(command, input=json.dumps(asked), capture_output=True, text=True, check=True)
         told.append(json.loads(done.stdout))
     assert told[0]["reasons"][0]["role"] == iri("drive")

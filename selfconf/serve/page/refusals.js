@@ -1,6 +1,6 @@
-// What would mend a task that waits or was refused, as the server finds out while its refusal is looked at.
+// Near misses and relaxations of a task that waits or was refused, which the server finds while the refusal is shown.
 
-export class Mends {
+export class ExplainedRefusals {
   #asked = "";
   #told = null;
   /** Called when the server has said it. */

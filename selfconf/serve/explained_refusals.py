@@ -1,4 +1,4 @@
-"""`/mend`: what would mend a task that has no configuration now, found out for the clients that look at its refusal.
+"""`/mend`: near misses and relaxations of a task without a configuration, found for the clients that look at it.
 
 The configurator of a task that waits has to listen, and tells why there is no configuration and no more; one that has
 been refused has ended. What nearly fits and which change would help takes a search, which is made in a process of its
@@ -22,12 +22,12 @@ from selfconf.serve.change import Body
 from selfconf.serve.checked import checked_refusal
 from selfconf.serve.problems import problem
 
-MENDING = 20.0
+EXPLAINED_WITHIN = 20.0
 """Seconds that the search may take."""
 
 
-class Mends:
-    """Finds out what would mend tasks, one at a time; used on the thread that serves."""
+class ExplainedRefusals:
+    """Finds near misses and relaxations of refusals, one at a time; used on the thread that serves."""
 
     def __init__(self, board: Board) -> None:
         self._board = board
@@ -54,9 +54,9 @@ class Mends:
         }
         try:
             async with self._one:
-                told = await judged_apart("selfconf.api.mending", question, MENDING)
+                told = await judged_apart("selfconf.api.explaining", question, EXPLAINED_WITHIN)
         except asyncio.TimeoutError:
-            told = {"detail": f"what would mend it was not found in {MENDING:g} s"}
+            told = {"detail": f"what would mend it was not found in {EXPLAINED_WITHIN:g} s"}
         except ValueError:
             told = {"detail": "what would mend it cannot be found"}
         return told if "detail" in told else checked_refusal(told)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from selfconf.composition.composer import Composer
-from selfconf.composition.nearest import fault_of
+from selfconf.composition.near_misses import fault_of
 from selfconf.model.candidate_order import candidate_order
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
@@ -34,7 +34,7 @@ RECRUITING_STEPS = 100_000
 """Steps for the question whether there is a solution where a role recruits."""
 
 
-def with_nearest_recruits(
+def with_recruit_near_misses(
     composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal, known: Hierarchy
 ) -> Refusal:
     """A refusal that names, for each input that a recruit could have fed, the components nearest to it."""
@@ -43,14 +43,14 @@ def with_nearest_recruits(
     reasons = []
     for reason in refusal.reasons:
         if isinstance(reason, InputUnfed) and reason.recruits:
-            few = list(_nearest(composer, ecology, problem, reason, SignalLikeness(known)))[:RECRUITS_NAMED]
+            few = list(_near_misses(composer, ecology, problem, reason, SignalLikeness(known)))[:RECRUITS_NAMED]
             reason = replace(reason, nearest=few[0] if few else None)
             near += few
         reasons.append(reason)
     return replace(refusal, reasons=tuple(reasons), near_misses=(*refusal.near_misses, *near))
 
 
-def _nearest(
+def _near_misses(
     composer: Composer,
     ecology: Mapping[IRI, Advertisement],
     problem: Problem,
