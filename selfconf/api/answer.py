@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import field, fields, replace
 from pathlib import Path
 
-from selfconf.api.arguments import Paths, listed_paths, option, seconds_limit, steps_limit
+from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, seconds_limit, steps_limit
 from selfconf.api.collector import collector_at_rest, collector_looking_at_new
 from selfconf.api.ecology import Ecology
 from selfconf.api.ontologies import hierarchy_of
@@ -364,4 +364,6 @@ def configure(
     >>> answer["screen"]
     (<https://example.org/my-home#display>,)
     """
-    return Inquiry(task, ecology, Method.of(strategy, reasoning, ontologies, steps, seconds)).answer(what_if)
+    method = Method.of(strategy, reasoning, ontologies, steps, seconds)
+    checked_flag(what_if, "what_if")
+    return Inquiry(task, ecology, method).answer(what_if)

@@ -1,15 +1,16 @@
-"""What the functions of the library take besides tasks and ecologies: words for options, paths, and limits."""
+"""What the functions of the library take besides tasks and ecologies: words, flags, paths, names, and limits."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable
 from enum import Enum
+from math import isfinite
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TypeAlias, TypeVar
 
-from selfconf.errors import ProgrammerError
+from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.template import MOST_PRIORITY
 
 Paths: TypeAlias = str | Path | Iterable[str | Path]
@@ -20,11 +21,41 @@ Choice = TypeVar("Choice", bound=Enum)
 
 
 def listed_paths(paths: Paths) -> list[str | Path]:
-    """The paths; one by itself is a list of one, and not of its letters. Raises ProgrammerError for what is none."""
+    """The paths; one by itself is a list of one, and not of its letters.
+
+    Raises ProgrammerError for what is none, and AuthorError for a text that names none.
+    """
     listed = [paths] if isinstance(paths, str | Path) else list(paths) if isinstance(paths, Iterable) else None
     if listed is None or not all(isinstance(path, str | os.PathLike) for path in listed):
         raise ProgrammerError(f"paths are one path or several, as text or as Path, not {paths!r}")
+    for path in listed:
+        checked_path(path)
     return listed
+
+
+def checked_path(path: str | Path) -> Path:
+    """The path of a text. Raises AuthorError for a text that names none, and ProgrammerError for what is no text."""
+    if not isinstance(path, str | os.PathLike):
+        raise ProgrammerError(f"a path is text or a Path, not {path!r}")
+    if not str(path):  # `Path` takes it for the current folder
+        raise AuthorError("an empty text is no path; the current folder is '.'")
+    if "\0" in str(path):
+        raise AuthorError(f"a path holds no null character: {str(path)!r}")
+    return Path(path)
+
+
+def checked_text(text: str, what: str) -> str:
+    """A text by which something is named. Raises ProgrammerError, in which `what` says what it is."""
+    if not isinstance(text, str):
+        raise ProgrammerError(f"{what} is text, not {text!r}")
+    return text
+
+
+def checked_flag(flag: bool, name: str) -> bool:
+    """True or False. Raises ProgrammerError, in which `name` is that of the argument, for all else, as for "no"."""
+    if not isinstance(flag, bool):
+        raise ProgrammerError(f"{name} is True or False, not {flag!r}")
+    return flag
 
 
 def listed_endpoints(endpoints: Endpoints) -> list[str]:
@@ -55,6 +86,28 @@ def steps_limit(steps: int | None) -> int | None:
     if isinstance(steps, bool) or not isinstance(steps, Integral) or steps < 1:
         raise ProgrammerError(f"steps are a whole number above zero, or None for no limit, not {steps!r}")
     return int(steps)
+
+
+def rows_limit(rows: int) -> int:
+    """The rows that an answer may have. Raises ProgrammerError for what is no number of rows."""
+    if isinstance(rows, bool) or not isinstance(rows, Integral) or rows < 1:
+        raise ProgrammerError(f"rows are a whole number above zero, not {rows!r}")
+    return int(rows)
+
+
+def answer_seconds(seconds: float) -> float:
+    """The seconds that an answer may take. Raises ProgrammerError for what is no time, and for None."""
+    limit = seconds_limit(seconds)
+    if limit is None:
+        raise ProgrammerError(f"an answer has a limit of seconds: a number above zero, at most {LONGEST_SECONDS:,.0f}")
+    return limit
+
+
+def checked_moment(moment: float | None) -> float | None:
+    """A moment in seconds of the Unix epoch, or None for now. Raises ProgrammerError for what is none."""
+    if moment is not None and (isinstance(moment, bool) or not isinstance(moment, Real) or not isfinite(moment)):
+        raise ProgrammerError(f"a moment is a number of seconds of the Unix epoch, or None for now, not {moment!r}")
+    return None if moment is None else float(moment)
 
 
 def seconds_limit(seconds: float | None) -> float | None:

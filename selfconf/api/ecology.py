@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from selfconf.api.arguments import answer_seconds, rows_limit
 from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
 from selfconf.model.hierarchy import Hierarchy
@@ -146,8 +147,8 @@ class Ecology(ABC):
     def query(self, sparql: str, *, seconds: float = 60.0, rows: int = 100_000) -> Solutions | bool | str:
         """The answer to a SPARQL 1.1 query: solutions, a truth value, or for CONSTRUCT and DESCRIBE Turtle.
 
-        Runs in a process of its own, which is ended after `seconds`. Raises QueryError, and ProgrammerError for what is
-        no text.
+        Runs in a process of its own, which is ended after `seconds`; there are `rows` solutions or triples at most.
+        Raises QueryError, and ProgrammerError for what is no text, no time and no number of rows.
 
         >>> home.query("ASK { ?c a rob:Display }")
         True
@@ -156,7 +157,7 @@ class Ecology(ABC):
 
         if not isinstance(sparql, str):
             raise ProgrammerError(f"a query is the text of one, not {type(sparql).__name__}")
-        question = Question(sparql, "json", rows, seconds=seconds)
+        question = Question(sparql, "json", rows_limit(rows), seconds=answer_seconds(seconds))
         shown = self.asked(question)
         body = json.loads(shown.text)
         if not isinstance(body, dict) or "head" not in body:  # the JSON-LD of triples

@@ -9,7 +9,16 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from selfconf import rendezvous
-from selfconf.api.arguments import Endpoints, Paths, listed_endpoints, option
+from selfconf.api.arguments import (
+    Endpoints,
+    Paths,
+    checked_flag,
+    checked_moment,
+    checked_path,
+    checked_text,
+    listed_endpoints,
+    option,
+)
 from selfconf.api.component_states import ComponentState, component_states
 from selfconf.api.deployed import connected, deployed_body
 from selfconf.api.echo import HeardSignal, echo
@@ -118,14 +127,16 @@ class LivingEcology(Ecology):
         replies = self._synchronous.ask(self._view.keys.configurator_call("*", "status"))
         return holders_in(replies, self._view.keys)
 
-    def state(self, component: IRI) -> str:
+    def state(self, component: str) -> str:
         """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.
 
-        As of the last discovery; what lives in a large ecology, as of the first question after it.
+        As of the last discovery; what lives in a large ecology, as of the first question after it. What is no IRI is
+        looked up as by `component`, which raises AuthorError.
         """
-        if self._life(component) is not None:
+        one = component if isinstance(component, IRI) else self.component(component).advertisement.component
+        if self._life(one) is not None:
             return "alive"
-        found = self.discovery.found.get(component)
+        found = self.discovery.found.get(one)
         return "dormant" if found is not None and found.startable else "absent"
 
     def component_states(self) -> tuple[ComponentState, ...]:
@@ -173,8 +184,10 @@ class LivingEcology(Ecology):
     def component(self, term: str) -> FoundAdvertisement:
         """The advertised component that a term means: an IRI, with or without brackets, or its local name.
 
-        Raises AuthorError where there is none, or where several have that name.
+        Raises AuthorError where there is none, or where several have that name, and ProgrammerError for a term that is
+        no text.
         """
+        checked_text(term, "the name of a component")
         wanted = term.removeprefix("<").removesuffix(">").removeprefix(":")
         known = self.discover().found
         found = [one for component, one in known.items() if wanted in (component, component.short)]
@@ -327,8 +340,11 @@ class LivingEcology(Ecology):
         """Why components play the roles that a term means, in sentences; at a moment, or now.
 
         The term is a role, a component, a value that a task is bound to, or a task: an IRI or its local name. A
-        configurator remembers its latest events, and none of them when it has ended.
+        configurator remembers its latest events, and none of them when it has ended. Raises ProgrammerError for a term
+        that is no text, and for what is no moment.
         """
+        checked_text(term, "the term that is asked about")
+        at = checked_moment(at)
         told: dict[str, list[Notice]] = {}
         rejected = []
         for sample in self._synchronous.ask(self._view.keys.notices()).samples:
@@ -416,8 +432,8 @@ class LivingEcology(Ecology):
             self.name,
             self.endpoints,
             chosen,
-            wait,
-            name=name,
+            checked_flag(wait, "wait"),
+            name=checked_text(name, "the name of a task"),
             priority=priority,
             upgrade=upgrade,
             credentials=self._credentials,
@@ -449,7 +465,9 @@ class LivingEcology(Ecology):
 
         check_may_run(self._credentials)
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
-        record = task_record(completed(task), method, option(Policy, "policy", policy), name, priority, upgrade)
+        chosen = option(Policy, "policy", policy)
+        checked_text(name, "the name of a task")
+        record = task_record(completed(task), method, chosen, name, priority, upgrade)
         return self._complaining(self._tasks.detach(record))
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
@@ -459,6 +477,8 @@ class LivingEcology(Ecology):
         does not end in time, or if a component does not obey; of all tasks those are taken down first that answer.
         """
         check_may_run(self._credentials)
+        if name is not None:
+            checked_text(name, "the name of a task")
         return self._complaining(self._tasks.stop(name))
 
     def _sites_answer(self, pause: float) -> bool:
@@ -476,12 +496,14 @@ def join(ecology: str | None = None, *, connect: Endpoints = (), keys: str | Pat
     `connect` is an endpoint of a site, such as `tcp/127.0.0.1:7447`, or several; without them the sites on this
     machine. Joining reads; nothing changes before `run`. `keys` is a folder of keys; without it, that of the variable
     SELFCONF_KEYS, if there is one. Raises NetworkError, saying what to try, if there is no such ecology, or if it does
-    not let in the holder of the keys, and AuthorError for keys that are none.
+    not let in the holder of the keys, AuthorError for keys that are none, and ProgrammerError for what is no text.
 
     >>> with join() as living:
     ...     answer = living.configure(template("examples/clock/tell-the-time.ttl"))
     ...     answer["screen"], living.tasks
     ((<https://example.org/my-home#display>,), ())
     """
-    shown = rendezvous.credentials(None if keys is None else Path(keys), *MEMBERS)
+    if ecology is not None:
+        checked_text(ecology, "the name of an ecology")
+    shown = rendezvous.credentials(None if keys is None else checked_path(keys), *MEMBERS)
     return LivingEcology(*rendezvous.find(ecology, listed_endpoints(connect), shown), shown)

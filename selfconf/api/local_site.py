@@ -12,9 +12,11 @@ from pathlib import Path
 from types import TracebackType
 
 from selfconf import rendezvous
+from selfconf.api.arguments import checked_text
 from selfconf.api.reading import existing
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
 from selfconf.files import STDIN
+from selfconf.protocol.keys import checked_name
 from selfconf.rendezvous import LocalSite
 from selfconf.termination import parent_environment
 
@@ -121,9 +123,13 @@ class SiteProcess:
 def sites(ecology: str | None = None) -> tuple[LocalSite, ...]:
     """The sites that run on this machine, of one ecology or of all, sorted: name, endpoint and process of each.
 
+    Raises AuthorError for a text that names no ecology, and ProgrammerError for what is no text.
+
     >>> [site.site for site in sites()]
     ['home']
     """
+    if ecology is not None:
+        checked_name(checked_text(ecology, "the name of an ecology"), "an ecology")
     return tuple(rendezvous.local_sites(ecology))
 
 

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
 from selfconf import files
+from selfconf.api.arguments import checked_path
 from selfconf.api.collector import collector_at_rest
 from selfconf.api.ecology import Ecology, EndpointEcology, LoadedEcology
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Place
 from selfconf.model.term import IRI
@@ -51,7 +52,7 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
     all *.ttl below it.
     `left_out` of the ecology names the advertisements that do not count.
 
-    Raises AuthorError for what is not there, cannot be read or is not Turtle.
+    Raises AuthorError for what is not there, cannot be read or is not Turtle; ProgrammerError for what is no source.
 
     >>> home = read("examples/clock")
     >>> len(home.components)
@@ -101,13 +102,13 @@ def _texts(sources: Iterable[object]) -> Iterator[Text]:
 
 
 def text_of(source: object) -> Text:
-    """One document: a file, Turtle text, or an rdflib graph."""
+    """One document: a file, Turtle text, or an rdflib graph. Raises AuthorError, and ProgrammerError for all else."""
     if _is_path(source):
         return file_text(_path(source))
     if isinstance(source, str):
         return source.encode(), "<text>", None
     if not isinstance(source, _Graph):
-        raise AuthorError(f"a source is a path, Turtle text, an rdflib graph or an endpoint, not {source!r}")
+        raise ProgrammerError(f"a source is a path, Turtle text, an rdflib graph or an endpoint, not {source!r}")
     return _serialized(source).encode(), "<graph>", None
 
 
@@ -125,7 +126,7 @@ def _is_path(source: object) -> TypeGuard[str | Path]:
 def _path(source: str | Path) -> Path:
     if not str(source):
         raise AuthorError("an empty text is no path and no Turtle; the current folder is '.'")
-    return Path(source)
+    return checked_path(source)
 
 
 def file_text(path: Path) -> Text:

@@ -7,6 +7,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from selfconf.api.arguments import checked_text
 from selfconf.api.reading import text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, ProgrammerError, TemplateError
@@ -96,7 +97,7 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
     """The template or task in a file, in Turtle text, or in an rdflib graph; `name` says which, where it holds several.
 
     Raises TemplateError with file, line and column for what is Turtle but no template, TurtleError and AuthorError for
-    what cannot be read.
+    what cannot be read, and ProgrammerError for what is no source or no name.
 
     >>> [role.iri.short for role in template("examples/clock/tell-the-time.ttl").roles]
     ['source', 'screen']
@@ -105,6 +106,7 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
     document = turtle.parse(text, source_name, base)
     wanted = None
     if name is not None:
+        checked_text(name, "the name of a template")
         term = name if isinstance(name, IRI) else tasks.read_term(name, document.prefixes)
         if not isinstance(term, IRI):
             raise BindingError(f"a template is named by a CURIE or an <IRI>, not by {name!r}")

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from selfconf import files, library
-from selfconf.api.arguments import Paths, listed_paths
+from selfconf.api.arguments import Paths, checked_flag, checked_path, listed_paths
 from selfconf.api.file_checks import Remembered, shared
 from selfconf.api.tables import Tabular
 from selfconf.errors import AuthorError
@@ -69,7 +69,7 @@ def validate(paths: Paths, *, ontologies: Paths = (), cache: bool = False) -> Va
     True
     """
     names = [str(path) for path in listed_paths(paths)]
-    each = _remembered(names) if cache else shared
+    each = _remembered(names) if checked_flag(cache, "cache") else shared
     found = check(names, map(str, listed_paths(ontologies)), each)
     return ValidationReport(found.files, found.diagnostics)
 
@@ -131,11 +131,9 @@ def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
 def _files(given: str, endings: tuple[str, ...] = CHECKED) -> Iterator[str]:
     """The files that a path stands for: those of a folder that end so, by name, or itself.
 
-    Raises AuthorError for an empty text, which `Path` takes for the current folder.
+    Raises AuthorError for a text that names no path.
     """
-    if not given:
-        raise AuthorError("an empty text is no path; the current folder is '.'")
-    path = Path(given)
+    path = checked_path(given)
     if given == "-" or not path.is_dir():
         yield given
     else:

@@ -13,10 +13,14 @@ import itertools
 import random
 from collections.abc import Callable
 from functools import lru_cache
+from math import isfinite
+from numbers import Real
 from typing import TypeVar
 
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
+from selfconf.errors import ProgrammerError
 from selfconf.model.immutable import immutable
+from selfconf.model.wording import listed
 
 _T = TypeVar("_T")
 
@@ -72,6 +76,18 @@ class Faults:
     most_delay: float = 0.0005
     most_event_delay: float = 0.0
     """How long events and notices of lives may be delayed at most; they keep their order all the same."""
+
+    def __post_init__(self) -> None:
+        for name, chance in (("loss", self.loss), ("doubling", self.doubling)):
+            if not _is_number(chance) or not 0 <= chance <= 1:
+                raise ProgrammerError(f"{name} is a chance: a number from 0 to 1, not {chance!r}")
+        delays = self.least_delay, self.most_delay, self.most_event_delay
+        if not all(_is_number(delay) and delay >= 0 for delay in delays):
+            raise ProgrammerError(f"delays are numbers of seconds from zero on, not {listed(map(repr, delays))}")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
 
 
 class Network:

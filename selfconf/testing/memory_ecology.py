@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from selfconf import files, library
 from selfconf.api.answer import Answer, Method
-from selfconf.api.arguments import Paths, listed_paths, option, passing_seconds
+from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
 from selfconf.api.composites import Composites
 from selfconf.api.event_answers import answered, answered_event
 from selfconf.api.ontologies import hierarchy_of
@@ -129,8 +129,10 @@ class MemoryEcology:
         """`seed` decides the delays and losses of the network; without `faults` nothing is lost.
 
         By `ontologies`, files and folders of Turtle, it is checked what components emit, as by those of selfconf; the
-        insides of composites see them in the mode `reasoning`.
+        insides of composites see them in the mode `reasoning`. Raises ProgrammerError for what is none of these.
         """
+        if faults is not None and not isinstance(faults, Faults):
+            raise ProgrammerError(f"the faults of a network are Faults(...), not {faults!r}")
         self._ontologies = [file for path in listed_paths(ontologies) for file in files.within(Path(path))]
         self.network = Network(seed, faults)
         self._shelf = _MemoryShelf()
@@ -163,8 +165,11 @@ class MemoryEcology:
         """Let a component live, on a node of its own; returns it.
 
         Its advertisement is the one of its class, or the one given: Turtle text or a file. Raises AuthorError for one
-        that does not conform, and for a document with several components of which the class names none.
+        that does not conform, and for a document with several components of which the class names none, and
+        ProgrammerError for what is no component.
         """
+        if not isinstance(component, Component):
+            raise ProgrammerError(f"a component is an object of a class of selfconf.sdk.Component, not {component!r}")
         found = self._advertised(component, advertisement)
         self._shelf.put(found)
         bus = self.network.node()
@@ -194,7 +199,7 @@ class MemoryEcology:
         """
         complete, method, chosen = completed(task), Method.of(strategy), option(Policy, "policy", policy)
         self.advance(1.5)  # the site looks at its shelf once a second
-        return MemoryRun(self, complete, method, chosen, wait)
+        return MemoryRun(self, complete, method, chosen, checked_flag(wait, "wait"))
 
     def crash(self, component: Component) -> None:
         """End the process of a component as kill -9 does: it says nothing any more."""

@@ -246,6 +246,10 @@ def test_arguments_of_another_kind_are_refused_in_a_sentence(task: sc.TaskSpecif
         sc.configure(task, home, steps=0)
     with pytest.raises(ProgrammerError, match="seconds are a number"):
         sc.configure(task, home, seconds=-1)
+    with pytest.raises(ProgrammerError, match="what_if is True or False, not 'no'"):
+        sc.configure(task, home, what_if="no")  # type: ignore[arg-type]  # refused when it runs, too
+    with pytest.raises(AuthorError, match="an empty text is no path"):
+        sc.configure(task, home, ontologies="")
     with pytest.raises(ProgrammerError, match="paths are one path or several"):
         sc.configure(task, home, ontologies=None)  # type: ignore[arg-type]  # refused when it runs, too
 

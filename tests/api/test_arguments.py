@@ -11,16 +11,22 @@ import pytest
 
 from selfconf.api.arguments import (
     LONGEST_SECONDS,
+    answer_seconds,
+    checked_flag,
+    checked_moment,
+    checked_path,
     checked_priority,
+    checked_text,
     checked_upgrade,
     listed_endpoints,
     listed_paths,
     option,
     passing_seconds,
+    rows_limit,
     seconds_limit,
     steps_limit,
 )
-from selfconf.errors import ProgrammerError
+from selfconf.errors import AuthorError, ProgrammerError
 
 
 class Colour(Enum):
@@ -57,6 +63,47 @@ def test_a_word_is_an_option_or_is_answered_with_the_options() -> None:
     with pytest.raises(ProgrammerError) as error:
         option(Colour, "colour", "green")
     assert str(error.value) == "there is no colour 'green'; choose one of 'red', 'blue'"
+
+
+@pytest.mark.parametrize(("path", "why"), [("", "the current folder is"), ("a\0b", "no null character")])
+def test_a_text_that_names_no_path_is_refused_in_a_sentence(path: str, why: str) -> None:
+    for call in (checked_path, listed_paths):
+        with pytest.raises(AuthorError, match=why):
+            call(path)
+    assert (checked_path("a"), checked_path(Path())) == (Path("a"), Path())
+    with pytest.raises(ProgrammerError, match=r"^a path is text or a Path, not 42$"):
+        checked_path(42)  # type: ignore[arg-type]  # that is what is tested
+
+
+def test_texts_and_flags_are_what_they_are_called() -> None:
+    assert (checked_text("a", "a name"), checked_flag(True, "wait")) == ("a", True)
+    for text in (None, 3, b"a"):
+        with pytest.raises(ProgrammerError, match=r"^a name is text, not "):
+            checked_text(text, "a name")  # type: ignore[arg-type]  # that is what is tested
+    for flag in ("no", 1, None):
+        with pytest.raises(ProgrammerError, match=r"^wait is True or False, not "):
+            checked_flag(flag, "wait")  # type: ignore[arg-type]  # that is what is tested
+
+
+@pytest.mark.parametrize("rows", [0, -1, 1.5, True, "x", None])
+def test_rows_are_a_number_above_zero(rows: Any) -> None:
+    assert rows_limit(1) == 1
+    with pytest.raises(ProgrammerError, match=r"^rows are a whole number above zero, not "):
+        rows_limit(rows)
+
+
+@pytest.mark.parametrize("seconds", [0, float("nan"), "x", None])
+def test_an_answer_has_a_limit_of_seconds(seconds: Any) -> None:
+    assert answer_seconds(0.5) == 0.5
+    with pytest.raises(ProgrammerError, match="number above zero"):
+        answer_seconds(seconds)
+
+
+@pytest.mark.parametrize("moment", ["x", float("nan"), float("inf"), True])
+def test_a_moment_is_a_number_or_now(moment: Any) -> None:
+    assert (checked_moment(None), checked_moment(5)) == (None, 5.0)
+    with pytest.raises(ProgrammerError, match=r"^a moment is a number of seconds of the Unix epoch"):
+        checked_moment(moment)
 
 
 @pytest.mark.parametrize("paths", [None, 5, b"examples", [None], ["examples", 5]])

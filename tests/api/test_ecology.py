@@ -213,6 +213,12 @@ def test_a_query_that_cannot_be_asked_is_an_error(paper: LoadedEcology, sparql: 
         paper.query(sparql)
 
 
+@pytest.mark.parametrize("limits", [{"rows": 0}, {"rows": None}, {"seconds": float("nan")}, {"seconds": None}])
+def test_a_query_has_limits(paper: LoadedEcology, limits: Any) -> None:
+    with pytest.raises(ProgrammerError, match="number above zero"):
+        paper.query("ASK {}", **limits)
+
+
 @pytest.mark.process
 def test_a_query_ends_in_time(paper: LoadedEcology, asked_here: pytest.MonkeyPatch) -> None:
     asked_here.undo()  # it is the process that is ended

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -75,6 +76,31 @@ def test_what_cannot_be_run_is_refused_in_a_sentence(served: Home, clock: sc.Tas
             living.detach("clock.ttl")  # type: ignore[arg-type]  # that is what is tested
         with pytest.raises(ProgrammerError, match="an upgrade comes after"):
             living.run(clock, upgrade=-1)
+        for run in (living.run, living.detach):
+            for name in (3, None):
+                with pytest.raises(ProgrammerError, match=r"^the name of a task is text, not "):
+                    run(clock, name=name)  # type: ignore[operator]  # that is what is tested
+        with pytest.raises(ProgrammerError, match=r"^wait is True or False, not 'no'$"):
+            living.run(clock, wait="no")  # type: ignore[arg-type]  # that is what is tested
+
+
+def test_what_is_no_term_is_refused_in_a_sentence_and_a_local_name_is_one(served: Home) -> None:
+    nothing: Any = None
+    with sc.join() as living:
+        for ask in (living.component, living.state, living.restart, living.why):
+            with pytest.raises(ProgrammerError, match=r"is text, not None$"):
+                ask(nothing)
+        with pytest.raises(ProgrammerError, match=r"^the name of a task is text, not 3$"):
+            living.stop(3)  # type: ignore[arg-type]  # that is what is tested
+        with pytest.raises(ProgrammerError, match=r"^a moment is a number of seconds"):
+            living.why("clock", "x")  # type: ignore[arg-type]  # that is what is tested
+        clock = living.component("clock").advertisement.component
+        assert [living.state(name) for name in (clock, "clock", ":clock", f"<{clock}>")] == ["dormant"] * 4
+        with pytest.raises(AuthorError, match="no component lamp is advertised"):
+            living.state("lamp")
+    for arguments in ({"ecology": 42}, {"keys": 42}):
+        with pytest.raises(ProgrammerError, match="text"):
+            sc.join(**arguments)  # type: ignore[arg-type]  # that is what is tested
 
 
 def test_an_ecology_that_was_left_says_so(served: Home, clock: sc.TaskSpecification) -> None:

@@ -11,7 +11,7 @@ import pytest
 import selfconf as sc
 from selfconf import sites
 from selfconf.api.local_site import SiteProcess
-from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
+from selfconf.errors import AuthorError, NetworkError, ProgrammerError, SiteMisusedError
 from selfconf.termination import alive
 from tests.lab import write_advertisements
 
@@ -32,6 +32,13 @@ def test_a_site_that_cannot_run_has_said_why(capfd: pytest.CaptureFixture[str]) 
     with pytest.raises(SiteMisusedError, match="has said why"), SiteProcess(["examples/clock"], "no/name"):
         pass
     assert "no/name" in capfd.readouterr().err
+
+
+def test_sites_are_those_of_an_ecology_with_a_name() -> None:
+    with pytest.raises(AuthorError, match="cannot name an ecology"):
+        sites("a/b")
+    with pytest.raises(ProgrammerError, match=r"^the name of an ecology is text, not 42$"):
+        sites(42)  # type: ignore[arg-type]  # that is what is tested
 
 
 def test_a_site_watches_files_and_nothing_else() -> None:

@@ -50,8 +50,15 @@ def test_a_template_that_is_not_there_is_named() -> None:
         sc.template(NAVIGATE, ":fly")
     with pytest.raises(BindingError, match="named by a CURIE"):
         sc.template(NAVIGATE, '"navigate"')
+    for name in (42, [], b"a"):
+        with pytest.raises(ProgrammerError, match=r"^the name of a template is text, not "):
+            sc.template(NAVIGATE, name)  # type: ignore[arg-type]  # that is what is tested
     with pytest.raises(AuthorError, match="no file or folder"):
         sc.template("examples/fly.ttl")
+    with pytest.raises(AuthorError, match="a path holds no null character"):
+        sc.template("\0")
+    with pytest.raises(ProgrammerError, match=r"^a source is a path, Turtle text, "):
+        sc.template(42)  # type: ignore[arg-type]  # that is what is tested
     with pytest.raises(AuthorError, match="is a folder"):
         sc.template("examples")
     with pytest.raises(TemplateError, match="is it the right file"):

@@ -10,7 +10,7 @@ import pytest
 
 import selfconf as sc
 from selfconf.api.validation import check
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
 from tests.cli.diagnosed import GOOD, write_diagnosed
 
@@ -61,6 +61,13 @@ def test_an_empty_text_is_not_the_current_folder() -> None:
     for paths, ontologies in (("", ()), ([BAD, ""], ()), (BAD, [""])):
         with pytest.raises(AuthorError, match=r"^an empty text is no path; the current folder is '\.'$"):
             sc.validate(paths, ontologies=ontologies)
+    with pytest.raises(AuthorError, match="a path holds no null character"):
+        sc.validate("\0")
+
+
+def test_the_memory_is_used_or_not() -> None:
+    with pytest.raises(ProgrammerError, match=r"^cache is True or False, not 'x'$"):
+        sc.validate(BAD, cache="x")  # type: ignore[arg-type]  # that is what is tested
 
 
 @pytest.fixture

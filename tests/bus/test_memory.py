@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
+
+import pytest
 
 from selfconf.bus.memory import LEASE, Faults, MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Sample, Urgency
+from selfconf.errors import ProgrammerError
 
 
 def echo(node: MemoryBus, key: str = "a") -> None:
@@ -44,6 +48,12 @@ def test_signals_are_lost_doubled_and_overtake_each_other_where_the_faults_say_s
     assert len(set(heard)) < 100
     assert len(set(heard)) < len(heard)
     assert heard != sorted(heard, key=int)
+
+
+@pytest.mark.parametrize("faults", [{"loss": "x"}, {"loss": 2}, {"doubling": float("nan")}, {"most_delay": -1.0}])
+def test_faults_are_chances_and_delays(faults: Any) -> None:
+    with pytest.raises(ProgrammerError, match=r"is a chance: a number from 0 to 1|delays are numbers of seconds"):
+        Faults(**faults)
 
 
 def test_a_perfect_network_loses_nothing() -> None:

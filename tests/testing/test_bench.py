@@ -115,6 +115,14 @@ def test_a_component_that_acts_is_not_started_again_and_one_stop_is_enough() -> 
     assert bench.emitted["heating"] == [{"on": True}]
 
 
+def test_what_is_no_component_and_no_advertisement_is_refused_in_a_sentence() -> None:
+    for component in (None, Thermostat):
+        with pytest.raises(ProgrammerError, match="a component is an object of a class"):
+            ComponentBench(component, ADVERTISEMENT)  # type: ignore[arg-type]  # that is what is tested
+    with pytest.raises(ProgrammerError, match="a source is a path"):
+        ComponentBench(Thermostat(), 42)  # type: ignore[arg-type]  # that is what is tested
+
+
 def test_what_breaks_in_a_component_is_its_failure() -> None:
     bench = ComponentBench(Thermostat(), ADVERTISEMENT)
     bench.start()
