@@ -178,12 +178,23 @@ def test_a_field_of_one_value_is_read_as_its_member_by_the_careful_reader_and_by
     predicate: model.IRI,
 ) -> None:
     field, member = COMPONENT[predicate], SETTINGS[predicate].member
-    samples = {NUMBER.words: "7", COUNT.words: "7", TRUE_OR_FALSE.words: "true"}
+    samples = {TRUE_OR_FALSE.words: "true"} | dict.fromkeys(
+        (kind.words for kind in (NUMBER, POSITIVE, COUNT, COUNT_FROM_ONE)), "7"
+    )
     value = "[ sc:value 7 ; sc:unit unit:SEC ]" if field.into.fields else samples[field.kind.words]
     text = f"{PREFIXES} :a a sc:Component , :Lamp ; <{predicate}> {value} ."
     (careful,), _ = reader.read_document(parse(text, "a.ttl"))
     (fast,), _ = read_advertisements(text.encode(), "a.ttl")
     assert getattr(careful.profile, member) == getattr(fast.profile, member) == (True if value == "true" else 7)
+
+
+def test_what_says_what_only_a_component_says_has_to_be_declared_one() -> None:
+    targets = {
+        str(predicate)
+        for shape in ("ComponentTyped", "PortsTyped")
+        for predicate in SHAPE.objects(URIRef(SHAPES[shape]), SH.targetSubjectsOf)
+    }
+    assert targets == reader.FIELDS
 
 
 def test_the_number_of_a_cost_is_the_number_of_an_advertisement() -> None:
