@@ -31,6 +31,8 @@ plain words; a number or truth value stands for the literal of its kind."""
 class TaskSpecification(Tabular):
     """A template with values for some of its parameters. Immutable: `bind` returns another one.
 
+    Two are equal if their texts, and where these are from, and the values of their parameters are.
+
     >>> template("examples/clock/tell-the-time.ttl")
     <task :tell-the-time>
                name     asks for, or is
@@ -68,12 +70,28 @@ class TaskSpecification(Tabular):
         return Names(self.document.document.prefixes)
 
     def bind(self, **values: Value) -> TaskSpecification:
-        """The task with values for its parameters by name. Raises BindingError for what cannot be bound.
+        """The task with values for its parameters by name.
+
+        Text is read as `--bind` reads it: `:kitchen` is a CURIE in the prefixes of the template, `<urn:x>` an IRI, `7`,
+        `true` and `"7"` are literals of Turtle, and other words are a string; `Literal("7")` is a string in any case.
+        Raises BindingError for what cannot be bound, and for a parameter that is bound already: a value does not
+        change, so bind it on the task as it was before.
 
         >>> template("examples/clock/tell-the-time.ttl").bind(room=":kitchen").bindings
         {'room': <https://example.org/my-home#kitchen>}
         """
         return TaskSpecification(tasks.bind(self.document, [(n, _text(n, v)) for n, v in values.items()]))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, TaskSpecification):
+            return NotImplemented
+        own, others = self.document.document, other.document.document
+        if (self.iri, self.bindings, own.source, own.base) != (other.iri, other.bindings, others.source, others.base):
+            return False
+        return own is others or (own.prefixes == others.prefixes and own.numbered() == others.numbered())
+
+    def __hash__(self) -> int:
+        return hash((self.iri, self.document.document.source, frozenset(self.bindings.items())))
 
     def complete(self) -> TaskSpecification:
         """The task with defaults filled in and every value checked. Raises BindingError."""

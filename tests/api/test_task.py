@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import FrozenInstanceError
 from decimal import Decimal
 from http import HTTPStatus
@@ -153,6 +154,17 @@ def test_a_task_does_not_change(task: sc.TaskSpecification) -> None:
     assert bound.bindings
     with pytest.raises((FrozenInstanceError, AttributeError)):
         task.document = None  # type: ignore[misc,assignment]  # that is what is tested
+
+
+def test_tasks_of_one_text_and_with_the_same_values_are_equal(task: sc.TaskSpecification) -> None:
+    again = sc.template(NAVIGATE).bind(robot=":Astrid", goal="(AT BEDROOM)")
+    assert again == task
+    assert {again, task, pickle.loads(pickle.dumps(task))} == {task}
+    assert sc.template(NAVIGATE) != task
+    text = Path(NAVIGATE).read_text("utf-8")
+    assert sc.template(text) == sc.template(text) != sc.template(NAVIGATE)
+    assert sc.template(text) != sc.template(text.replace("rob:MotorDrive", "rob:Drive"))
+    assert task != "navigate"
 
 
 def test_a_task_prints_its_roles_and_parameters(task: sc.TaskSpecification) -> None:

@@ -57,6 +57,15 @@ class Document:
             for predicate, value in statements:
                 yield subject, predicate, value
 
+    def numbered(self) -> list[Triple]:
+        """Every triple, with blank nodes numbered in the order of the text: a text has the same ones each time."""
+        numbers: dict[Term, BlankNode] = {}
+
+        def of(term: Term) -> Any:
+            return numbers.setdefault(term, BlankNode(f"_:{len(numbers)}")) if isinstance(term, BlankNode) else term
+
+        return [(of(subject), predicate, of(value)) for subject, predicate, value in self.triples()]
+
     def about(self, subject: Term) -> list[tuple[IRI, Term]]:
         """The predicates and objects of a subject; none for a literal."""
         return [] if isinstance(subject, Literal) else self.statements.get(subject, [])

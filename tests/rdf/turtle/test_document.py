@@ -23,6 +23,15 @@ def objects(text: str) -> list[object]:
     return list(turtle.parse(f"{PREFIXES} :s :p {text} .", "t").values(iri("s"), iri("p")))
 
 
+def test_the_blank_nodes_of_a_text_have_the_same_numbers_each_time() -> None:
+    text = "@prefix : <x:> . :a :p [ :q 1 ] , [ :q _:z ] . _:z :p :a ."
+    one, other = turtle.parse(text, "a"), turtle.parse(text, "a")
+    assert list(one.triples()) != list(other.triples())
+    assert one.numbered() == other.numbered()
+    found = {str(term) for triple in one.numbered() for term in triple if isinstance(term, BlankNode)}
+    assert found == {"_:0", "_:1", "_:2"}
+
+
 def test_terms_are_read_as_they_are_written() -> None:
     assert objects(':o, <urn:x>, "a", "a"@en, 1, "01"^^xsd:integer, 1.0, true') == [
         iri("o"),
