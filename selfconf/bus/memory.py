@@ -68,7 +68,11 @@ timer that is renewed until a time has come would never end."""
 
 @immutable
 class Faults:
-    """The chances per message, and the delays in seconds; a perfect and fast network by default."""
+    """The chances per message, and the delays in seconds; a perfect and fast network by default.
+
+    >>> MemoryEcology(seed=7, faults=Faults(loss=0.05, most_delay=0.2))
+    <ecology in memory of 0 components after 0.0 s>
+    """
 
     loss: float = 0.0
     doubling: float = 0.0

@@ -89,6 +89,19 @@ class ComponentBench:
     """Tries one component by itself: start it, send it signals, call it, let time pass, see what it emits.
 
     What feeds it is the bench, which its inputs accept whatever shape they ask of others (`sc:accepts`).
+
+    >>> class Thermostat(Component):
+    ...     def received(self, port, signal):
+    ...         self.emit("heating", {"on": signal["celsius"] < 20})
+    >>> bench = ComponentBench(Thermostat(), '''
+    ...     @prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:home:> .
+    ...     :thermostat a sc:Component, :Thermostat ;
+    ...         sc:hasInput [ sc:name "temperature" ; sc:signalType :Temperature ] ;
+    ...         sc:hasOutput [ sc:name "heating" ; sc:signalType :Switch ] .''')
+    >>> bench.start()
+    >>> bench.send("temperature", {"celsius": 15.0})
+    >>> bench.emitted, bench.active
+    ({'heating': [{'on': True}]}, True)
     """
 
     def __init__(

@@ -56,7 +56,18 @@ class _MemoryShelf(Shelf):
 
 
 class MemoryRun:
-    """A task that runs in an ecology in memory, and what has happened so far."""
+    """A task that runs in an ecology in memory, and what has happened so far.
+
+    >>> ecology = MemoryEcology()
+    >>> for name in ("clock", "display"):
+    ...     _ = ecology.add(Component(), f"examples/clock/{name}.ttl")
+    >>> run = ecology.run(template("examples/clock/tell-the-time.ttl")).started()
+    >>> run.running, run.events[-1].act
+    (True, 'running')
+    >>> run.stop()
+    >>> run.ended, run.events[-1].act
+    (True, 'stopped')
+    """
 
     def __init__(self, ecology: MemoryEcology, task: TaskSpecification, method: Method, policy: Policy, wait: bool):
         self._ecology, self._task = ecology, task.document
@@ -121,7 +132,18 @@ class MemoryRun:
 
 
 class MemoryEcology:
-    """An ecology in memory: everything happens in the thread that lets time pass."""
+    """An ecology in memory: everything happens in the thread that lets time pass.
+
+    >>> ecology = MemoryEcology()
+    >>> clock = ecology.add(Component(), "examples/clock/clock.ttl")
+    >>> display = ecology.add(Component(), "examples/clock/display.ttl")
+    >>> run = ecology.run(template("examples/clock/tell-the-time.ttl")).started()
+    >>> run.configuration["screen"]
+    (<https://example.org/my-home#display>,)
+    >>> ecology.crash(display)
+    >>> ecology.until(lambda: run.ended), str(run.refusal.reasons[0])
+    (True, 'no component is eligible for the role screen')
+    """
 
     def __init__(
         self, seed: int = 0, faults: Faults | None = None, ontologies: Paths = (), reasoning: str = "syntactic"

@@ -14,16 +14,20 @@ from typing import Any
 import pytest
 
 import selfconf as sc
-from selfconf import api
+from selfconf import api, testing
+from selfconf.sdk import Component
 
 MODULES = [
     import_module(name)
     for name in (
         *(f"selfconf.api.{found.name}" for found in pkgutil.iter_modules(api.__path__)),
+        "selfconf.bus.memory",
         "selfconf.errors",
         "selfconf.model.configuration",
         "selfconf.model.refusal",
         "selfconf.model.term",
+        "selfconf.testing.bench",
+        "selfconf.testing.memory_ecology",
     )
 ]
 LIVING = ("join(", "sites(")
@@ -31,8 +35,9 @@ LIVING = ("join(", "sites(")
 
 
 def namespace() -> dict[str, Any]:
-    """The names that an example may use: those of selfconf, and `home`."""
-    return {**{name: getattr(sc, name) for name in sc.__all__}, "home": sc.read("examples/clock")}
+    """The names that an example may use: those of selfconf and its `testing`, `Component`, and `home`."""
+    names = {name: getattr(room, name) for room in (sc, testing) for name in room.__all__}
+    return {**names, "Component": Component, "home": sc.read("examples/clock")}
 
 
 def found_examples(module: ModuleType) -> Iterator[doctest.DocTest]:
@@ -69,9 +74,9 @@ def test_the_example_in_a_living_ecology_is_true(found: doctest.DocTest) -> None
     checked(found)
 
 
-@pytest.mark.parametrize("name", sc.__all__)
+@pytest.mark.parametrize("name", [*sc.__all__, *testing.__all__])
 def test_every_public_name_has_a_docstring_with_an_example(name: str) -> None:
-    text = inspect.getdoc(getattr(sc, name)) or ""
+    text = inspect.getdoc(getattr(sc, name, None) or getattr(testing, name)) or ""
     assert ">>> " in text, name
     assert text.partition("\n")[0].endswith((".", ":")), name
 
