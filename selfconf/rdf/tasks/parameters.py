@@ -1,15 +1,21 @@
-"""The parameters of a template: their names, their defaults, and where they stand for a value."""
+"""The parameters of a template: their names and defaults, where they stand for a value, and which values they can have.
+
+A parameter is a shape for its value.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
 
+from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, ShapeViolated
 from selfconf.model.template import Parameter, Role
-from selfconf.model.term import IRI, STRING, Literal, Term
+from selfconf.model.term import IRI, STRING, Literal, Term, sort_key
+from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.tasks.role_shapes import mentions
 from selfconf.rdf.turtle import Document
-from selfconf.rdf.vocabulary import SC, SH
+from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 _WORD = re.compile(r"\S+")
 _KINDS_OF_VALUE: dict[Term, type] = {SH.IRI: IRI, SH.Literal: Literal}
@@ -62,3 +68,112 @@ class _ParameterReader(DocumentReader):
         datatypes = self.document.values(parameter, SH.datatype)
         datatype = value.datatype if isinstance(value, Literal) else None
         return all(isinstance(value, kind) for kind in kinds) and all(datatype == wanted for wanted in datatypes)
+
+
+_PROBE = "urn:selfconf:probe"
+"""The property by which pySHACL is asked about a value; a node of that name and a number has it."""
+
+
+def misfits(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
+    """Those of some values that cannot stand for a parameter, each with the reason.
+
+    A parameter is a shape for its value (`sh:nodeKind`, `sh:datatype`, `sh:in` ...). Values that pass the compiled
+    tests of all its constraints conform; the others are judged by pySHACL. The reason is worded as for a property of a
+    component, where the constraint is one of those; else as pySHACL, or the author by `sh:message`, words it.
+    """
+    constraints = _constraints(parameter.iri, document)
+    tests, covered = compiled(constraints)
+    left = [value for value in values if covered != constraints.keys() or not _passes(tests, value)]
+    found = _judged(parameter, left, document) if constraints and left else {}
+    if SH.message in constraints:
+        return found
+    return {value: _worded(value, tests, constraints, document) or _without_names(found[value]) for value in found}
+
+
+def suitable(parameter: Parameter, values: frozenset[Term], document: Document) -> frozenset[Term]:
+    """The values of a set that can stand for a parameter; pySHACL judges only what the compiled tests do not cover."""
+    constraints = _constraints(parameter.iri, document)
+    tests, covered = compiled(constraints)
+    if covered == constraints.keys():
+        return frozenset([value for value in values if _passes(tests, value)])
+    return values - _judged(parameter, values, document).keys()
+
+
+def _passes(tests: Iterable[ValueTest], value: Term) -> bool:
+    """Whether a value passes all tests, and that is found in time."""
+    try:
+        return all(test.passes(value) for test in tests)
+    except MatchTooCostly:
+        return False
+
+
+def _worded(
+    value: Term, tests: Iterable[ValueTest], constraints: Mapping[IRI, list[Term]], document: Document
+) -> str | None:
+    """What is wrong with a value by the first of the constraints that have words here."""
+    values = frozenset((value,))
+    try:
+        for test in tests:
+            if not test.passes(value):
+                return ConstraintFailed(values, test.constraint, test.wanted).said("it")
+    except MatchTooCostly:  # which has been found out already, and has words of its own
+        return None
+    allowed = [frozenset(document.items(head)) for head in constraints.get(SH["in"], ())]
+    required = [frozenset((one,)) for one in constraints.get(SH.hasValue, ())]
+    return next((NotAmong(values, one).said("it") for one in (*allowed, *required) if value not in one), None)
+
+
+_ITSELF = re.compile(rf"<{_PROBE}:\d+>-><{_PROBE}>")
+_ITS = re.compile(rf"<{_PROBE}:\d+>->")
+_LITERAL = re.compile(r'Literal\("(.*?)"(, (datatype|lang)=[^)]*)?\)')
+
+
+def _without_names(message: str) -> str:
+    """A message of pySHACL without the names under which it was asked, and with literals as people write them."""
+    said = _LITERAL.sub(r'"\1"', _ITS.sub("its ", _ITSELF.sub("it", message)))
+    return said.removesuffix(" See details for more information.").removesuffix(".")
+
+
+def _constraints(parameter: IRI, document: Document) -> dict[IRI, list[Term]]:
+    """What a parameter asks of its value: the SHACL parameters that it states, each with its values.
+
+    The kind of the value comes first, then the others by name: so the reason why one is wrong does not depend on the
+    order of statements, of which a graph has none.
+    """
+    found: dict[IRI, list[Term]] = {}
+    own = component_parameters(document)
+    for predicate, value in document.statements.get(parameter, ()):
+        if predicate in own or (predicate in SH and predicate != SH.defaultValue):
+            found.setdefault(predicate, []).append(value)
+    in_order = sorted(found, key=lambda predicate: (predicate not in (SH.nodeKind, SH.datatype), predicate))
+    return {predicate: sorted(found[predicate], key=sort_key) for predicate in in_order}
+
+
+def _judged(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
+    """The values that pySHACL finds not to conform, each with its message."""
+    # Loading rdflib and pySHACL takes longer than most configurations, and most values never get here.
+    import rdflib
+
+    from selfconf.rdf.conformance import violations
+    from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
+
+    probes = {IRI(f"{_PROBE}:{number}"): value for number, value in enumerate(values)}
+    probe, probe_shape = IRI(_PROBE), IRI(f"{_PROBE}-shape")
+    shapes = to_rdflib(document.triples())
+    node, path = rdflib.URIRef(probe_shape), rdflib.BNode()
+    shapes.add((node, rdflib.URIRef(TYPE), rdflib.URIRef(SH.NodeShape)))
+    shapes.add((node, rdflib.URIRef(SH.property), path))
+    shapes.add((path, rdflib.URIRef(SH.path), rdflib.URIRef(probe)))
+    for predicate, constraints in _constraints(parameter.iri, document).items():
+        for constraint in constraints:
+            shapes.add((path, rdflib.URIRef(predicate), rdflib_term(constraint)))
+    subjects = rdflib.Graph()
+    for one, value in probes.items():
+        subjects.add((rdflib.URIRef(one), rdflib.URIRef(probe), rdflib_term(value)))
+    called = f"the parameter {parameter.name!r}"
+    found = violations(subjects, shapes, probe_shape, list(probes), document.source, called)
+    return {value: _reason(found[one][0]) for one, value in probes.items() if one in found}
+
+
+def _reason(obstacle: ShapeViolated | NotJudged) -> str:
+    return obstacle.message if isinstance(obstacle, ShapeViolated) else obstacle.reason

@@ -13,7 +13,7 @@ from selfconf.rdf import rdflib_terms
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.eligibility.free_parameters import Suitable
 from selfconf.rdf.eligibility.partitioner import ANOTHER, Partitioner
-from selfconf.rdf.tasks import bindings, parameter_values, templates
+from selfconf.rdf.tasks import bindings, parameters, templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import RDF, XSD
@@ -157,7 +157,7 @@ def test_compiled_tests_and_pyshacl_agree_on_which_values_suit_a_parameter(said:
 
 
 def test_a_plain_constraint_on_many_values_is_not_a_question_for_pyshacl(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parameter_values, "_judged", None)
+    monkeypatch.setattr(parameters, "_judged", None)
     given = document(f"{PARAMETER} ; sh:nodeKind sh:IRI . :r a sc:Role .")
     (parameter,) = given.task.template.parameters
     suitable = Suitable({parameter.iri: parameter}, given.document)
