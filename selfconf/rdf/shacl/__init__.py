@@ -8,13 +8,13 @@ expression that a text cannot make expensive; where that cannot be, it is `Match
 Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
-from selfconf.rdf.shacl.constraint_components import component_parameters
 from selfconf.rdf.shacl.patterns import MatchTooCostly, pattern
 from selfconf.rdf.shacl.shape_syntax import (
     ILL_FORMED,
     LITERAL,
     ONLY_WITH_A_PATH,
     STATED_ONCE,
+    component_parameters,
     misfit,
     of_values,
     said_twice,

@@ -3,6 +3,8 @@
 Validation (`selfconf.rdf.validation.well_formedness`) asks the shape of shapes, and pySHACL in a trial run, and knows
 the place of what is wrong. Here one pass over the statements of a role finds most of it, without a graph; a test over
 files that are wrong holds the two together.
+
+Constraint components that a document brings along (section 6) are predicates of its own that constrain.
 """
 
 from __future__ import annotations
@@ -200,3 +202,17 @@ def _parses(query: str, prefixes: dict[str, str]) -> bool:
     except SyntaxError:
         return False
     return True
+
+
+def component_parameters(document: Document) -> frozenset[IRI]:
+    """Return the predicates by which a shape of the document uses one of its own SPARQL-based constraint components.
+
+    Only pySHACL can judge what they say.
+    """
+    return frozenset(
+        path
+        for component in document.instances(SH.ConstraintComponent)
+        for parameter in document.values(component, SH.parameter)
+        for path in document.values(parameter, SH.path)
+        if isinstance(path, IRI)
+    )

@@ -7,7 +7,9 @@ import rdflib
 from rdflib import SH as SHACL
 
 from selfconf.model.term import IRI
+from selfconf.rdf.shacl import component_parameters
 from selfconf.rdf.shacl.shape_syntax import STATED_ONCE, misfit, unfit
+from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.validation.well_formedness import shape_of_shapes
 from selfconf.rdf.vocabulary import SH
@@ -77,3 +79,12 @@ def test_a_parameter_may_stand_anywhere() -> None:
     document = parse(f"{PREFIXES}:r sh:minCount :n .", "r.ttl")
     assert misfit(document, list(document.triples()), frozenset({iri("n")})) is None
     assert misfit(document, list(document.triples()), frozenset({IRI("urn:other")})) is not None
+
+
+def test_the_paths_of_the_parameters_of_all_components_are_found() -> None:
+    text = """
+        :One a sh:ConstraintComponent ; sh:parameter [ sh:path :low ] , [ sh:path :high ; sh:optional true ] .
+        :Two a sh:ConstraintComponent ; sh:parameter [ sh:path _:odd ] .
+        :other sh:parameter [ sh:path :nothing ] .
+    """
+    assert component_parameters(turtle.parse(PREFIXES + text, "shapes.ttl")) == {iri("low"), iri("high")}
