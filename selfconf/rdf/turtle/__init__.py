@@ -10,8 +10,7 @@ Turtle of it.
 
 from selfconf.rdf.turtle.document import SKOLEM, Document, Node, Triple, named, not_turtle, parse, resource, term
 from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, other_format, read_ontology
-from selfconf.rdf.turtle.pretty import pretty_turtle
-from selfconf.rdf.turtle.serialization import ntriples, ox_term, to_turtle
+from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, to_turtle
 
 __all__ = [
     "SKOLEM",
