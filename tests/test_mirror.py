@@ -11,7 +11,6 @@ LEFT_OUT = {
     "bus/port.py": "a protocol and its values; the contract of the bus tests both buses by it",
     "configurator/effects.py": "a list of values; the tests of the machine look at each",
     "configurator/events.py": "a list of values; the tests of the machine send each",
-    "deployment/run_request.py": "a list of values with defaults; the lab gives each to every runner of the tests",
     "protocol/messages.py": "a list of values; the tests of the codec write and read each",
     "search/engines/rival_process.py": "the program of a process; the tests of `rival` start it",
 }

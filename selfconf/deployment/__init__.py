@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from selfconf.deployment.holders import holders_in
-    from selfconf.deployment.identity import TaskIdentity
     from selfconf.deployment.keeper import Keeper
-    from selfconf.deployment.run_request import Outside, RunRequest
+    from selfconf.deployment.run_request import Outside, RunRequest, TaskIdentity
     from selfconf.deployment.runner import TaskRunner
     from selfconf.deployment.task_folder import TaskFolder
 
@@ -25,7 +24,7 @@ _HOME = {
     "Outside": "run_request",
     "RunRequest": "run_request",
     "TaskFolder": "task_folder",
-    "TaskIdentity": "identity",
+    "TaskIdentity": "run_request",
     "TaskRunner": "runner",
     "holders_in": "holders",
 }

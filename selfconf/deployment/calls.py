@@ -36,8 +36,7 @@ from selfconf.configurator import (
     parameter_values,
     wiring,
 )
-from selfconf.deployment.identity import TaskIdentity
-from selfconf.deployment.run_request import EventListener, Outside, Standby
+from selfconf.deployment.run_request import EventListener, Outside, Standby, TaskIdentity
 from selfconf.discovery import EcologyView, FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
@@ -135,7 +134,8 @@ class Calls:
         self._left_behind: dict[IRI, tuple[str, ...]] = {}
         """The lives that have obeyed a call of this task, and ended, or seemed to, before they obeyed a release."""
         self._lost_lives: dict[IRI, str] = {}
-        """The life of each component that was lost last: left behind, or to be ended, as it did not obey a release."""
+        """The life of each component that counts as lost when it is woken again: one that was started for this task,
+        was left behind, or was to be ended, as it did not obey a release."""
         self._called: set[IRI] = set()
         """The components that were asked to be held, or to act, whatever has come of it."""
         self._unborn: set[IRI] = set()
@@ -173,6 +173,7 @@ class Calls:
         waiting = self._waking.pop(component, None)
         if waiting is not None:
             waiting[1]()
+            self._lost_lives[component] = life
             self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
 
     def heard_fail(self, fail: Fail) -> None:

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from selfconf.bus.port import Bus, Request, Urgency
-from selfconf.deployment.identity import TaskIdentity
-from selfconf.deployment.run_request import RunRequest
+from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import LARGEST, encode

@@ -1,4 +1,8 @@
-"""The request to run a task: which task, how to compose and to reconfigure, and where events are reported."""
+"""The request to run a task, and how the running task is known to other tasks.
+
+The request says which task it is, how to compose and to reconfigure, and where events are reported; the identity its
+name, its rank, and since when it runs.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,7 @@ from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent
 from selfconf.model.template import Task
 from selfconf.model.term import IRI
+from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import TaskRecord, Wire
 from selfconf.rdf.advertisements import Advertisement
 
@@ -76,3 +81,19 @@ class RunRequest:
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None
     """Called once when the task has ended; with the refusal if that is why."""
+
+
+@immutable
+class TaskIdentity:
+    """A running task: what stays the same if another configurator goes on with it."""
+
+    task: str
+    """Its name and a text that no other task of that name has: `selfconf.protocol.keys.task_identity`."""
+    priority: int = 0
+    beginning: float = 0.0
+    """When it began, in seconds of the Unix epoch."""
+
+    @property
+    def name(self) -> str:
+        """Its name, as its user knows it."""
+        return task_name(self.task)

@@ -51,11 +51,10 @@ from selfconf.configurator import (
 )
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.holders import ask_holders
-from selfconf.deployment.identity import TaskIdentity
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
-from selfconf.deployment.run_request import RunRequest
+from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import PeerError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration

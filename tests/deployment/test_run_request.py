@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.deployment.identity import TaskIdentity
+from selfconf.deployment.run_request import TaskIdentity
 from selfconf.protocol.keys import task_identity
 from tests.lab import Lab
 
