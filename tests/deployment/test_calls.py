@@ -233,6 +233,30 @@ def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_c
     assert asked == [Wake(tracker), Wake(tracker, life)]
 
 
+def test_a_site_hears_of_a_life_that_it_has_started_and_that_ended_before_it_obeyed_anything(tmp_path: Path) -> None:
+    lab, lives, asked = Lab(tmp_path), list[str](), list[Wake]()
+    lab.site("astrid", *TASK)
+    for name in TASK:
+        lab.component(name)
+
+    def begin(node: object) -> None:
+        lab.component("tracker")
+        runtime = lab.runtimes["tracker"]
+        lives.append(runtime.life)
+        runtime._served()
+        runtime.bus.later(0.05, lambda: lab.crash("tracker"))
+
+    def listen(request: Request) -> None:
+        asked.append(decode(request.payload, Wake))
+        request.finish()
+
+    living_room(lab, "1", begin)
+    lab.network.node().serve(lab.keys.wake("living-room"), listen)
+    lab.agent()
+    assert lab.until(lambda: len(asked) == 3)
+    assert [wake.after for wake in asked] == ["", *lives[:2]]
+
+
 def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:
     """A site ends that has been asked to start the tracker; and the configurator that has asked."""
     lab = home_without_a_tracker(folder)
