@@ -15,7 +15,7 @@ from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, Paramete
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import free_parameters as free_values
+from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex, TypeSet
 from selfconf.rdf.eligibility.compiler import left_to_judge
 from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partitioner, Tested

@@ -23,7 +23,7 @@ from selfconf.model.profile import Profile
 from selfconf.model.template import Role
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import free_parameters as free_values
+from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.acceptance import Acceptance
 from selfconf.rdf.eligibility.advertisement_index import (
     AdvertisementIndex,
@@ -32,10 +32,10 @@ from selfconf.rdf.eligibility.advertisement_index import (
     TypeSet,
 )
 from selfconf.rdf.eligibility.compiler import bound_shape, compile_role, left_to_judge
+from selfconf.rdf.eligibility.free_values import contradictory, mentions_of, stated_on_paths
 from selfconf.rdf.eligibility.judgements import Judgements, Values, Violations
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
-from selfconf.rdf.eligibility.statable_values import contradictory, mentions_of, stated_on_paths
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
