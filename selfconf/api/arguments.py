@@ -8,7 +8,7 @@ from enum import Enum
 from math import isfinite
 from numbers import Integral, Real
 from pathlib import Path
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias, TypeGuard, TypeVar
 
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.template import MOST_PRIORITY
@@ -88,6 +88,11 @@ def steps_limit(steps: int | None) -> int | None:
     return int(steps)
 
 
+def _is_limit(seconds: float | None) -> TypeGuard[float]:
+    """Whether it is a number of seconds that something may take."""
+    return not isinstance(seconds, bool) and isinstance(seconds, Real) and 0 < seconds <= LONGEST_SECONDS
+
+
 def rows_limit(rows: int) -> int:
     """The rows that an answer may have. Raises ProgrammerError for what is no number of rows."""
     if isinstance(rows, bool) or not isinstance(rows, Integral) or rows < 1:
@@ -97,10 +102,9 @@ def rows_limit(rows: int) -> int:
 
 def answer_seconds(seconds: float) -> float:
     """The seconds that an answer may take. Raises ProgrammerError for what is no time, and for None."""
-    limit = seconds_limit(seconds)
-    if limit is None:
-        raise ProgrammerError(f"an answer has a limit of seconds: a number above zero, at most {LONGEST_SECONDS:,.0f}")
-    return limit
+    if not _is_limit(seconds):
+        raise ProgrammerError(f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, not {seconds!r}")
+    return float(seconds)
 
 
 def checked_moment(moment: float | None) -> float | None:
@@ -114,7 +118,7 @@ def seconds_limit(seconds: float | None) -> float | None:
     """The seconds that a search may take, or None. Raises ProgrammerError for what is no time."""
     if seconds is None:
         return None
-    if isinstance(seconds, bool) or not isinstance(seconds, Real) or not 0 < seconds <= LONGEST_SECONDS:
+    if not _is_limit(seconds):
         raise ProgrammerError(
             f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, or None for no limit, not {seconds!r}"
         )

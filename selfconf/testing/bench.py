@@ -174,7 +174,7 @@ class ComponentBench:
 
         Until then, and if `answer` raises Refused, there is no answer.
         """
-        if operation + CALL_MARK not in self._servers:
+        if f"{operation}{CALL_MARK}" not in self._servers:
             raise ProgrammerError(f"{self.profile.component.short} advertises no need of an operation {operation!r}")
         self._servers[operation + CALL_MARK].answer = answer
 
@@ -185,7 +185,7 @@ class ComponentBench:
         component does not act.
         """
         within = passing_seconds(seconds)
-        caller = self._callers.get(operation + CALL_MARK)
+        caller = self._callers.get(f"{operation}{CALL_MARK}")
         if caller is None:
             raise ProgrammerError(f"{self.profile.component.short} advertises no operation {operation!r}")
         answers: list[Response] = []

@@ -268,14 +268,12 @@ class MemoryEcology:
 
 def _advertisement(component: Component | None, given: str | Path | None) -> Advertisement:
     """The advertisement of a component class, or the one in a document that is given."""
-    if given is not None:
+    if component is None or given is not None:
         index, left_out = gathered([text_of(given)])
         found, wrong = list(index.values()), [str(one) for one in left_out]
-    elif component is not None:
+    else:
         good, bad = files.advertisements(type(component).advertisement_path())
         found, wrong = good, [f"{one.component}: {one.problems[0]}" for one in bad]
-    else:
-        found, wrong = [], []
     name = "" if component is None else type(component).component
     wanted = [one for one in found if not name or one.component == name]
     if wrong:

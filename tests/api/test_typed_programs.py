@@ -59,7 +59,7 @@ PROGRAMS = {"answers": ANSWERS, "events": EVENTS, "readme": from_readme(), "run"
 
 @pytest.fixture(scope="module")
 def errors(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    """What mypy finds in all programs: in one run, and with the cache of the tree, without which it takes a minute."""
+    """What mypy finds in all programs: in one run, and with the cache of the tree, as without one it takes long."""
     folder = tmp_path_factory.mktemp("programs")
     for name, text in PROGRAMS.items():
         (folder / f"{name}.py").write_text(f"import selfconf as sc\n{text}", "utf-8")

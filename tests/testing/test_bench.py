@@ -121,6 +121,10 @@ def test_what_is_no_component_and_no_advertisement_is_refused_in_a_sentence() ->
             ComponentBench(component, ADVERTISEMENT)  # type: ignore[arg-type]  # that is what is tested
     with pytest.raises(ProgrammerError, match="a source is a path"):
         ComponentBench(Thermostat(), 42)  # type: ignore[arg-type]  # that is what is tested
+    bench, no_name = ComponentBench(Guide(), GUIDE), 3
+    for use in (bench.call, partial(bench.answer, answer=str)):
+        with pytest.raises(ProgrammerError, match=r"operation 3$"):
+            use(no_name)  # type: ignore[operator]  # that is what is tested
 
 
 def test_what_breaks_in_a_component_is_its_failure() -> None:

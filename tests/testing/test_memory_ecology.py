@@ -143,6 +143,8 @@ def test_what_is_no_component_and_no_faults_is_refused_in_a_sentence() -> None:
     for component in (None, Screen):
         with pytest.raises(ProgrammerError, match="a component is an object of a class of selfconf"):
             MemoryEcology().add(component, SCREEN)  # type: ignore[type-var]  # that is what is tested
+    with pytest.raises(ProgrammerError, match=r"^a source is a path, .*, not None$"):
+        MemoryEcology().advertise(None)  # type: ignore[arg-type]  # that is what is tested
     with pytest.raises(ProgrammerError, match=r"the faults of a network are Faults\(\.\.\.\), not 1"):
         MemoryEcology(faults=1)  # type: ignore[arg-type]  # that is what is tested
     with pytest.raises(ProgrammerError, match="wait is True or False"):
