@@ -404,7 +404,7 @@ def test_a_component_that_leaves_does_not_start_for_a_call_that_waited_for_its_r
     split.runtime.close()
     split.run_code()
     assert recorder.said == [("started",), ("stopped",)]
-    assert split.verdicts[-1] is Verdict.REFUSED
+    assert split.verdicts[-1] is Verdict.OTHER_LIFE
 
 
 def test_what_is_done_at_intervals_takes_turns_with_signals_however_long_it_takes() -> None:
