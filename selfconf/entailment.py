@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from selfconf.errors import AuthorError
+from selfconf.model.setting_names import setting
 from selfconf.model.term import BlankNode, Term
 from selfconf.rdf import reasoning, turtle
 from selfconf.rdf.turtle import Triple, ntriples
@@ -93,7 +94,7 @@ def _computed(lines: bytes) -> bytes:
     except subprocess.TimeoutExpired:
         raise AuthorError(
             f"the OWL RL closure of the ontologies takes more than {seconds:g} s; "
-            "use --reasoning subclass, or give it longer by SELFCONF_OWL_RL_SECONDS"
+            f"use {setting('reasoning', 'subclass')}, or give it longer by SELFCONF_OWL_RL_SECONDS"
         ) from None
     except subprocess.CalledProcessError as error:
         last = error.stderr.decode(errors="replace").strip().splitlines()[-1:] or ["no reason given"]

@@ -25,6 +25,7 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.immutable import immutable
+from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 from selfconf.termination import alive, start_time
@@ -341,10 +342,12 @@ def find(ecology: str | None, connect: Sequence[str], credentials: Credentials |
     if not names:
         which = "" if ecology is None else f"of the ecology {ecology!r} "
         raise NetworkError(
-            f"no site {which}runs on this machine; start one with `selfconf site`, or give --connect ENDPOINT"
+            f"no site {which}runs on this machine; start one with `selfconf site`, or give"
+            f" {setting('connect', 'ENDPOINT')}"
         )
     if len(names) > 1:
-        raise NetworkError(f"several ecologies run on this machine; say which with --ecology: {', '.join(names)}")
+        which = f"{setting('ecology')}: {', '.join(names)}"
+        raise NetworkError(f"several ecologies run on this machine; say which with {which}")
     usual = usual_endpoints(names[0], secure=credentials is not None)
     return names[0], list(dict.fromkeys([*(site.endpoint for site in found), *usual]))
 
@@ -363,5 +366,5 @@ def _ecology_at(endpoints: list[str], credentials: Credentials | None) -> str:
     if len(names) == 1:
         return names[0]
     if names:
-        raise NetworkError(f"several ecologies are there; say which with --ecology: {', '.join(names)}")
+        raise NetworkError(f"several ecologies are there; say which with {setting('ecology')}: {', '.join(names)}")
     raise NetworkError(f"a router answers at {', '.join(endpoints)}, but no site of any ecology")

@@ -48,7 +48,7 @@ def test_a_closure_is_computed_once(cache: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_a_closure_that_takes_too_long_is_ended_with_advice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", "0.01")
-    with pytest.raises(AuthorError, match=r"takes more than 0\.01 s; use --reasoning subclass"):
+    with pytest.raises(AuthorError, match=r"takes more than 0\.01 s; use reasoning='subclass'"):
         closed()
 
 

@@ -62,6 +62,20 @@ def test_a_component_is_not_spoken_of_as_a_person(tmp_path: Path, monkeypatch: p
     }
 
 
+def test_an_option_is_named_by_the_command_line_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "selfconf" / "cli").mkdir(parents=True)
+    (tmp_path / "selfconf" / "cli" / "a.py").write_text("words = 'give --seconds'\n")
+    lines = [
+        '"""Has --debug."""',
+        'x = f"{1}; give it\\nwith --seconds"',
+        'y = ["--keys"]',
+        'z = "`selfconf run --detach`"',
+    ]
+    (tmp_path / "selfconf" / "b.py").write_text("\n".join(lines) + "\n")
+    monkeypatch.setattr(survey, "ROOT", tmp_path)
+    assert survey.options_in_messages() == {"selfconf/b.py::--seconds": "line 2"}
+
+
 def test_classes_functions_and_constants_are_names_and_imports_are_not() -> None:
     text = "from x import y\nA = 1\nB: int = 2\nclass C: ...\ndef d(): ...\n_e = 3\nif A:\n    f = 1\n"
     assert list(survey.public_names(ast.parse(text))) == ["A", "B", "C", "d"]

@@ -49,7 +49,7 @@ def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:
 def test_of_several_ecologies_one_must_be_named() -> None:
     rendezvous.announce(meeting("home"))
     rendezvous.announce(meeting("office"))
-    with pytest.raises(NetworkError, match="--ecology: home, office"):
+    with pytest.raises(NetworkError, match="with ecology: home, office"):
         rendezvous.find(None, [])
 
 

@@ -19,6 +19,7 @@ from selfconf.api.role_fits import JUDGING_MEMORY, JUDGING_NICENESS
 from selfconf.composition import TimeLimit, composed, explained
 from selfconf.errors import SelfconfError
 from selfconf.model.refusal import Refusal
+from selfconf.model.setting_names import options_named
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import TaskRecord
@@ -42,6 +43,7 @@ def explained_refusal(
     return refusal_body(explained(composer, able, found, method.wider(), limit))
 
 
+@options_named()  # the reader of its texts is at the page of `selfconf serve`
 def main() -> None:
     """Find out what stands on stdin."""
     os.nice(JUDGING_NICENESS)

@@ -16,6 +16,7 @@ from selfconf.api.arguments import checked_text
 from selfconf.api.reading import existing
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
 from selfconf.files import STDIN
+from selfconf.model.setting_names import setting
 from selfconf.protocol.keys import checked_name
 from selfconf.rendezvous import LocalSite
 from selfconf.termination import parent_environment
@@ -47,7 +48,8 @@ class SiteProcess:
         """
         self.paths = [Path(path) for path in paths]
         if STDIN in self.paths:
-            raise AuthorError("a site watches the files of its advertisements, so give files to --ads, not -")
+            ads = setting("ads")
+            raise AuthorError(f"a site watches the files of its advertisements, so give files to {ads}, not -")
         for path in self.paths:
             existing(path)
         ecology, self._connect = rendezvous.asked_for(ecology, connect)

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from selfconf.api.detached import recorded_task
 from selfconf.composition import ranked_exclusions
 from selfconf.errors import PeerError, SelfconfError
+from selfconf.model.setting_names import options_named
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import TaskRecord
@@ -58,6 +59,7 @@ def role_fits(record: TaskRecord, advertisement: Advertisement) -> list[RoleFit]
     return found
 
 
+@options_named()  # the reader of its texts is at the page of `selfconf serve`
 def main() -> None:
     """Judge what stands on stdin."""
     os.nice(JUDGING_NICENESS)

@@ -23,6 +23,7 @@ from selfconf.bus.port import Bus
 from selfconf.bus.refusals import hear_refusals
 from selfconf.bus.zenoh_session import Security
 from selfconf.errors import AuthorError
+from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.site import Shelf, Site, programs_of
 
@@ -42,7 +43,7 @@ class SecuredSite:
         """The name of the site, as its certificate has it."""
         if name is not None and name != self.name:
             raise AuthorError(
-                f"{keys} is for the site {self.name}, not for {name}; give --name {self.name}, or no name"
+                f"{keys} is for the site {self.name}, not for {name}; give {setting('name', self.name)}, or no name"
             )
         self._credentials = replace(self._credentials, authorities=self._folder.hub_authorities())
         self._refusals = hear_refusals()

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from selfconf import rendezvous
 from selfconf.errors import AuthorError, NetworkError
+from selfconf.model.setting_names import setting
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.site import log_part
 
@@ -55,7 +56,8 @@ def _of_one_ecology(logs: list[Path]) -> list[Path]:
     living = named & {site.ecology for site in rendezvous.local_sites()}
     chosen = living if len(living) == 1 else named
     if len(chosen) > 1:
-        raise AuthorError(f"several ecologies have logs; say which with --ecology: {', '.join(sorted(chosen))}")
+        names = ", ".join(sorted(chosen))
+        raise AuthorError(f"several ecologies have logs; say which with {setting('ecology')}: {names}")
     return [path for path in logs if names_of_log(path)[0] in chosen]
 
 

@@ -29,6 +29,7 @@ from selfconf.deployment import Keeper, TaskFolder
 from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.hierarchy import Reasoning
+from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
@@ -79,14 +80,15 @@ def serve(
     hierarchy = hierarchy_of(option(Reasoning, "reasoning", reasoning), ontologies)
     ecology, connect = rendezvous.asked_for(ecology, connect)
     if ecology is None:
-        raise AuthorError(f"a site is part of an ecology; give --ecology NAME, or set {rendezvous.ECOLOGY_VARIABLE}")
+        which = f"{setting('ecology', 'NAME')}, or set {rendezvous.ECOLOGY_VARIABLE}"
+        raise AuthorError(f"a site is part of an ecology; give {which}")
     checked_name(ecology, "an ecology")
     secured, name = _named(rendezvous.keys_folder(keys), name)
     beyond = secured is None and _beyond_loopback(listen)
     if beyond and not insecure:
         raise AuthorError(
-            f"{listen} can be reached from other hosts, and without keys by everybody there: give --keys DIR (see"
-            " `selfconf keys --help`), or --insecure if that is what you want"
+            f"{listen} can be reached from other hosts, and without keys by everybody there: give"
+            f" {setting('keys', 'DIR')} (see `selfconf keys --help`), or {setting('insecure')} if that is what you want"
         )
     shelf = Shelf(paths, complain)
     # One site at a time looks which others there are and announces itself, or two would miss each other.

@@ -12,6 +12,7 @@ from selfconf.api.reading import text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, ProgrammerError, TemplateError
 from selfconf.model.immutable import immutable
+from selfconf.model.setting_names import binding, setting
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import tasks, turtle
@@ -148,7 +149,8 @@ def pairs(bound: Iterable[str]) -> dict[str, str]:
     for text in bound:
         name, equals, term = text.partition("=")
         if not equals or not name:
-            raise BindingError(f"--bind takes NAME=TERM, not {text!r}; for example --bind robot=:Astrid")
+            example = binding("robot", ":Astrid")
+            raise BindingError(f"{setting('bind')} takes NAME=TERM, not {text!r}; for example {example}")
         if name.strip() in found:
             raise BindingError(f"the parameter {name.strip()!r} is bound twice")
         found[name.strip()] = term

@@ -12,6 +12,7 @@ import socket
 import ssl
 
 from selfconf.bus.credentials import Credentials
+from selfconf.model.setting_names import setting
 
 HANDSHAKE = 1.5
 """Seconds that the other end may take."""
@@ -59,5 +60,5 @@ def _distrust(error: ssl.SSLCertVerificationError, host: str) -> str:
     if "not yet valid" in said:
         return "its certificate is not valid yet; is the clock of this host right?"
     if "mismatch" in said or "not valid for" in said:
-        return f"its certificate is not good for {host}; issue it with `--host {host}`"
+        return f"its certificate is not good for {host}; issue it with `{setting('host', host)}`"
     return "its certificate was issued by another authority"

@@ -23,6 +23,7 @@ import zenoh
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
+from selfconf.model.setting_names import setting
 
 LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
@@ -176,7 +177,7 @@ def _refuse_other_protocol(endpoint: str, security: Security | None) -> None:
     """Raise NetworkError where an endpoint is not of the protocol that is spoken: TLS with keys, TCP without."""
     protocol = endpoint.partition("/")[0]
     if security is None and protocol == "tls":
-        raise NetworkError(f"{endpoint} is reached with keys only; give --keys DIR, or set SELFCONF_KEYS")
+        raise NetworkError(f"{endpoint} is reached with keys only; give {setting('keys', 'DIR')}, or set SELFCONF_KEYS")
     if security is not None and protocol == "tcp":
         raise NetworkError(f"{endpoint} is without keys, and keys are given; write tls/{endpoint.partition('/')[2]}")
 

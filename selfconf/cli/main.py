@@ -20,6 +20,7 @@ from selfconf.aside_writer import AsideHandler
 from selfconf.cli.settings import Settings, found_settings
 from selfconf.cli.terminal import complain, for_programs, guard, silence
 from selfconf.errors import SelfconfError, SiteMisusedError, reason
+from selfconf.model.setting_names import options_named
 
 COMMANDS = {
     "new": "write the first files of a component, a template or an ontology, to be changed to what you want",
@@ -138,6 +139,7 @@ def parser(names: Collection[str] = tuple(COMMANDS), settings: Settings | None =
     return top
 
 
+@options_named()
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
     guard()

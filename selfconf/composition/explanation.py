@@ -12,6 +12,7 @@ from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import LetRecruit
+from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 
@@ -37,5 +38,5 @@ def explained(
     recruiting = limit.within(lambda: tuple(recruiting_instead(composer, ecology, refusal)), none_found)
     refusal = replace(refusal, repairs=(*recruiting, *refusal.repairs))
     if wider is not None and limit.within(lambda: composer.possible_under(ecology, wider), False):
-        return replace(refusal, hint="with --reasoning subclass there is a configuration")
+        return replace(refusal, hint=f"with {setting('reasoning', 'subclass')} there is a configuration")
     return refusal

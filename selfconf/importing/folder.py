@@ -8,6 +8,7 @@ from pathlib import Path
 
 from selfconf.errors import AuthorError
 from selfconf.importing.turtle_text import MARK
+from selfconf.model.setting_names import setting
 
 
 class FileState(Enum):
@@ -30,8 +31,12 @@ def write_folder(folder: Path, texts: Mapping[str, str]) -> dict[str, FileState]
             if state is not FileState.UNCHANGED:
                 _replace(folder / name, texts[name])
     except OSError as error:
-        raise AuthorError(f"cannot write to {folder}: {error.strerror}; give another folder with --out") from None
+        raise AuthorError(f"cannot write to {folder}: {error.strerror}; {_advice()}") from None
     return states
+
+
+def _advice() -> str:
+    return f"give another folder with {setting('out')}"
 
 
 def _state(path: Path, text: str) -> FileState:
@@ -40,9 +45,9 @@ def _state(path: Path, text: str) -> FileState:
     except FileNotFoundError:
         return FileState.NEW
     except OSError as error:
-        raise AuthorError(f"cannot write to {path}: {error.strerror}; give another folder with --out") from None
+        raise AuthorError(f"cannot write to {path}: {error.strerror}; {_advice()}") from None
     if not before.startswith(MARK.encode()):
-        raise AuthorError(f"{path} is not from an import, and is not overwritten; give another folder with --out")
+        raise AuthorError(f"{path} is not from an import, and is not overwritten; {_advice()}")
     return FileState.UNCHANGED if before == text.encode() else FileState.CHANGED
 
 

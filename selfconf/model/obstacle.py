@@ -12,6 +12,7 @@ from typing import ClassVar
 
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import Operation, WantedSignal, port_in_words
+from selfconf.model.setting_names import setting
 from selfconf.model.signal_match import Degree, SignalMatch
 from selfconf.model.term import IRI, Term
 from selfconf.model.unit_dimension import differ_in_dimension
@@ -67,7 +68,7 @@ class WrongType(_Predicate):
             name = self.offered.short if self.offered.short != self.wanted.short else repr(self.offered)
             return f"{said} (did you mean {name}?)"
         if self.relation is TypeRelation.BELOW:
-            return f"{said} but a {self.offered.short}, which lies below it (see --reasoning subclass)"
+            return f"{said} but a {self.offered.short}, which lies below it (see {setting('reasoning', 'subclass')})"
         return f"{said} but a {self.offered.short}, which lies above it"
 
 

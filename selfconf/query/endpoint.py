@@ -27,6 +27,7 @@ from selfconf.errors import AuthorError, NetworkError, TurtleError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Place
+from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements import Advertisement
@@ -106,7 +107,7 @@ def _reply(url: str, query: str, form: str, patience: float) -> Iterator[HTTPRes
 def _opened(url: str, query: str, form: str, patience: float) -> HTTPResponse:
     try:
         if urlsplit(url).scheme not in ("http", "https"):
-            raise AuthorError(f"--endpoint takes an http or https URL, not {url!r}")
+            raise AuthorError(f"{setting('endpoint')} takes an http or https URL, not {url!r}")
         request = Request(url, query.encode(), {"Content-Type": "application/sparql-query", "Accept": form})
         reply: HTTPResponse = _opener().open(request, timeout=patience)
     except HTTPError as error:

@@ -22,6 +22,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
 from selfconf.model.immutable import immutable
+from selfconf.model.setting_names import in_command, options_named, setting
 from selfconf.query.endpoint import asked
 from selfconf.query.results import shown
 from selfconf.rdf.eligibility import ANY_COMPONENT, prefaced
@@ -62,12 +63,12 @@ class Shown(NamedTuple):
 def answer(dataset: Dataset, question: Question) -> Shown:
     """The answer as text. Raises QueryError, also when a limit is reached, and NetworkError."""
     command = [sys.executable, "-m", "selfconf.query"]
-    given = json.dumps(asdict(question)).encode() + b"\n" + dataset.dump()
+    given = json.dumps([asdict(question), in_command()]).encode() + b"\n" + dataset.dump()
     try:
         done = subprocess.run(command, input=given, capture_output=True, timeout=question.seconds, check=False)
     except subprocess.TimeoutExpired:
         raise QueryError(
-            f"the query takes more than {question.seconds:g} s; ask for less, or give it longer by --seconds"
+            f"the query takes more than {question.seconds:g} s; ask for less, or give it longer by {setting('seconds')}"
         ) from None
     said = done.stderr.decode().strip()
     if done.returncode in (0, _CUT):
@@ -86,8 +87,14 @@ def answer(dataset: Dataset, question: Question) -> Shown:
 
 
 def main() -> int:
-    """Answer the question that comes in on stdin."""
-    question = Question(**json.loads(sys.stdin.buffer.readline()))
+    """Answer the question that comes in on stdin, in the words of the process that asks."""
+    asked_for, of_command = json.loads(sys.stdin.buffer.readline())
+    with options_named(of_command):
+        return _answered(Question(**asked_for))
+
+
+def _answered(question: Question) -> int:
+    """Answer a question on stdout, and what there is to say about the answer on stderr; return the exit code."""
     with contextlib.suppress(ValueError, OSError):  # some systems have no such limit
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (question.memory, question.memory))

@@ -12,6 +12,7 @@ from typing import Any
 import pyoxigraph as ox
 
 from selfconf.errors import AuthorError
+from selfconf.model.setting_names import setting
 from selfconf.rdf import turtle
 from selfconf.rdf.sparql import QUERY_PREFIXES, QueryAnswer
 from selfconf.rdf.vocabulary import XSD
@@ -27,7 +28,8 @@ def shown(answer: QueryAnswer | Iterator[ox.Triple], form: str, names: Names, ro
     Raises AuthorError where the format does not fit the kind of query.
     """
     if isinstance(answer, ox.QuerySolutions | ox.QueryBoolean) and form == "turtle":
-        raise AuthorError("--format turtle is for CONSTRUCT and DESCRIBE; for this query use table, json, csv or tsv")
+        wanted = setting("format", "turtle")
+        raise AuthorError(f"{wanted} is for CONSTRUCT and DESCRIBE; for this query use table, json, csv or tsv")
     if isinstance(answer, ox.QueryBoolean):
         return json.dumps({"head": {}, "boolean": bool(answer)}) if form == "json" else str(bool(answer)).lower(), False
     if isinstance(answer, ox.QuerySolutions):
@@ -92,7 +94,7 @@ def _plain(cell: Cell) -> str:
 
 def _triples(triples: Sequence[ox.Triple], form: str) -> str:
     if form in ("csv", "tsv"):
-        raise AuthorError(f"--format {form} is for SELECT; for this query use turtle or json")
+        raise AuthorError(f"{setting('format', form)} is for SELECT; for this query use turtle or json")
     if form == "json":
         return (ox.serialize(triples, format=ox.RdfFormat.JSON_LD) or b"").decode().rstrip()
     return (ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=QUERY_PREFIXES) or b"").decode().rstrip()

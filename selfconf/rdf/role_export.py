@@ -14,6 +14,7 @@ import rdflib
 
 from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import (
@@ -104,7 +105,8 @@ def query(role: CompiledRole, hierarchy: Hierarchy, ecology: Iterable[Advertisem
     Of the classes and properties below those that the role names, the query lists what the ecology uses.
     """
     if not role.complete:
-        raise AuthorError(f"the role {role.iri!r} says what a SPARQL query cannot; see its shape by --show shape")
+        seen = setting("show", "shape")
+        raise AuthorError(f"the role {role.iri!r} says what a SPARQL query cannot; see its shape by {seen}")
     return _Speller(hierarchy, list(ecology)).query(role)
 
 

@@ -14,6 +14,7 @@ from selfconf import rendezvous
 from selfconf.aside_writer import AsideHandler, AsideWriter, write_line
 from selfconf.bus.zenoh_bus import client
 from selfconf.errors import SelfconfError
+from selfconf.model.setting_names import options_named
 from selfconf.model.wording import plain
 from selfconf.sdk.component import Component
 from selfconf.sdk.host import Host, profile_of
@@ -27,6 +28,7 @@ HUNG_EXIT_CODE = 70
 """The exit code of a program that was ended because its code hung: EX_SOFTWARE of sysexits.h."""
 
 
+@options_named()
 def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
     """Run components as one program until SIGINT, SIGTERM or SIGHUP; then exit, with 2 if it cannot run.
 

@@ -21,6 +21,7 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
 from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
+from selfconf.model.setting_names import setting
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
@@ -62,7 +63,8 @@ def refuse_exposure(host: str, credentials: Credentials | None) -> None:
     if credentials is not None and is_beyond_loopback(host):
         raise AuthorError(
             f"{host} can be reached from other hosts, and any program that asks by HTTP sees without keys what"
-            f" {credentials.name} may see: listen on 127.0.0.1, behind a server that asks who it is, or give --insecure"
+            f" {credentials.name} may see: listen on 127.0.0.1, behind a server that asks who it is, or give"
+            f" {setting('insecure')}"
             " if that is what you want"
         )
 
@@ -208,7 +210,8 @@ def bound(host: str, port: int) -> socket.socket:
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     except (OSError, OverflowError):
-        raise AuthorError(f"{host!r} with port {port} is no address of this machine; try --host 127.0.0.1") from None
+        advice = f"try {setting('host', '127.0.0.1')}"
+        raise AuthorError(f"{host!r} with port {port} is no address of this machine; {advice}") from None
     place = socket.socket(family, kind, protocol)
     place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
@@ -217,5 +220,6 @@ def bound(host: str, port: int) -> socket.socket:
     except OSError as error:
         place.close()
         said = error.strerror or str(error)
-        raise NetworkError(f"cannot listen on port {port} of {host} ({said}); give another one by --port") from None
+        advice = f"give another one by {setting('port')}"
+        raise NetworkError(f"cannot listen on port {port} of {host} ({said}); {advice}") from None
     return place

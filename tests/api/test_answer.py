@@ -375,7 +375,7 @@ def test_a_refusal_that_subclasses_would_mend_says_so_unless_they_are_seen_alrea
     special = EVERYTHING.replace("rob:PositionSensor", "rob:PersonTracker")
     refusal = navigation(special)
     assert isinstance(refusal, Refusal)
-    assert refusal.hint == "with --reasoning subclass there is a configuration"
+    assert refusal.hint == "with reasoning='subclass' there is a configuration"
     assert navigation(special, reasoning="subclass")
 
 

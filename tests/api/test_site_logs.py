@@ -42,7 +42,7 @@ def test_of_several_ecologies_the_one_that_lives_is_meant_else_one_has_to_be_nam
     (runtime / "log").mkdir(parents=True)
     for name in ("home", "lab"):
         (runtime / "log" / f"{name}@x.log").touch()
-    with pytest.raises(AuthorError, match="--ecology: home, lab"):
+    with pytest.raises(AuthorError, match="with ecology: home, lab"):
         site_logs(None)
     rendezvous.announce(rendezvous.LocalSite("lab", "x", "tcp/127.0.0.1:1", os.getpid()))
     assert [path.name for path in site_logs(None)] == ["lab@x.log"]

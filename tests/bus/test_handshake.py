@@ -95,7 +95,7 @@ def test_a_host_that_the_certificate_does_not_name_is_named(authority: KeysFolde
     with server(site_of(authority)) as endpoint, pytest.MonkeyPatch.context() as patch:
         real = socket.create_connection
         patch.setattr(socket, "create_connection", lambda place, wait: real(("127.0.0.1", place[1]), wait))
-        assert "--host 10.0.0.7" in why_refused(endpoint.replace("127.0.0.1", "10.0.0.7"), shown(authority))
+        assert "host='10.0.0.7'" in why_refused(endpoint.replace("127.0.0.1", "10.0.0.7"), shown(authority))
 
 
 def test_what_speaks_no_tls_is_named(authority: KeysFolder) -> None:

@@ -52,7 +52,7 @@ def test_a_misspelt_type_is_a_near_miss_and_to_accept_it_would_do() -> None:
 def test_that_a_hierarchy_would_do_is_a_hint_where_none_was_seen() -> None:
     composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :CeilingCamera .")
     told = explained(composer, ecology, refusal, BELOW, UNLIMITED)
-    assert told.hint == "with --reasoning subclass there is a configuration"
+    assert told.hint == "with reasoning='subclass' there is a configuration"
     (miss,) = told.near_misses
     assert "which lies below it" in str(miss.obstacle)
     assert explained(composer, ecology, refusal, NOTHING, UNLIMITED).hint is None

@@ -164,12 +164,36 @@ def persons_for_parts() -> dict[str, str]:
     return {subject: "line " + ", ".join(lines) for subject, lines in sorted(found.items())}
 
 
+_OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
+_TO_TYPE = re.compile(r"(?:selfconf [a-z]+|`run )[^`]*")
+"""A whole command that a user may type, with what follows."""
+
+
+def options_in_messages() -> dict[str, str]:
+    """Each option of the command line that a text of selfconf outside of its `cli` names, with the lines.
+
+    The library says it by `selfconf.model.setting_names`. A whole command, and an argument of a program, may stand.
+    """
+    found: dict[str, list[str]] = defaultdict(list)
+    for path, tree in modules("selfconf"):
+        if path.startswith("selfconf/cli/") or "--" not in (ROOT / path).read_text("utf-8"):
+            continue
+        docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
+                said = "" if re.fullmatch(r"--\S+", node.value) else _TO_TYPE.sub("", node.value)
+                for option in _OPTION.findall(said):
+                    found[f"{path}::{option}"].append(str(node.lineno))
+    return {subject: "line " + ", ".join(lines) for subject, lines in sorted(found.items())}
+
+
 RULES: dict[str, Callable[[], dict[str, str]]] = {
     "complexity": complex_functions,
     "names": shared_names,
     "docstrings": dependent_docstrings,
     "glossary": undefined_classes,
     "persons": persons_for_parts,
+    "options": options_in_messages,
 }
 """What does not keep to each rule; the excuses are in the text file of that name."""
 

@@ -39,5 +39,5 @@ def test_a_file_of_somebody_else_is_not_overwritten_and_nothing_is_written(tmp_p
 def test_what_cannot_be_written_is_a_sentence(tmp_path: Path, name: str) -> None:
     (tmp_path / "x.ttl").write_text(TEXT)
     (tmp_path / "out").write_text("")
-    with pytest.raises(AuthorError, match="give another folder with --out"):
+    with pytest.raises(AuthorError, match="give another folder with out"):
         write_folder(tmp_path / "out" if name == "x.ttl" else tmp_path, {name: TEXT})

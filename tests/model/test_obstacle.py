@@ -193,7 +193,7 @@ def test_codes_are_stable_and_different() -> None:
     [
         (SENSOR, TypeRelation.SIMILAR, "(did you mean Sensor?)"),
         (IRI("urn:other#Camera"), TypeRelation.SIMILAR, "(did you mean <urn:other#Camera>?)"),
-        (SENSOR, TypeRelation.BELOW, "but a Sensor, which lies below it (see --reasoning subclass)"),
+        (SENSOR, TypeRelation.BELOW, "but a Sensor, which lies below it (see reasoning='subclass')"),
         (SENSOR, TypeRelation.ABOVE, "but a Sensor, which lies above it"),
     ],
 )

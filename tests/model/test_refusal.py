@@ -135,13 +135,13 @@ def test_no_answer_is_true() -> None:
 @pytest.mark.parametrize(
     ("undecided", "said"),
     [
-        (Undecided(1), "not decided within 1 step; allow more by --steps"),
-        (Undecided(9), "not decided within 9 steps; allow more by --steps"),
+        (Undecided(1), "not decided within 1 step; allow more by steps"),
+        (Undecided(9), "not decided within 9 steps; allow more by steps"),
         (
             Undecided(9, unaided=True),
-            "not decided within 9 steps; allow more by --steps, or install the extra `solvers`",
+            "not decided within 9 steps; allow more by steps, or install the extra `solvers`",
         ),
-        (Undecided(9, seconds=0.5), "not decided within 0.5 s; allow more by --seconds"),
+        (Undecided(9, seconds=0.5), "not decided within 0.5 s; allow more by seconds"),
     ],
 )
 def test_what_is_not_decided_says_what_to_allow(undecided: Undecided, said: str) -> None:
@@ -150,7 +150,7 @@ def test_what_is_not_decided_says_what_to_allow(undecided: Undecided, said: str)
 
 def test_what_is_not_decided_is_asked_for_reasons_as_a_refusal_is_and_has_none() -> None:
     assert (Undecided(1).reasons, Undecided(1).near_misses, Undecided(1).repairs) == ((), (), ())
-    assert Undecided(1)._repr_html_() == "<pre>not decided within 1 step; allow more by --steps</pre>"
+    assert Undecided(1)._repr_html_() == "<pre>not decided within 1 step; allow more by steps</pre>"
 
 
 def test_a_reason_counts_the_components_that_other_tasks_hold() -> None:

@@ -60,7 +60,7 @@ def test_triples_are_turtle_or_json_ld(dataset: Dataset, form: str, word: str) -
 
 def test_a_format_that_does_not_fit_the_query_is_refused(dataset: Dataset) -> None:
     for text, form in ((EVERYTHING, "turtle"), ("CONSTRUCT WHERE { ?s ?p ?o }", "csv")):
-        with pytest.raises(AuthorError, match="--format"):
+        with pytest.raises(AuthorError, match="format="):
             ask(dataset, text, form)
 
 

@@ -131,5 +131,5 @@ def test_a_free_parameter_in_two_places_has_no_query() -> None:
 
 
 def test_what_sparql_cannot_say_is_referred_to_the_shape() -> None:
-    with pytest.raises(AuthorError, match="says what a SPARQL query cannot; see its shape by --show shape"):
+    with pytest.raises(AuthorError, match="says what a SPARQL query cannot; see its shape by show='shape'"):
         role_query(read("sh:property [ sh:path :p ; sh:equals :q ]"))

@@ -129,9 +129,9 @@ def test_a_refusal_without_more_has_no_missing_sites_and_no_repairs() -> None:
 def test_what_is_not_decided_has_a_code_and_says_what_to_allow() -> None:
     assert undecided_body(Undecided(7)) == {
         "code": "undecided",
-        "message": "not decided within 7 steps; allow more by --steps",
+        "message": "not decided within 7 steps; allow more by steps",
     }
-    assert "--seconds" in undecided_body(Undecided(seconds=0.5))["message"]
+    assert "allow more by seconds" in undecided_body(Undecided(seconds=0.5))["message"]
 
 
 @pytest.mark.parametrize(

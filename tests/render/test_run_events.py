@@ -146,7 +146,7 @@ def test_a_task_that_waits_or_is_refused_says_why_first() -> None:
         said = "\n".join(details(kind(REFUSAL, lost), NAMES))
         assert said.startswith("no configuration for :tell\n")
         assert said.endswith("\n  :clock was lost: crash, its liveliness has ended")
-    assert list(details(TaskWaiting(Undecided(7)), NAMES)) == ["  not decided within 7 steps; allow more by --steps"]
+    assert list(details(TaskWaiting(Undecided(7)), NAMES)) == ["  not decided within 7 steps; allow more by steps"]
     assert list(details(TaskWaiting(None), NAMES)) == []
 
 

@@ -141,7 +141,7 @@ def test_a_refusal_without_reasons_says_that_there_was_no_time() -> None:
 
 
 def test_what_is_not_decided_is_one_sentence() -> None:
-    assert undecided_text(Undecided(1), TEMPLATE, NAMES) == ":tell is not decided within 1 step; allow more by --steps"
+    assert undecided_text(Undecided(1), TEMPLATE, NAMES) == ":tell is not decided within 1 step; allow more by steps"
     assert "install the extra `solvers`" in undecided_text(Undecided(9, unaided=True), TEMPLATE, NAMES)
 
 

@@ -21,9 +21,7 @@ from tests.serve.shown import advertised
 def test_a_port_that_is_taken_is_a_sentence() -> None:
     with bound("127.0.0.1", 0) as place:
         port = place.getsockname()[1]
-        with pytest.raises(
-            NetworkError, match=f"cannot listen on port {port} of 127.0.0.1 .*give another one by --port"
-        ):
+        with pytest.raises(NetworkError, match=f"cannot listen on port {port} of 127.0.0.1 .*give another one by port"):
             bound("127.0.0.1", port)
 
 

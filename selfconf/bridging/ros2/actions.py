@@ -22,6 +22,7 @@ from selfconf.bridging.ros2.domain import RosDomain
 from selfconf.bridging.ros2.services import SERVICE_SECONDS, response_fields, response_payload
 from selfconf.bridging.ros2.tokens import PUBLISHER, SERVER, RosEndpoint
 from selfconf.bus.port import Replies
+from selfconf.model.setting_names import setting
 from selfconf.ros_definitions import FEEDBACK_MESSAGE, GET_RESULT, SEND_GOAL
 from selfconf.ros_messages import MessageError
 from selfconf.ros_services import CANCEL_GOAL
@@ -107,7 +108,7 @@ class ActionGoal:
         if self._answer.done():
             return
         if parts is None or ros_messages.service_parts(action.get_result.type) is None:
-            self._refuse(f"the fields of {action.type} are not known; give its definition, by --definitions")
+            self._refuse(f"the fields of {action.type} are not known; give its definition, by {setting('definitions')}")
             return
         if isinstance(request.value, bytes):
             self._refuse(f"what {request.source.short} asks is no object, as a goal of {action.name} is")

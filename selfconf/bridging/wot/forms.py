@@ -16,6 +16,7 @@ from selfconf.bridging.wot.credentials import ThingCredentials, origin
 from selfconf.bridging.wot.security_schemes import UnusableFormError, proof_of_identity
 from selfconf.importing import one_or_several
 from selfconf.model.immutable import immutable
+from selfconf.model.setting_names import setting
 
 USUAL_METHODS = {
     "readproperty": "GET",
@@ -120,7 +121,8 @@ class ThingForms:
         host = urlsplit(url).hostname or ""
         if not self._reachable(host):
             raise UnusableFormError(
-                f"its forms lead to {host}, which its description does not come from; allow it with --host {host}"
+                f"its forms lead to {host}, which its description does not come from; allow it with"
+                f" {setting('host', host)}"
             )
         return url
 

@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 from selfconf.model.immutable import immutable
+from selfconf.model.setting_names import setting
 
 ASKED_FOR = {"basic": ("username", "password"), "bearer": ("token",), "apikey": ("key",)}
 """Which credentials a scheme asks for."""
@@ -61,7 +62,7 @@ def proof_of_identity(name: str, definition: Any, told: Mapping[str, str], where
         raise UnusableFormError(f"it asks for the security scheme {str(kind or name)[:40]!r}; {known}")
     missing = [member for member in ASKED_FOR[kind] if member not in told]
     if missing:
-        advice = "put them into a file and give it with --credentials"
+        advice = f"put them into a file and give it with {setting('credentials')}"
         raise UnusableFormError(f"{where} asks for {' and '.join(missing)}; {advice}")
     place = scheme.get("in", _USUAL_PLACE[kind])
     if place not in PROOF_PLACES:

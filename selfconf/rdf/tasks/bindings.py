@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shlex
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -11,6 +10,7 @@ from functools import partial
 import pyoxigraph as ox
 
 from selfconf.errors import BindingError
+from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.model.wording import in_full
@@ -108,12 +108,12 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
                 bindings[parameter.iri] = parameter.default
             elif parameter.is_set and not parameter.in_shape:
                 raise BindingError(
-                    f"the parameter {parameter.name!r} needs a value; give it with --bind {parameter.name}=..."
+                    f"the parameter {parameter.name!r} needs a value; give it with {binding(parameter.name)}"
                 )
             elif place := _rigid(given, parameter):
                 raise BindingError(
                     f"the parameter {parameter.name!r} cannot be left free, for it stands in {place}; "
-                    f"give it a value with --bind {parameter.name}=..."
+                    f"give it a value with {binding(parameter.name)}"
                 )
         if parameter.iri in bindings:
             _check(parameter, bindings[parameter.iri], document)
@@ -158,7 +158,7 @@ def _check(parameter: Parameter, value: Term, document: Document) -> None:
         if isinstance(value, Literal) and "IRI" in problem:
             hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
         elif (meant := _meant(parameter, value, document)) is not None:
-            hint = f"; write --bind {parameter.name}={shlex.quote(meant.turtle(name))}"
+            hint = f"; write {binding(parameter.name, meant.turtle(name))}"
         raise BindingError(f"{said} cannot stand for the parameter {parameter.name!r}: {_plain(problem)}{hint}")
 
 

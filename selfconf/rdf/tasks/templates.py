@@ -13,6 +13,7 @@ from collections import Counter
 from selfconf.errors import TemplateError
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import Place
+from selfconf.model.setting_names import setting
 from selfconf.model.template import MOST_PRIORITY, Role, Setting, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.model.truth import truth
@@ -58,7 +59,7 @@ def read_task(document: Document, wanted: IRI | None = None) -> TaskDocument:
         raise TemplateError("no sc:Template and no sc:Task in it; is it the right file?", file=document.source)
     else:
         names = ", ".join(sorted(repr(node) for node in tasks or templates))
-        raise TemplateError(f"it holds several; say which with --template: {names}", file=document.source)
+        raise TemplateError(f"it holds several; say which with {setting('template')}: {names}", file=document.source)
     if chosen in tasks:
         return TaskDocument(_Reader(document).task(chosen), document)
     return TaskDocument(Task(_Reader(document).template(chosen)), document)
@@ -186,7 +187,7 @@ class _Reader(DocumentReader):
             kind = self.iri(node, SC.parameterType, f"what {worded(role)} sets needs one sc:parameterType, an IRI")
             value = self.only(node, SC.value, f"what {worded(role)} sets needs exactly one sc:value")
             nodes.setdefault(Setting(kind, value), node)
-        for kind, times in Counter(setting.type for setting in nodes).items():
+        for kind, times in Counter(one.type for one in nodes).items():
             if times > 1:
                 problem = f"the role {worded(role)} sets {worded(kind)} to {times} different values"
                 again = [node for setting, node in nodes.items() if setting.type == kind][1]

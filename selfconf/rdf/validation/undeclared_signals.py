@@ -10,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.setting_names import setting
 from selfconf.rdf.validation.prefilter import Prefiltered
 from selfconf.rdf.validation.term_index import TermIndex, namespace
 from selfconf.rdf.validation.text_places import TextPlaces
@@ -38,4 +39,5 @@ def _warning(text: TextPlaces, home: str, signals: set[str], found: Prefiltered)
     if len(signals) > 1:
         message = f"No loaded ontology declares the signal types of <{home}>: this file uses {len(signals):,} of them."
     offset = text.first_use(signals, found.prefixes)
-    return text.at(offset or 0, "SC-L03", message, "Give the ontology that declares it with --ontology FILE.")
+    hint = f"Give the ontology that declares it with {setting('ontology', 'FILE')}."
+    return text.at(offset or 0, "SC-L03", message, hint)

@@ -86,7 +86,7 @@ def test_a_goal_whose_fields_are_not_known_is_refused() -> None:
     server = SimulatedServer(parts_of("/count"))
     answer = server.called({"order": 5})
     assert server.until(answer.done)
-    assert str(answer.exception()) == f"the fields of {ACTION} are not known; give its definition, by --definitions"
+    assert str(answer.exception()) == f"the fields of {ACTION} are not known; give its definition, by definitions"
     assert not server.sent
 
 

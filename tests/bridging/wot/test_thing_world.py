@@ -97,7 +97,7 @@ def test_a_description_that_was_fetched_leads_to_its_own_host_alone(
     private.values["/on"] = True
     server.values["/td"] = server.describe(base=f"http://localhost:{private.port}/")
     with bridging(living, tmp_path / "ads", f"{server.url}/td") as found:
-        assert until(lambda: found.complained("allow it with --host localhost"))
+        assert until(lambda: found.complained("allow it with host='localhost'"))
         assert until(lambda: found.complained("there is no form by which it could be reached"))
         assert not found.lives("lamp")
     assert private.received == []

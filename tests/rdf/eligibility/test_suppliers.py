@@ -66,7 +66,7 @@ def test_what_says_neither_is_a_mistake_of_the_template(recruits: str, problem: 
 def test_a_parameter_in_the_shape_of_suppliers_has_to_have_a_value() -> None:
     shape = "[ sh:property [ sh:path :power ; sh:in ( :power-wanted ) ; sh:minCount 1 ] ]"
     with pytest.raises(
-        BindingError, match=r"'wanted' cannot be left free, for it stands in sc:recruits; .*--bind wanted="
+        BindingError, match=r"'wanted' cannot be left free, for it stands in sc:recruits; .*bind\(wanted="
     ):
         recruited(shape)
     assert recruited(shape, wanted="3") == []

@@ -104,11 +104,11 @@ def test_half_a_character_is_refused_in_a_sentence(value: str | Term) -> None:
 @pytest.mark.parametrize(
     ("bound", "shown", "hint"),
     [
-        (("speed", "2"), "2 cannot stand", "; write --bind speed=2.0"),
+        (("speed", "2"), "2 cannot stand", "; write bind(speed='2.0')"),
         (("speed", "2e0"), "2e0 cannot stand", None),
-        (("speed", '"2"'), '"2" cannot stand', """; write --bind speed='"2"^^xsd:decimal'"""),
+        (("speed", '"2"'), '"2" cannot stand', """; write bind(speed='"2"^^xsd:decimal')"""),
         (("speed", "fast"), '"fast" cannot stand', None),
-        (("goal", "5"), "5 cannot stand", """; write --bind goal='"5"'"""),
+        (("goal", "5"), "5 cannot stand", """; write bind(goal='"5"')"""),
         (("robot", "Astrid"), '"Astrid" cannot stand', "; write a CURIE such as :Astrid, or an <IRI>"),
     ],
 )
@@ -148,7 +148,7 @@ def test_a_path_cannot_be_left_free(path: str) -> None:
     )
     with pytest.raises(
         BindingError,
-        match=r"'x' cannot be left free, for it stands in sh:(p|inverseP|alternativeP|zeroOrMoreP)ath; .*--bind x=",
+        match=r"'x' cannot be left free, for it stands in sh:(p|inverseP|alternativeP|zeroOrMoreP)ath; .*bind\(x=",
     ):
         bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
 
@@ -161,7 +161,7 @@ def test_a_limit_cannot_be_left_free(place: str) -> None:
         f" :r a sc:Role ; sh:property [ sh:path :n ; sh:{place} :x ] ."
     )
     task = templates.read_task(turtle.parse(text, "t.ttl"))
-    with pytest.raises(BindingError, match=rf"'x' cannot be left free, for it stands in sh:{place}; .*--bind x="):
+    with pytest.raises(BindingError, match=rf"'x' cannot be left free, for it stands in sh:{place}; .*bind\(x="):
         bindings.complete(task)
     assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings
 
@@ -175,7 +175,7 @@ def test_a_shape_of_recruits_cannot_be_left_free(recruits: str) -> None:
     )
     task = templates.read_task(turtle.parse(text, "t.ttl"))
     for later in ((), ("x",)):
-        with pytest.raises(BindingError, match=r"'x' cannot be left free, for it stands in sc:recruits; .*--bind x="):
+        with pytest.raises(BindingError, match=r"'x' cannot be left free, for it stands in sc:recruits; .*bind\(x="):
             bindings.complete(task, later)
     assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings
 

@@ -30,7 +30,7 @@ def test_a_type_of_an_unknown_namespace_is_told_where_it_is_first_used() -> None
     (only,) = told(component("a", "sc:Signal", ":Sound", ":Sound"))
     assert (only.code, only.file, only.line - HEAD) == ("SC-L03", "0.ttl", 4)
     assert only.message == "No loaded ontology declares the signal type <https://example.org/peis-home#Sound>."
-    assert "--ontology" in (only.hint or "")
+    assert "ontologies=" in (only.hint or "")
 
 
 def test_several_types_of_one_namespace_are_counted_in_one_warning() -> None:
