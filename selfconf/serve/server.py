@@ -62,10 +62,9 @@ def refuse_exposure(host: str, credentials: Credentials | None) -> None:
     """Raise AuthorError where other hosts can reach a server with keys: by HTTP it asks no client for any."""
     if credentials is not None and is_beyond_loopback(host):
         raise AuthorError(
-            f"{host} can be reached from other hosts, and any program that asks by HTTP sees without keys what"
-            f" {credentials.name} may see: listen on 127.0.0.1, behind a server that asks who it is, or give"
-            f" {setting('insecure')}"
-            " if that is what you want"
+            f"{host} can be reached from other hosts, and any program that asks by HTTP sees what"
+            f" {credentials.name} may see, without keys: listen on 127.0.0.1, behind a server that asks who it is, or give"
+            f" {setting('insecure')} if that is what you want"
         )
 
 
