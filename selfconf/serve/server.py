@@ -63,8 +63,8 @@ def refuse_exposure(host: str, credentials: Credentials | None) -> None:
     if credentials is not None and is_beyond_loopback(host):
         raise AuthorError(
             f"{host} can be reached from other hosts, and any program that asks by HTTP sees what"
-            f" {credentials.name} may see, without keys: listen on 127.0.0.1, behind a server that asks who it is, or give"
-            f" {setting('insecure')} if that is what you want"
+            f" {credentials.name} may see, without keys: listen on 127.0.0.1, behind a server that asks who it is, or"
+            f" give {setting('insecure')} if that is what you want"
         )
 
 
