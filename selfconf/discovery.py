@@ -4,9 +4,9 @@ Discovery is acts 1 and 2 of the paper (section 2.4). It asks liveliness which s
 advertisements, and ends when all have answered, or at the time-out, with the names of those that did not. An answer is
 checked for completeness, n of n, because the network does not report a site that dies in the middle of its answer.
 
-Answers are told apart by the *life* of the site and not by its name: where two sites have one name, both are read, and
-lists name both. What a site has answered is remembered; asked again, it is told which revision is known, and replies
-only that this is still the one.
+Answers are distinguished by the *life* of the site and not by its name: where two sites have one name, both are read,
+and lists name both. What a site has answered is remembered; asked again, it receives which revision is known, and
+replies only that this is still the one.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ LARGEST_ADVERTISEMENT = 1 << 20
 LARGEST_SITE = 1 << 26
 """How many bytes the advertisements of one site can have together; what comes after that is left out."""
 MOST_COMPLAINTS = 20
-"""How many things that are wrong with the answer of one site are told one by one; the rest is counted."""
+"""How many things that are wrong with the answer of one site are reported one by one; the rest is counted."""
 MANY_LIVES = 2_000
 """From how many components on their lives are not followed all together: a router of Zenoh says nothing else until it
-has told a watch all lives, which takes it a second for 10,000, and then whoever watches takes it for dead. Who needs
-few of them calls and follows those, and hears only news of the others; who needs all follows them in parts."""
+has told a watch all lives, which takes it a second for 10,000, and then its clients take it for dead. A node that
+needs few of them calls and follows those, and hears only news of others; one that needs all follows them in parts."""
 MOST_LIVES = 16
 """How many lives of one component are followed: there should be one, and two where processes clash."""
 BETWEEN_DISCOVERIES = 0.2
@@ -87,7 +87,7 @@ class Discovery:
 
 
 Beliefs = Callable[[], Mapping[IRI, str]]
-"""Whose a component is that several sites advertise, by their names, as far as somebody has said so."""
+"""The site that owns a component which several sites advertise, by its name, as far as a person has said so."""
 LifeChanged = Callable[[str, bool], None]
 """Hears of a life that has begun or ended, by its key."""
 SiteLife = tuple[str, str]
@@ -188,8 +188,8 @@ class EcologyView:
     def follow(self, changed: LifeChanged, site_changed: LifeChanged) -> None:
         """Follow the life of every component and site from now on, those that are there first; twice does nothing.
 
-        Of components that could be selected, but are not, only news are told: a life that begins, or, after this node
-        has lost its hub, is there again. Not to be called before the first discovery has ended: Zenoh answers a
+        Of components that could be selected, but are not, only news are reported: a life that begins, or, after this
+        node has lost its hub, is there again. Not to be called before the first discovery has ended: Zenoh answers a
         roll-call in part only if a watch of the same lives begins meanwhile.
         """
         if self._followed:
@@ -254,7 +254,7 @@ class EcologyView:
         """Ask all sites what they advertise; `done` is called once, when all have answered or time is up.
 
         On average discoveries begin `BETWEEN_DISCOVERIES` seconds apart, or strangers who put `changed` again and again
-        could keep everybody busy (the generic cell rate algorithm, ITU-T I.371).
+        could keep all nodes busy (the generic cell rate algorithm, ITU-T I.371).
         """
         now, inquiry = self.bus.now(), _Inquiry(self, done)
         begin = max(now, self._next_discovery)
@@ -266,7 +266,7 @@ class EcologyView:
 
 
 class _Selection:
-    """One call of the lives of some components, each by its key, so that nobody tells of thousands of others."""
+    """One call of the lives of some components, each by its key, so that no answer tells of thousands of others."""
 
     def __init__(
         self,
@@ -415,7 +415,7 @@ class _Inquiry:
     def _undisputed(self, advertised: Sequence[FoundAdvertisement], names: _Names) -> dict[IRI, FoundAdvertisement]:
         """The advertisement of each component; of one that several sites advertise, that of the site that is believed.
 
-        Without keys it is the first by name, and the others are named. With keys nobody is believed until a person has
+        Without keys it is the first by name, and the others are named. With keys no site is believed until a person has
         said whose it is: then it is left out.
         """
         claims: dict[IRI, list[FoundAdvertisement]] = {}
@@ -446,7 +446,7 @@ class _Inquiry:
         return found
 
     def _decided(self) -> Mapping[IRI, str] | None:
-        """Whose disputed components are, as somebody has said; None without keys."""
+        """The sites that own disputed components, as a person has said; None without keys."""
         if self.ecology.believed is None:
             return None
         try:
