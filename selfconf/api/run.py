@@ -22,6 +22,7 @@ from selfconf.configurator import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import FrozenMapping
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
@@ -196,7 +197,7 @@ class Run:
     @property
     def losses(self) -> Mapping[IRI, Loss]:
         """The components that were lost and have not come back, each with the cause."""
-        return self._runner.state.lost
+        return FrozenMapping(self._runner.state.lost)
 
     @property
     def lost(self) -> Mapping[IRI, str]:

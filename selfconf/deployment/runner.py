@@ -59,6 +59,7 @@ from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import PeerError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import FrozenMapping
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import (
@@ -340,9 +341,9 @@ class TaskRunner:
         return self._calls.out_of_control(self.state.owed)
 
     @property
-    def losses(self) -> dict[IRI, str]:
-        """Why each component that was lost was lost, for people."""
-        return {component: f"{loss.cause.value}, {loss.detail}" for component, loss in self.state.lost.items()}
+    def losses(self) -> Mapping[IRI, str]:
+        """Why each component that was lost was lost, for people, as of now."""
+        return FrozenMapping({c: f"{loss.cause.value}, {loss.detail}" for c, loss in self.state.lost.items()})
 
     def _notice(self, known: Mapping[IRI, Loss]) -> None:
         """Record and report every component that the machine has just given up, whatever the cause."""

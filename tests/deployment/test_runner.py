@@ -67,6 +67,10 @@ def test_a_lost_tracker_is_replaced_by_odometry(lab: Lab) -> None:
     (lost,) = lab.acts("lost")
     assert lost.component == iri("person-tracker")
     assert lost.detail == "Astrid has left the picture"
+    told = agent.losses
+    with pytest.raises(TypeError):
+        told[iri("person-tracker")] = "it is back"  # type: ignore[index]  # that is what is tested
+    assert told == {iri("person-tracker"): "fail, Astrid has left the picture"}
 
 
 def test_repair_neither_stops_nor_starts_nor_sets_anew_what_runs(lab: Lab) -> None:
