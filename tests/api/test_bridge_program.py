@@ -54,9 +54,9 @@ def test_files_of_which_none_can_be_read_end_it_and_a_folder_may_fill_later(tmp_
     for sources, words in (
         ([bad], r"bad\.json:1:1: this is not JSON"),
         ([bad, worse], r"bad\.json:1:1: this is not JSON"),
-        ([bad, lamp], "give --ecology NAME"),
-        ([bad, tmp_path / "things"], "give --ecology NAME"),
-        ([bad, "http://127.0.0.1:1/"], "give --ecology NAME"),
+        ([bad, lamp], "give ecology='NAME'"),
+        ([bad, tmp_path / "things"], "give ecology='NAME'"),
+        ([bad, "http://127.0.0.1:1/"], "give ecology='NAME'"),
     ):
         with pytest.raises(sc.SelfconfError, match=words):
             serve_things([str(source) for source in sources], 1.0, None, (), nowhere, print)
