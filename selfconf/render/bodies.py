@@ -115,6 +115,7 @@ def refusal_body(refusal: Refusal) -> dict[str, Any]:
             for miss in refusal.near_misses
         ],
         "repairs": relaxations,
+        **({"repairs_stopped": True} if refusal.repairs_stopped else {}),
         **({"held": [{"component": c, **holder_body(h)} for c, h in refusal.held]} if refusal.held else {}),
         **({"missing_sites": list(refusal.missing_sites)} if refusal.missing_sites else {}),
     }

@@ -6,7 +6,7 @@ The names of ports and parameters are any text that strangers wrote: what would 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from selfconf.model.alternative import Alternative
@@ -152,12 +152,19 @@ def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
     lines += [f"held by another task: {name(one)}: {holder_text(holder)}" for one, holder in refusal.held[:most]]
     if len(refusal.held) > most:
         lines.append(f"  and {len(refusal.held) - most} more that are held")
-    if refusal.repairs or refusal.hint:
-        lines.append("what would mend it")
-        lines += [_placed(f"  {relaxation}", relaxation) for relaxation in refusal.repairs]
-    if refusal.hint:
-        lines.append(f"  {refusal.hint}")
+    lines += _repairs(refusal)
     return "\n".join((*lines, *_missing(refusal.missing_sites, most)))
+
+
+def _repairs(refusal: Refusal) -> Iterator[str]:
+    """What would make a configuration possible, and whether more was to be tried."""
+    if refusal.repairs or refusal.hint:
+        yield "what would mend it"
+        yield from (_placed(f"  {relaxation}", relaxation) for relaxation in refusal.repairs)
+    if refusal.hint:
+        yield f"  {refusal.hint}"
+    if refusal.repairs_stopped:
+        yield f"the search for {'other ' * bool(refusal.repairs)}repairs stopped before all was tried"
 
 
 def _missing(sites: Sequence[str], most: int) -> list[str]:

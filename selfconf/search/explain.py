@@ -107,9 +107,9 @@ def _reasons_of_single_roles(problem: Problem) -> Iterator[Reason]:
 class FeasibilityOracle:
     """Decides which constraints of a problem can hold together, within a budget for all questions."""
 
-    def __init__(self, given: ReducedProblem, budget: Budget) -> None:
+    def __init__(self, given: ReducedProblem, budget: Budget, readings: Budget | None = None) -> None:
         self.given, self.budget = given, budget
-        self.readings = Budget(READINGS)
+        self.readings = readings or Budget(READINGS)
         """How many needs and supports may still be read to prepare questions, which takes no steps of the other one."""
         self._size = sum(len(kind.needs) + len(kind.supports) for kind in given.kinds())
         self.complete = True

@@ -14,8 +14,8 @@ issue; one interaction more, where some candidate issues what is lacking; a near
 All this is tried on the reduced problem (`dominance`): adding, asking for fewer and linking leave its argument intact,
 since candidates of one class have the same ports; near misses, which may become eligible for more, are distinguished in
 it. A role that asks for none is not in the reduced problem, and is asked for one in the whole problem. The number of
-trials and of their steps is limited, so that a hard case may end with fewer relaxations than there are, never with one
-that does not work.
+trials, of their steps and of what is read to prepare them is limited (`_Effort`), so that a hard case may end with
+fewer relaxations than there are, and says so, never with one that does not work.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.template import Interaction, Role
 from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
-from selfconf.search.explain import FeasibilityOracle, core
+from selfconf.search.engines import any_by_clauses, least_by_clauses
+from selfconf.search.explain import READINGS, FeasibilityOracle, core
 from selfconf.search.newcomers import (
     ADDITION,
     impossible,
@@ -55,8 +56,16 @@ from selfconf.search.newcomers import (
 from selfconf.search.problem import Link, Problem
 from selfconf.search.recruiting import first_recruited, possible_with_recruits
 from selfconf.search.recruits_to_add import recruits_to_add, with_more_recruits
-from selfconf.search.reduction import Fed, LazyReduction, Played, recruits_that_matter, reduced
-from selfconf.search.strategies import possible, solution
+from selfconf.search.reduction import (
+    Constraint,
+    Fed,
+    LazyReduction,
+    Played,
+    ReducedProblem,
+    recruits_that_matter,
+    reduced,
+)
+from selfconf.search.strategies import solution
 from selfconf.search.supply import Issued
 from selfconf.search.supposed_outputs import supposed
 
@@ -65,12 +74,15 @@ TRIALS = 24
 TRIAL_STEPS = 100_000
 """Steps for each trial."""
 RELAXATION_STEPS = 200_000
-"""Steps for all trials together; each costs one for every four ports at least."""
+"""Steps for all trials together, to read the ports and to write down the options of what is tried included."""
+PORTS_PER_TRIAL_STEP = 4
+"""How many ports are read for the price of a step."""
+STEPS_PER_OPTION = 2
+"""How many steps are paid for an option, each time that the options are written down."""
 RECRUIT_TRIAL_STEPS = 5_000
 """Steps to find recruits after one of the changes."""
 HELPFUL_STEPS = 10_000
 """Steps to find out whose help a conflict needs."""
-PORTS_PER_TRIAL_STEP = 4
 CHOICES = 8
 """How many choices of outputs are tried for a role, where interactions name outputs."""
 NEAR = 8
@@ -88,19 +100,75 @@ def with_relaxations(
     problem: Problem, refused: Refusal, near_misses: NearMisses = (), steps: int | None = None
 ) -> Refusal:
     """Return a refusal with the relaxations that were found, within a number of steps."""
-    return replace(refused, repairs=tuple(relaxations(problem, refused, near_misses, steps)))
+    effort = _Effort(steps)
+    found = tuple(_relaxations(problem, refused, near_misses, effort))
+    return replace(refused, repairs=found, repairs_stopped=effort.stopped)
 
 
 def relaxations(
     problem: Problem, refused: Refusal, near_misses: NearMisses = (), steps: int | None = None
 ) -> Iterator[Relaxation]:
+    """Yield changes that make a refused problem possible, those first that are easiest to make."""
+    return _relaxations(problem, refused, near_misses, _Effort(steps))
+
+
+class _Effort:
+    """What may still be spent on all that is tried for a refusal."""
+
+    def __init__(self, steps: int | None) -> None:
+        self.budget = Budget(RELAXATION_STEPS if steps is None else min(steps, RELAXATION_STEPS))
+        """The steps of all searches."""
+        self.readings = Budget(READINGS)
+        """The needs and supports that may be read to find out whose help a conflict needs."""
+        self.stopped = False
+        """Whether something was not tried, or not to its end, because too little was left."""
+
+    def used_up(self) -> bool:
+        """Return whether nothing is left; that something is not tried for this is noted."""
+        over = not self.budget.steps or not self.readings.steps
+        self.stopped = self.stopped or over
+        return over
+
+    def solution(self, given: LazyReduction, least: bool = True) -> list[list[Candidate]] | Undecided | None:
+        """Return a solution of a changed problem, None if there is none, or Undecided if too little is left."""
+        options = sum(map(len, given.problem.candidates))
+        self.budget.spend(_ports(given.problem) // PORTS_PER_TRIAL_STEP + STEPS_PER_OPTION * options)
+        if self.used_up():
+            return Undecided(0)
+        with self.budget.portion(TRIAL_STEPS + options) as part:
+            found = solution(given, part, least_by_clauses if least else any_by_clauses)
+        self.stopped = self.stopped or isinstance(found, Undecided)
+        return found
+
+    def possible(self, problem: Problem) -> bool:
+        """Return whether a solution of a changed problem is found, be it the first one or another."""
+        return isinstance(self.solution(LazyReduction(problem), least=False), list)
+
+    def core(self, given: ReducedProblem) -> tuple[Constraint, ...]:
+        """Return constraints that cannot hold together; none if too little is left to find any."""
+        self.budget.spend(STEPS_PER_OPTION * sum(map(len, given.options)))
+        if self.used_up():
+            return ()
+        with self.budget.portion(HELPFUL_STEPS) as part:
+            return core(FeasibilityOracle(given, part, self.readings))
+
+    def recruits_found(self, problem: Problem) -> bool:
+        """Return whether some players have recruits, in a problem that has a solution if these are there at once."""
+        if not any(role.recruits for role in problem.roles):
+            return True
+        supplying = sum(len(r.profile.inputs) + len(r.profile.outputs) for r in problem.supply.recruits)
+        self.budget.spend((_ports(problem) + supplying) // PORTS_PER_TRIAL_STEP)
+        return not self.used_up() and possible_with_recruits(problem, RECRUIT_TRIAL_STEPS)
+
+
+def _relaxations(problem: Problem, refused: Refusal, near_misses: NearMisses, effort: _Effort) -> Iterator[Relaxation]:
     """Yield changes that make a refused problem possible, those first that are easiest to make.
 
     The trials take it that whatever can be recruited is there at once; in the end a change counts only if some players
     have recruits then.
     """
     recruits = any(role.recruits for role in problem.roles)
-    for one in _relaxations(problem, refused, near_misses, steps):
+    for one in _possible_relaxations(problem, refused, near_misses, effort):
         in_the_end = _with_recruits(problem, one) if recruits else one
         if in_the_end is not None:
             yield in_the_end
@@ -121,11 +189,10 @@ def _with_recruits(problem: Problem, relaxation: Relaxation) -> Relaxation | Non
     return with_values(changed, relaxation, playing)
 
 
-def _relaxations(
-    problem: Problem, refused: Refusal, near_misses: NearMisses, steps: int | None
+def _possible_relaxations(
+    problem: Problem, refused: Refusal, near_misses: NearMisses, effort: _Effort
 ) -> Iterator[Relaxation]:
     """Yield changes that make a refused problem possible if all recruits were there at once."""
-    budget = Budget(RELAXATION_STEPS if steps is None else min(steps, RELAXATION_STEPS))
     near_misses = near_misses[:NEAR]
     matter = recruits_that_matter(problem) if problem.supply.recruits else ()
     recruitable = {problem.supply.recruits[number].component for number in matter}
@@ -133,15 +200,17 @@ def _relaxations(
 
     def works(one: AddComponents) -> bool:
         """Whether an addition makes the task possible, once it would if all recruits were there at once."""
-        return _recruits_found(relaxed_by(problem, one), budget)
+        return effort.recruits_found(relaxed_by(problem, one))
 
-    accepted = itertools.starmap(AcceptNearMiss, near_misses)
-    yield from (one for one in accepted if _possible(relaxed_by(small, one), budget))
-    recruits = recruits_to_add(small, lambda one: _possible(relaxed_by(small, one), budget) and works(one))
-    added = _additions(small, budget, works)
+    def possible(one: Relaxation) -> bool:
+        return effort.possible(relaxed_by(small, one))
+
+    yield from filter(possible, itertools.starmap(AcceptNearMiss, near_misses))
+    recruits = recruits_to_add(small, lambda one: possible(one) and works(one))
+    added = _additions(small, effort, works)
     yield from (one for one in (recruits, added) if one is not None)
-    yield from (one for one in _interactions(small, refused) if _possible(relaxed_by(small, one), budget))
-    yield from _fewer(small, refused, budget)
+    yield from filter(possible, _interactions(small, refused))
+    yield from _fewer(small, refused, effort)
 
 
 def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
@@ -169,30 +238,9 @@ def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
     return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
 
 
-def _solution(problem: Problem, budget: Budget) -> list[list[Candidate]] | Undecided | None:
-    budget.spend(_ports(problem) // PORTS_PER_TRIAL_STEP)
-    with budget.portion(TRIAL_STEPS + sum(map(len, problem.candidates))) as part:
-        return solution(LazyReduction(problem), part)
-
-
 def _ports(problem: Problem) -> int:
     """Return how many ports there are, which is what preparing a trial costs."""
     return sum(len(c.profile.inputs) + len(c.profile.outputs) for some in problem.candidates for c in some)
-
-
-def _possible(problem: Problem, budget: Budget) -> bool:
-    budget.spend(_ports(problem) // PORTS_PER_TRIAL_STEP)
-    with budget.portion(TRIAL_STEPS + sum(map(len, problem.candidates))) as part:
-        return possible(problem, part)
-
-
-def _recruits_found(problem: Problem, budget: Budget) -> bool:
-    """Return whether some players have recruits, in a problem that has a solution if these are there at once."""
-    if not any(role.recruits for role in problem.roles):
-        return True
-    supplying = sum(len(r.profile.inputs) + len(r.profile.outputs) for r in problem.supply.recruits)
-    budget.spend((_ports(problem) + supplying) // PORTS_PER_TRIAL_STEP)
-    return budget.steps != 0 and possible_with_recruits(problem, RECRUIT_TRIAL_STEPS)
 
 
 def _reduced(problem: Problem, distinguished: Collection[IRI]) -> Problem:
@@ -220,7 +268,7 @@ Works = Callable[[AddComponents], bool]
 """Whether an addition works in the end, which is possible if all recruits are there at once."""
 
 
-def _additions(problem: Problem, budget: Budget, works: Works) -> AddComponents | None:
+def _additions(problem: Problem, effort: _Effort, works: Works) -> AddComponents | None:
     """Return the fewest components to add, if a few are enough: breadth-first search over sets of additions."""
     problem = with_mentioned_variables(problem)
     lacking = _lacking(problem)
@@ -231,15 +279,17 @@ def _additions(problem: Problem, budget: Budget, works: Works) -> AddComponents 
     waiting = _lacked(lacking, choices)
     seen = {frozenset[object](added.items()) for added in waiting}
     for added in itertools.islice(waiting, TRIALS):  # which grows meanwhile
+        if effort.used_up():
+            return None
         asked = _asked(problem, added)
-        changed = relaxed_by(problem, asked)
-        playing = _solution(changed, budget) if added or recruiting else None
+        changed = LazyReduction(relaxed_by(problem, asked))
+        playing = effort.solution(changed) if added or recruiting else None
         if isinstance(playing, Undecided):
             # What comes later in the queue may be possible, and would not be known to be the fewest.
             return None
         if playing is not None and added and works(asked):
-            return _trimmed(problem, added, playing, budget, works)
-        helpful = _helpful(changed, budget) if playing is None else _feeding_first(changed)
+            return _trimmed(problem, added, playing, effort, works)
+        helpful = _helpful(changed.reduced, effort) if playing is None else _feeding_first(changed.problem)
         waiting += _with_one_more(added, [(role, outputs) for role in helpful for outputs in choices[role]], seen)
     return None
 
@@ -311,13 +361,11 @@ def _asks(link: Link, port: Input) -> bool:
     return link.input in (None, port.name) and (link.output is None or called is port.is_operation)
 
 
-def _helpful(problem: Problem, budget: Budget) -> list[int]:
+def _helpful(given: ReducedProblem, effort: _Effort) -> list[int]:
     """Return the roles for which one more component could resolve the conflict that there is."""
-    given = reduced(problem)
     if given.wiped_out() is not None:
         return []
-    with budget.portion(HELPFUL_STEPS) as part:
-        together = core(FeasibilityOracle(given, part))
+    together = effort.core(given)
     sources = [s.role for r in together if isinstance(r, Fed) for s in given.needs[r.need].sources]
     played = set(given.slots)
     # Roles that feed come first: of a role that others feed, a component without inputs is less likely to be had.
@@ -356,7 +404,7 @@ def _named(problem: Problem, role: int) -> frozenset[str]:
 
 
 def _trimmed(
-    problem: Problem, added: Added, playing: list[list[Candidate]], budget: Budget, works: Works
+    problem: Problem, added: Added, playing: list[list[Candidate]], effort: _Effort, works: Works
 ) -> AddComponents:
     """Return additions with only the outputs that are needed for a solution; `playing` is a solution with all."""
     for one in sorted(added, key=_in_order):
@@ -370,7 +418,7 @@ def _trimmed(
             if not all(
                 problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]
             ):
-                found = _solution(relaxed_by(problem, _asked(problem, trial)), budget)
+                found = effort.solution(LazyReduction(relaxed_by(problem, _asked(problem, trial))))
                 if not isinstance(found, list):
                     continue
                 changed = found
@@ -413,7 +461,7 @@ def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction
                 yield AddInteraction(*pair)
 
 
-def _fewer(problem: Problem, refused: Refusal, budget: Budget) -> Iterator[AskForFewer]:
+def _fewer(problem: Problem, refused: Refusal, effort: _Effort) -> Iterator[AskForFewer]:
     """Yield for each role of the conflict the largest number of components that it can ask for."""
     named = [r.role for reason in refused.reasons for r in reason.requirements if isinstance(r, RolePlayed)]
     recruits = any(role.recruits for role in problem.roles)  # of fewer players there may be none that have recruits
@@ -424,6 +472,6 @@ def _fewer(problem: Problem, refused: Refusal, budget: Budget) -> Iterator[AskFo
         for minimum in reversed(range(max(0, enough - TRIALS), enough)):
             fewer = AskForFewer(iri, minimum)
             changed = relaxed_by(problem, fewer)
-            if _possible(changed, budget) and (not recruits or possible_with_recruits(changed, RECRUIT_TRIAL_STEPS)):
+            if effort.possible(changed) and (not recruits or possible_with_recruits(changed, RECRUIT_TRIAL_STEPS)):
                 yield fewer
                 break

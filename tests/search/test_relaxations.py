@@ -301,3 +301,16 @@ def test_an_addition_names_the_value_that_matters_to_its_role_though_no_candidat
     assert isinstance(refused, Refusal)
     words = [str(one) for one in with_relaxations(given_, refused).repairs]
     assert words[0] == "add one more component for the role drive, with robot astrid"
+
+
+def test_a_search_for_repairs_that_ends_before_all_was_tried_says_so() -> None:
+    given_ = problem({f"r{number}": [component(f"c{other}") for other in range(9)] for number in range(10)})
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    whole = with_relaxations(given_, refused)
+    assert not whole.repairs_stopped
+    for steps in (1, 100, 500, 2000):
+        found = with_relaxations(given_, refused, steps=steps)
+        assert found.repairs_stopped or found.repairs == whole.repairs
+        assert set(map(str, found.repairs)) <= set(map(str, whole.repairs))
+    assert with_relaxations(given_, refused, steps=1).repairs_stopped
