@@ -6,14 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from tests.effort import NIGHTLY
 from tests.faults.ecologies import CHOICE, COMPOSED, PAPER
 from tests.faults.replay import played
 from tests.faults.script import KINDS, Recipe, with_upgrades, write
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
 
 __all__ = ["folder"]
-UPGRADING = HISTORIES // 10
-"""In so many histories more, tasks change for the better."""
+UPGRADING = HISTORIES // (10 if NIGHTLY else 30)
+"""In so many histories more, each of which takes as long as seven others, tasks change for the better."""
 
 
 def recipe(seed: int) -> Recipe:
