@@ -28,7 +28,7 @@ SECOND_SOLVER = "Cadical195"
 """The solver that joins in, which gets cardinalities as clauses."""
 PAIRED = 6
 """At most one of so many literals is written pair by pair, for a solver that cannot count."""
-FEW = 4
+FEW_TO_COUNT = 4
 """At most this number of some is counted one after the other, in fewer clauses than a totalizer has; more by that."""
 CONFLICTS_PER_CALL = 1_000
 """Conflicts for the first call of the solver about a question, hundredths of a second; the next has twice as many."""
@@ -47,7 +47,7 @@ def as_clauses(literals: Sequence[int], most: int, top: int) -> list[list[int]]:
     from pysat.card import CardEnc, EncType
 
     in_pairs = most == 1 and len(literals) <= PAIRED
-    kind = EncType.pairwise if in_pairs else EncType.seqcounter if most <= FEW else EncType.totalizer
+    kind = EncType.pairwise if in_pairs else EncType.seqcounter if most <= FEW_TO_COUNT else EncType.totalizer
     return list(CardEnc.atmost(list(literals), most, top_id=top, encoding=kind).clauses)
 
 
