@@ -269,7 +269,8 @@ def _unasked(state: State, event: Answered) -> Reaction:
     if unwanted and event.call is Call.RESERVE and event.verdict is Verdict.DONE:
         owed = {**state.owed, event.component: state.epoch}
         release = ReleaseFrom(event.component, state.epoch)
-        return then((release,), _free(replace(state, owed=owed), event.component))
+        queued = state.queued - {event.component}
+        return then((release,), _free(replace(state, owed=owed, queued=queued), event.component))
     return state, ()
 
 
@@ -427,8 +428,9 @@ def _freed(state: State, component: IRI) -> Reaction:
     if state.phase is Phase.RESERVING and (component, Call.RESERVE) in state.pending:
         return deploying.ask_again(state, component)
     known, effects = _free(state, component)
-    cannot_take = not effects and component not in state.held
-    return known, (Decline(component, state.epoch),) if cannot_take else effects
+    if effects or component in state.held:
+        return known, effects  # it remembers this task until it is reserved or released
+    return replace(known, queued=known.queued - {component}), (Decline(component, state.epoch),)
 
 
 def _free(state: State, component: IRI) -> Reaction:
@@ -437,8 +439,7 @@ def _free(state: State, component: IRI) -> Reaction:
     taken, sharers = (
         {c: holder for c, holder in holders.items() if c != component} for holders in (state.taken, state.sharers)
     )
-    free, queued = state.free | {component}, state.queued - {component}
-    known = replace(state, lost=lost, taken=taken, sharers=sharers, free=free, queued=queued, news=True)
+    known = replace(state, lost=lost, taken=taken, sharers=sharers, free=state.free | {component}, news=True)
     return _discover(known) if state.phase is Phase.REFUSED else (known, ())
 
 

@@ -512,6 +512,16 @@ def test_a_patient_task_that_is_stopped_waits_no_more() -> None:
     assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
 
 
+def test_a_component_that_was_free_and_was_not_taken_forgets_the_task_that_is_stopped() -> None:
+    """It remembers the task until it is reserved or released: else it would be kept for a task that has ended."""
+    history = waiting()
+    history.hear(Freed(TRACKER), Discovered())
+    history.composed(REFUSAL)
+    assert history.state.phase is Phase.REFUSED
+    assert released(history.hear(Stopped())) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
+
+
 def test_what_was_not_free_for_this_task_counts_again_once_it_is() -> None:
     history = History(TASK).running()
     history.hear(Failed(TRACKER, "1", Cause.YIELD))
