@@ -104,6 +104,11 @@ def needs(number: int) -> list[int]:
     return wanted if number % 2 else wanted[::-1]
 
 
+def some_tasks(size: int, first: int) -> list[int]:
+    """So many of the eight tasks, neighbours from one on, no task twice."""
+    return [(first + one) % max(TASKS) for one in range(size)]
+
+
 def act(folder: Path) -> None:
     """Be all sensors and drives, in one process that ends with its stdin."""
     host = open_host()
@@ -221,8 +226,7 @@ def measure(sizes: Sequence[int], rounds: int) -> tuple[list[float], dict[int, l
         alone = [contend(runners, heard, [number % 8]).settled for number in range(rounds)]
         shifts = itertools.count()
         found = {
-            size: [contend(runners, heard, [(next(shifts) + one) % 8 for one in range(size)]) for _ in range(rounds)]
-            for size in sizes
+            size: [contend(runners, heard, some_tasks(size, next(shifts))) for _ in range(rounds)] for size in sizes
         }
     return alone, found
 
