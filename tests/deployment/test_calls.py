@@ -185,11 +185,11 @@ def living_room(
     return node
 
 
-def home_without_a_tracker(folder: Path) -> Lab:
-    """Everybody lives but the tracker."""
+def home(folder: Path, *more: str) -> Lab:
+    """A lab in which one site has the components of the task, but for the tracker, and some more; all of them live."""
     lab = Lab(folder)
-    lab.site("astrid", *TASK, "odometry")
-    for name in (*TASK, "odometry"):
+    lab.site("astrid", *TASK, *more)
+    for name in (*TASK, *more):
         lab.component(name)
     return lab
 
@@ -213,10 +213,7 @@ def test_a_component_that_has_ended_unseen_is_started_again_by_a_site_that_can(t
 
 
 def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_component_again(tmp_path: Path) -> None:
-    lab = Lab(tmp_path)
-    lab.site("astrid", *TASK)
-    for name in TASK:
-        lab.component(name)
+    lab = home(tmp_path)
     living_room(lab, "1", lambda _: lab.component("tracker"))
     asked: list[Wake] = []
 
@@ -259,7 +256,7 @@ def test_a_site_hears_of_a_life_that_it_has_started_and_that_ended_before_it_obe
 
 def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:
     """A site ends that has been asked to start the tracker; and the configurator that has asked."""
-    lab = home_without_a_tracker(folder)
+    lab = home(folder, "odometry")
     asked: list[MemoryBus] = []
     site = living_room(lab, "1", asked.append)
     agent = lab.agent()
@@ -269,7 +266,7 @@ def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:
 
 
 def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
-    lab = home_without_a_tracker(tmp_path)
+    lab = home(tmp_path, "odometry")
     tracker = iri("person-tracker")
     crash = encode(Fail(tracker, "", 0, Cause.CRASH, "code 1"))
     living_room(lab, "1", lambda node: node.publisher(lab.keys.fail(tracker), Urgency.EVENT).put(crash))
@@ -297,10 +294,7 @@ def test_what_a_site_was_starting_is_given_up_if_the_site_does_not_come_back(tmp
 
 
 def test_that_nothing_is_found_without_what_a_site_starts_again_is_not_reported(tmp_path: Path) -> None:
-    lab = Lab(tmp_path)
-    lab.site("astrid", *TASK)
-    for name in TASK:
-        lab.component(name)
+    lab = home(tmp_path)
     living_room(lab, "1", lambda _: lab.component("tracker"))
     agent = lab.agent()
     assert lab.running(agent)
@@ -434,10 +428,7 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_pat
 
 def test_a_task_waits_for_a_component_whose_life_is_ending_and_has_its_site_start_it_again(tmp_path: Path) -> None:
     """Its code is in `started` for another task; its process is told to end meanwhile, and ends as that returns."""
-    lab = Lab(tmp_path)
-    lab.site("astrid", *TASK)
-    for name in TASK:
-        lab.component(name)
+    lab = home(tmp_path)
     lab.component("tracker")
     thread = slow_code(lab, "tracker")
     runtime = lab.runtimes["tracker"]

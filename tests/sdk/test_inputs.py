@@ -306,6 +306,20 @@ def other_source(stage: Stage) -> ComponentRuntime:
     return runtime
 
 
+SPARE = {"position": (Wire(ODOMETRY, "pose"),)}
+
+
+def with_stand_by(issued: str) -> tuple[Stage, ComponentRuntime]:
+    """A stage whose input follows one output, and the component of another, which stands by and has just issued."""
+    stage = Stage(Watchful())
+    stage.neighbour()
+    odometry = other_source(stage)
+    stage.call(replace(follow(1), standby=SPARE))
+    stage.let_pass(0.1)
+    odometry.component.emit("pose", issued)
+    return stage, odometry
+
+
 def test_an_input_that_changes_its_source_is_unfed_until_the_first_signal_of_the_next() -> None:
     stage = Stage(Watchful())
     stage.neighbour()
@@ -320,49 +334,31 @@ def test_an_input_that_changes_its_source_is_unfed_until_the_first_signal_of_the
 
 
 def test_an_input_that_changes_to_an_output_that_stands_by_and_has_just_issued_is_never_unfed() -> None:
-    stage = Stage(Watchful())
-    stage.neighbour()
-    odometry = other_source(stage)
-    spare = {"position": (Wire(ODOMETRY, "pose"),)}
-    stage.call(replace(follow(1), standby=spare))
-    stage.let_pass(0.1)
-    odometry.component.emit("pose", "newest")
+    stage, _ = with_stand_by("newest")
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",)]
-    stage.call(apply(2, US, spare))
+    stage.call(apply(2, US, SPARE))
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("position", "newest")]
 
 
 def test_what_an_output_that_stands_by_issued_long_ago_does_not_count() -> None:
-    stage = Stage(Watchful())
-    stage.neighbour()
-    odometry = other_source(stage)
-    spare = {"position": (Wire(ODOMETRY, "pose"),)}
-    stage.call(replace(follow(1), standby=spare))
-    stage.let_pass(0.1)
-    odometry.component.emit("pose", "old")
+    stage, _ = with_stand_by("old")
     stage.let_pass(JUST_COME + 0.1)
-    stage.call(apply(2, US, spare))
+    stage.call(apply(2, US, SPARE))
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("unfed", "position")]
 
 
 @pytest.mark.parametrize("gently", [False, True])
 def test_what_an_output_that_stands_by_issued_for_a_task_that_it_acts_for_no_more_does_not_count(gently: bool) -> None:
-    stage = Stage(Watchful())
-    stage.neighbour()
-    odometry = other_source(stage)
-    spare = {"position": (Wire(ODOMETRY, "pose"),)}
-    stage.call(replace(follow(1), standby=spare))
-    stage.let_pass(0.1)
-    odometry.component.emit("pose", "for another goal")
+    stage, odometry = with_stand_by("for another goal")
     stage.let_pass(0.1)
     for call, message in (("release", release(2, US)), ("apply", apply(3, US))):
         stage.caller.ask(KEYS.call(ODOMETRY, call), encode(message), 1.0, lambda _: None)
         stage.let_pass(0.1)
     answers: list[Replies] = []
-    stage.caller.ask(KEYS.call(CAP, "apply"), encode(apply(2, US, spare, gently=gently)), 60.0, answers.append)
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(apply(2, US, SPARE, gently=gently)), 60.0, answers.append)
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), *([] if gently else [("unfed", "position")])]
     assert bool(answers) is not gently
