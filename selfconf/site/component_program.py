@@ -101,7 +101,7 @@ class ComponentProgram:
     def start(self, profile: Profile, sharing: Iterable[Profile], after: str = "") -> None:
         """Start the process for one of its components, unless it runs. Raises PeerError if that cannot be done.
 
-        `after` is the life that a task has lost, if that is why it is started: such an end is a crash, whatever for.
+        `after` is the life that a task has lost, if that is why it is started: then the end of that life was a crash.
         """
         self._asked.add(profile.component)
         self._profiles = {one.component: one for one in (profile, *sharing)}
