@@ -5,7 +5,7 @@
     for event in run.events():
         match event:
             case TaskRunning(configuration=configuration):
-                print(configuration.components)
+                print(configuration["screen"])
             case TaskWaiting(refusal=refusal):
                 print(refusal)
 
@@ -17,6 +17,9 @@ from selfconf.api.answer import Answer
 from selfconf.api.component_states import ComponentState
 from selfconf.api.echo import HeardSignal
 from selfconf.api.ecology import Components, Solutions
+from selfconf.api.event_answers import AnsweredEvent as AnyRunEvent
+from selfconf.api.event_answers import AnsweredRunning as TaskRunning
+from selfconf.api.event_answers import AnsweredSearch as SearchEnded
 from selfconf.api.living_tasks import LivingTask
 from selfconf.api.partition_table import PartitionTable, RolePartition
 from selfconf.api.validation import ValidationReport
@@ -41,7 +44,6 @@ from selfconf.model.relaxation import Relaxation
 from selfconf.model.run_event import (
     ActivationSent,
     AnswerRejected,
-    AnyRunEvent,
     CallDeclined,
     ComponentActivated,
     ComponentAwaited,
@@ -58,10 +60,8 @@ from selfconf.model.run_event import (
     InputConnected,
     ParametersSet,
     RunEvent,
-    SearchEnded,
     TaskDetached,
     TaskRefused,
-    TaskRunning,
     TaskStopped,
     TaskWaiting,
 )

@@ -9,7 +9,7 @@ from types import TracebackType
 
 from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.detached import task_record
-from selfconf.api.event_answers import answered, answered_event
+from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
 from selfconf.api.places import Places
@@ -153,7 +153,7 @@ class Run:
             self._claimed.release()
             self._bus.close()
 
-    def events(self) -> Iterator[AnyRunEvent]:
+    def events(self) -> Iterator[AnsweredEvent]:
         """What happens, in order, until the task has ended; does the work of the run while it waits for the next event.
 
         Raises ProgrammerError outside of a `with` statement, in which alone the task runs, and SelfconfError where the

@@ -235,12 +235,11 @@ class EcologyReachable(RunEvent):
     act: ClassVar[Literal["connected"]] = "connected"
 
 
-AnyRunEvent: TypeAlias = (
+EventWithoutConfiguration: TypeAlias = (
     EcologyAsked
     | EcologyDiscovered
     | AnswerRejected
     | ComponentLeftOut
-    | SearchEnded
     | FailWatched
     | ComponentWoken
     | ComponentAwaited
@@ -252,7 +251,6 @@ AnyRunEvent: TypeAlias = (
     | CallDeclined
     | ComponentUnreachable
     | ComponentLost
-    | TaskRunning
     | TaskWaiting
     | TaskRefused
     | TaskStopped
@@ -260,6 +258,8 @@ AnyRunEvent: TypeAlias = (
     | EcologyUnreachable
     | EcologyReachable
 )
+"""An event of a run that never has a configuration among its facts."""
+AnyRunEvent: TypeAlias = EventWithoutConfiguration | SearchEnded | TaskRunning
 """An event of a run, told apart from the others by its `act` or its class."""
 
 

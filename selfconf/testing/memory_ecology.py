@@ -10,7 +10,7 @@ from selfconf import files, library
 from selfconf.api.answer import Answer, Method
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
 from selfconf.api.composites import Composites
-from selfconf.api.event_answers import answered, answered_event
+from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification, completed
@@ -71,7 +71,7 @@ class MemoryRun:
 
     def __init__(self, ecology: MemoryEcology, task: TaskSpecification, method: Method, policy: Policy, wait: bool):
         self._ecology, self._task = ecology, task.document
-        self.events: list[AnyRunEvent] = []
+        self.events: list[AnsweredEvent] = []
         """What has happened, in order; the same values as those of `Run.events`."""
         self.refusal: Refusal | Undecided | None = None
         self.ended = False

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import selfconf as sc
+from selfconf import values
 from selfconf.api.answer import Answer, ExplainedRefusal
 from selfconf.api.event_answers import answered, answered_event
 from selfconf.model.refusal import Refusal
@@ -23,11 +24,16 @@ def answer(clock: sc.TaskSpecification) -> Answer:
 
 
 def test_a_configuration_in_an_event_is_an_answer(answer: Answer) -> None:
-    for event, name in (
-        (TaskRunning(answer.plain, 1), "configuration"),
-        (SearchEnded(answer.plain, 0.5), "outcome"),
+    for event, name, kind in (
+        (TaskRunning(answer.plain, 1, time=7.0), "configuration", values.TaskRunning),
+        (SearchEnded(answer.plain, 0.5, time=7.0), "outcome", values.SearchEnded),
     ):
-        found: Any = getattr(answered_event(event, answer.task), name)
+        handed_out = answered_event(event, answer.task)
+        assert isinstance(handed_out, kind)
+        assert handed_out.time == 7.0
+        assert str(handed_out) == str(event)
+        assert pickle.loads(pickle.dumps(handed_out)) == handed_out
+        found: Any = getattr(handed_out, name)
         assert found == answer
         assert found["screen"] == answer["screen"]
         assert found.to_turtle() == answer.to_turtle()

@@ -17,7 +17,7 @@ from selfconf.api.run import Run, WorkQueue
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.run_event import (
+from selfconf.values import (
     ComponentLost,
     ComponentReleased,
     EcologyAsked,

@@ -28,17 +28,24 @@ from selfconf import values
 def told(event: values.AnyRunEvent) -> str:
     match event:
         case values.TaskRunning(configuration=configuration):
-            return f"{configuration.components} in epoch {event.epoch}"
+            return f"{configuration['screen']} in epoch {event.epoch}"
         case values.TaskWaiting() | values.TaskRefused():
             return f"{event.refusal and event.refusal.reasons}"
         case values.ComponentLost():
             return event.detail
     if event.act == "left out":
         return event.reason
+    if event.act == "composed" and event.outcome:
+        return event.outcome.to_turtle()
     return event.act
+
+def shown(event: values.TaskRunning) -> tuple[sc.IRI, ...]:
+    return event.configuration["screen"]
 
 with sc.join() as living, living.run(sc.template("t.ttl"), seconds=5) as run:
     lines = [told(event) for event in run.events()]
+    screens = [event.configuration["screen"] for event in run.events() if event.act == "running"]
+    shown_first = next(shown(event) for event in run.events() if isinstance(event, values.TaskRunning))
 """
 
 

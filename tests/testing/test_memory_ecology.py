@@ -10,9 +10,9 @@ import pytest
 
 import selfconf as sc
 from selfconf.errors import AuthorError, ProgrammerError
-from selfconf.model.run_event import ComponentLost, TaskRefused, TaskRunning
 from selfconf.sdk import Component, Signal
 from selfconf.testing import Faults, MemoryEcology
+from selfconf.values import ComponentLost, TaskRefused, TaskRunning
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix sh: <http://www.w3.org/ns/shacl#> .
