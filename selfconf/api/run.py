@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from types import TracebackType
+from typing import NamedTuple
 
 from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.detached import task_record
@@ -17,6 +18,7 @@ from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.credentials import Credentials
+from selfconf.bus.zenoh_bus import ZenohBus
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Loss, Policy
 from selfconf.deployment import RunRequest, TaskRunner
@@ -44,9 +46,18 @@ CHECK = 0.5
 """How often, in seconds, it is checked whether what a run rests on is still there."""
 
 
+class _Begun(NamedTuple):
+    """What a run has from when it is entered on: its link to the ecology, its name, and what runs the task."""
+
+    bus: ZenohBus
+    claimed: ClaimedName
+    runner: TaskRunner
+
+
 class Run:
     """A task that runs in a living ecology; use it in a `with` statement, which takes it down at its end.
 
+    Until then it is connected to nothing and has no name in the ecology, so that one that is not used costs nothing.
     It listens to the ecology on a thread of its own. What takes long, such as a search after a failure, is done by
     `events` in the thread that reads them, so deal with an event briefly, and read on for as long as the task runs.
 
@@ -76,8 +87,8 @@ class Run:
         """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
 
         A task without a `name` has that of its template, or where that is taken, one with a number: `patrol-2`. Raises
-        BindingError, ProgrammerError for a task, priority or upgrade that is none, and NetworkError, also for
-        credentials that do not let it run tasks, and for a name that is taken.
+        BindingError, ProgrammerError for a task, priority or upgrade that is none, and NetworkError for credentials
+        that do not let it run tasks.
         """
         check_may_run(credentials)
         self.task, self.method = completed(task), method
@@ -88,70 +99,76 @@ class Run:
         self._told: tuple[Refusal, Mapping[IRI, Advertisement], Refusal] | None = None
         """The refusal that was explained last, of which ecology, and the explanation."""
         self._work = WorkQueue()
-        self._entered = self._left = self._ended = False
+        self._begun: _Begun | None = None
+        self._left = self._ended = False
+        self._ecology, self._endpoints, self._credentials = ecology, endpoints, credentials
         record = task_record(self.task, method, policy, name, priority, upgrade)
-        self._bus = member(ecology, endpoints, credentials)
-        self.wanted_name = task_name(record.task)
-        """The name that was given to the task, or that of its template."""
-        self._claimed = self._claimed_name(Keys(ecology), given=bool(name))
-        self.task_name = self._claimed.name
-        """The name that the task has in the ecology."""
-        self._runner = TaskRunner(
-            self._bus,
-            ecology,
-            RunRequest(
-                task=self.task.document.task,
-                compose=self._compose,
-                standby=self._composer.standby,
-                not_judged=self._composer.not_judged,
-                usable=self._composer.usable,
-                passed_over=self._composer.passed_over,
-                policy=policy,
-                patient=wait,
-                believed=beliefs(credentials),
-                name=self.task_name,
-                priority=record.priority,
-                upgrade=upgrade,
-                aside=partial(self._work.work, owner=OF_TASK),
-                abandon=partial(self._work.abandon, OF_TASK),  # and not what explains how the task has ended
-                record=record,
-                report=self._work.report,
-                ended=self._settle,
-            ),
-            configurator_name(credentials),
+        self._named = bool(name)
+        self.wanted_name = self.task_name = task_name(record.task)
+        """The name that was given to the task, or that of its template; and the one that it has in the ecology."""
+        self._request = RunRequest(
+            task=self.task.document.task,
+            compose=self._compose,
+            standby=self._composer.standby,
+            not_judged=self._composer.not_judged,
+            usable=self._composer.usable,
+            passed_over=self._composer.passed_over,
+            policy=policy,
+            patient=wait,
+            believed=beliefs(credentials),
+            priority=record.priority,
+            upgrade=upgrade,
+            aside=partial(self._work.work, owner=OF_TASK),
+            abandon=partial(self._work.abandon, OF_TASK),  # and not what explains how the task has ended
+            record=record,
+            report=self._work.report,
+            ended=self._settle,
         )
 
-    def _claimed_name(self, keys: Keys, given: bool) -> ClaimedName:
-        """A name that no other task of the ecology has: `stop` goes by it. Raises NetworkError for a given one."""
-        patience = ROLL_CALL if given else TASKS_CALL
-        try:
-            return LivingTasks(SynchronousBus(self._bus, patience), keys).claim(self.wanted_name, numbered=not given)
-        except BaseException:
-            self._bus.close()
-            raise
-
     def __enter__(self) -> Run:
-        if self._entered:
+        """Connect, claim the name, and begin. Raises NetworkError, also for a name that was given and is taken."""
+        if self._begun is not None:
             raise ProgrammerError(f"the run of {self.task_name} was entered already; ask the ecology for another run")
-        self._entered = True
-        self._bus.run_aside()
-        self._bus.wake_up(self._runner.start)
-        self._bus.wake_up(self._check)
+        bus = member(self._ecology, self._endpoints, self._credentials)
+        try:
+            claimed = self._claimed_name(bus)
+        except BaseException:
+            bus.close()
+            raise
+        self.task_name = claimed.name
+        request = replace(self._request, name=claimed.name)
+        runner = TaskRunner(bus, self._ecology, request, configurator_name(self._credentials))
+        self._begun = _Begun(bus, claimed, runner)
+        bus.run_aside()
+        bus.wake_up(runner.start)
+        bus.wake_up(self._check)
         return self
+
+    def _claimed_name(self, bus: ZenohBus) -> ClaimedName:
+        """A name that no other task of the ecology has: `stop` goes by it. Raises NetworkError for a given one."""
+        tasks = LivingTasks(SynchronousBus(bus, ROLL_CALL if self._named else TASKS_CALL), Keys(self._ecology))
+        return tasks.claim(self.wanted_name, numbered=not self._named)
+
+    def _in_ecology(self) -> _Begun:
+        """The run's part in the ecology. Raises ProgrammerError for a run that was not entered."""
+        if self._begun is None:
+            raise ProgrammerError(f"the run of {self.task_name} has not begun; use it in a `with` statement")
+        return self._begun
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Turn every component off and leave, whatever has happened in the block."""
+        bus, claimed, _ = self._in_ecology()
         try:
             self.stop()
-            deadline = self._bus.now() + TAKING_DOWN
-            while not self._ended and self._bus.now() < deadline:
+            deadline = bus.now() + TAKING_DOWN
+            while not self._ended and bus.now() < deadline:
                 self._work.next(CHECK)
         finally:
             self._left = True
-            self._claimed.release()
-            self._bus.close()
+            claimed.release()
+            bus.close()
 
     def events(self) -> Iterator[AnsweredEvent]:
         """What happens, in order, until the task has ended; does the work of the run while it waits for the next event.
@@ -159,8 +176,7 @@ class Run:
         Raises ProgrammerError outside of a `with` statement, in which alone the task runs, and SelfconfError where the
         shapes of the task cannot be judged, once everything is taken down.
         """
-        if not self._entered:
-            raise ProgrammerError(f"the run of {self.task_name} has not begun; use it in a `with` statement")
+        runner = self._in_ecology().runner
         while True:
             ended = self._ended or self._left  # before the look at the queue: what was reported by then is in it
             event = self._work.next(0.0 if ended else CHECK)
@@ -168,26 +184,31 @@ class Run:
                 yield answered_event(self._with_explanation(event), self.task.document)
             elif ended:
                 break
-        if self._runner.trouble is not None:
-            raise self._runner.trouble
+        if runner.trouble is not None:
+            raise runner.trouble
 
     def stop(self) -> None:
-        """Take the configuration down; `events` ends when that is done. May be called from any thread."""
-        self._bus.wake_up(self._runner.stop)
+        """Take the configuration down; `events` ends when that is done. May be called from any thread.
+
+        Raises ProgrammerError for a run that was not entered, as `name` does.
+        """
+        bus, _, runner = self._in_ecology()
+        bus.wake_up(runner.stop)
 
     def stop_on_signals(self) -> None:
         """From now on SIGINT, SIGTERM and SIGHUP stop the run, instead of ending the program in the middle of it."""
-        Termination(self._bus, self._runner.stop, told=self._work.abandon)
+        bus, _, runner = self._in_ecology()
+        Termination(bus, runner.stop, told=self._work.abandon)
 
     @property
     def name(self) -> str:
         """The name under which the configurator of this run is known in the ecology."""
-        return self._runner.name
+        return self._in_ecology().runner.name
 
     @property
     def configuration(self) -> Answer | None:
         """What is deployed, or being deployed."""
-        return answered(self._runner.configuration, self.task.document)
+        return None if self._begun is None else answered(self._begun.runner.configuration, self.task.document)
 
     @property
     def refusal(self) -> Refusal | Undecided | None:
@@ -197,12 +218,12 @@ class Run:
     @property
     def losses(self) -> Mapping[IRI, Loss]:
         """The components that were lost and have not come back, each with the cause."""
-        return FrozenMapping(self._runner.state.lost)
+        return FrozenMapping({} if self._begun is None else self._begun.runner.state.lost)
 
     @property
     def lost(self) -> Mapping[IRI, str]:
         """Why each component that was lost was lost, in words."""
-        return self._runner.losses
+        return {} if self._begun is None else self._begun.runner.losses
 
     def explained(self) -> Refusal | Undecided | None:
         """The refusal by which the task has ended, with all that can be found out now that nothing runs any more."""
@@ -229,7 +250,7 @@ class Run:
 
     def _settle(self, refusal: Refusal | Undecided | None) -> None:
         self._refusal, self._ended = refusal, True
-        self._claimed.release()
+        self._in_ecology().claimed.release()
         self._work.wake_up()
 
     def _with_explanation(self, event: AnyRunEvent) -> AnyRunEvent:
@@ -259,10 +280,12 @@ class Run:
         return Places(self.task.document.task.template, self._described()).placed(refusal)
 
     def __repr__(self) -> str:
-        return f"<run of {self.task_name}: {self._runner.state.phase.value}>"
+        phase = "not begun" if self._begun is None else self._begun.runner.state.phase.value
+        return f"<run of {self.task_name}: {phase}>"
 
     def _check(self) -> None:
+        bus, _, runner = self._in_ecology()
         if self._rests_on():
-            self._bus.later(CHECK, self._check)
+            bus.later(CHECK, self._check)
         else:
-            self._runner.stop()
+            runner.stop()

@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -64,14 +65,38 @@ def test_a_run_has_events_in_a_with_statement_alone_and_is_entered_once(
 ) -> None:
     with sc.join(served.ecology) as living:
         run = living.run(clock)
-        with pytest.raises(ProgrammerError, match="the run of tell-the-time has not begun; use it in a `with` statem"):
-            list(run.events())
+        for ask in (lambda: list(run.events()), run.stop, run.stop_on_signals, lambda: run.name):
+            with pytest.raises(ProgrammerError, match="the run of tell-the-time has not begun; use it in a `with` sta"):
+                ask()
         with run:
             until(run, TaskRunning)
         left = list(run.events())  # those that the end has not come to, and then no more
         assert not any(isinstance(event, TaskRunning) for event in left)
         with pytest.raises(ProgrammerError, match="was entered already"), run:
             pytest.fail("it was entered twice")
+
+
+def test_a_run_that_is_not_entered_holds_nothing(served: Home, clock: sc.TaskSpecification) -> None:
+    with sc.join(served.ecology) as living:
+        threads, files = threading.active_count(), open_files()
+        forgotten = [living.run(clock, name="forgotten") for _ in range(3)]
+        assert (threading.active_count(), open_files()) == (threads, files)
+        assert living.all_tasks() == living.tasks == living.silent == living.complaints == ()
+        with living.run(clock, name="forgotten") as run:  # the name is free
+            until(run, TaskRunning)
+            with pytest.raises(NetworkError, match="a task 'forgotten' lives already"), forgotten[0]:
+                pytest.fail("it was entered, though its name is taken")
+        with forgotten[0]:  # now it is free
+            until(forgotten[0], TaskRunning)
+        unused = forgotten[1]
+        assert (unused.configuration, unused.refusal, unused.explained(), unused.lost) == (None, None, None, {})
+        assert unused.losses == {}
+        assert repr(unused) == "<run of forgotten: not begun>"
+
+
+def open_files() -> int:
+    """How many files and sockets this process has open."""
+    return len(list(Path("/proc/self/fd").iterdir()))
 
 
 def test_another_thread_sees_the_task_and_may_stop_it(served: Home, clock: sc.TaskSpecification) -> None:
@@ -249,7 +274,7 @@ def test_a_run_that_cannot_begin_is_an_error(house: Home) -> None:
     with pytest.raises(BindingError, match="needs a value"):
         run(house, template(NAVIGATE))
     with pytest.raises(SelfconfError, match="no endpoint"):
-        Run(TASK, Method(), house.ecology, ["here"])
+        Run(TASK, Method(), house.ecology, ["here"]).__enter__()
 
 
 # The run's own threads: the bus listens, whatever the thread does that reads the events.
@@ -260,9 +285,9 @@ def test_a_run_answers_while_no_event_is_read(house: Home) -> None:
     with run(house) as running:
         events = running.events()
         next(event for event in events if isinstance(event, TaskRunning))
-        bus = running._bus
+        bus, _, runner = running._in_ecology()
         answered: list[object] = []
-        bus.ask(running._runner.keys.configurator_call(running.name, "status"), b"", 5.0, answered.append)
+        bus.ask(runner.keys.configurator_call(running.name, "status"), b"", 5.0, answered.append)
         pause = threading.Event()
         deadline = time.monotonic() + 5.0
         while not answered and time.monotonic() < deadline:
@@ -291,9 +316,8 @@ def test_searches_are_done_by_the_thread_that_reads_the_events_and_keep_the_run_
         searching.wait(10.0)
         answered = threading.Event()
         began = time.monotonic()
-        running._bus.ask(
-            running._runner.keys.configurator_call(running.name, "stop"), b"", 5.0, lambda _: answered.set()
-        )
+        bus, _, runner = running._in_ecology()
+        bus.ask(runner.keys.configurator_call(running.name, "stop"), b"", 5.0, lambda _: answered.set())
         answered.wait(5.0)
         moments.append(time.monotonic() - began)
         go_on.set()
