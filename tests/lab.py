@@ -10,7 +10,8 @@ from typing import Any, ClassVar
 from selfconf import files
 from selfconf.api.composites import Composites
 from selfconf.api.reading import described_in
-from selfconf.bus.memory import Faults, MemoryBus, Network
+from selfconf.bus.memory import Faults, Network
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Bus
 from selfconf.composition.composer import Composer
 from selfconf.configurator.state import Phase, Policy

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from selfconf import discovery
-from selfconf.bus.memory import Faults, Network, _Request
+from selfconf.bus.memory import Faults, Network
+from selfconf.bus.memory_questions import MemoryRequest
 from selfconf.bus.port import Request
 from selfconf.discovery import DISCOVERY, LARGEST_ADVERTISEMENT, Discovery, EcologyView
 from selfconf.errors import AuthorError
@@ -141,13 +142,13 @@ def test_a_site_is_not_read_again_as_long_as_its_advertisements_are_the_same(
     site = field.site("living-room", "tracker")
     field.site("astrid", "drive", "pippi")
     replied: list[str] = []
-    reply = _Request.reply
+    reply = MemoryRequest.reply
 
-    def counted(request: _Request, key: str, payload: bytes, attachment: bytes = b"") -> None:
+    def counted(request: MemoryRequest, key: str, payload: bytes, attachment: bytes = b"") -> None:
         replied.append(key)
         reply(request, key, payload, attachment)
 
-    monkeypatch.setattr(_Request, "reply", counted)
+    monkeypatch.setattr(MemoryRequest, "reply", counted)
     first = field.discover()
     assert len(replied) == 3
     again = field.discover()

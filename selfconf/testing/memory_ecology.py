@@ -14,7 +14,8 @@ from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification, completed
-from selfconf.bus.memory import Faults, MemoryBus, Network
+from selfconf.bus.memory import Faults, Network
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.configurator import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError

@@ -17,7 +17,8 @@ from selfconf.access import (
     first_rules,
 )
 from selfconf.access.doorkeeper import RAREST_RETRY
-from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.memory import Network
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.refusals import RefusalLog
 from selfconf.errors import NetworkError

@@ -9,7 +9,8 @@ import pytest
 
 from selfconf.api.living_tasks import LivingTask, LivingTasks
 from selfconf.api.synchronous_bus import SynchronousBus
-from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.memory import Network
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Request
 from selfconf.errors import NetworkError
 from selfconf.model.term import IRI

@@ -7,7 +7,7 @@ from functools import partial
 
 import pytest
 
-from selfconf.bus import memory, zenoh_bus
+from selfconf.bus import memory_questions, zenoh_bus
 from selfconf.bus.port import Replies, Request, Sample, Urgency
 from tests.bus.nets import Net
 
@@ -258,7 +258,7 @@ def test_several_replies_on_one_key_all_arrive(net: Net, top: str) -> None:
 def test_of_an_answer_that_is_too_large_the_rest_is_dropped(
     net: Net, top: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (memory, zenoh_bus):
+    for module in (memory_questions, zenoh_bus):
         monkeypatch.setattr(module, "LARGEST_REPLIES", 1000)
     asking, answering = net.node(), net.node()
 

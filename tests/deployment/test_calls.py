@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.memory import MemoryBus
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
 from selfconf.deployment.calls import CALL, GONE, SITE_BACK, STARTING, WAKING

@@ -24,7 +24,8 @@ from unittest import mock
 
 from selfconf import discovery
 from selfconf.api.composites import InsideOfComposite
-from selfconf.bus.memory import Faults, MemoryBus
+from selfconf.bus.memory import Faults
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
 from selfconf.deployment.runner import LONGEST_PAUSE

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from selfconf.bus.memory import LEASE, MemoryBus
+from selfconf.bus.memory import LEASE
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.model.profile import CALL_MARK

@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.memory import Faults, MemoryBus, Network
+from selfconf.bus.memory import Faults, Network
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.memory import Network
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Request
 from selfconf.model.profile import Profile
 from selfconf.protocol.codec import encode
