@@ -25,7 +25,8 @@ from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.template import TemplatePort
 from selfconf.search.additions import asking_for
 from selfconf.search.problem import Problem
-from selfconf.search.relaxations import relaxed_by, with_relaxations
+from selfconf.search.relaxations import with_relaxations
+from selfconf.search.relaxed_problem import relaxed_by
 from tests.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance
 from tests.search.possibility import possible

@@ -1,0 +1,205 @@
+"""The fewest components that could be added so that a refused task becomes possible.
+
+A component without inputs that issues every signal that the roles fed by it could need is the most helpful that could
+be added for a role; an output that an interaction names has one signal, so that there may be a choice of these.
+Wherever there is no solution, an irreducible set of constraints cannot hold; only a component for one of its roles, or
+for a role that may feed one of its inputs, changes that. So breadth-first search over sets of such additions, each
+extended by these roles alone, finds the fewest; then outputs are taken away again one by one, as long as there is a
+solution without them. Where there are players, but none that have recruits, one more component for any role may help.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from selfconf.model.partition import Candidate
+from selfconf.model.profile import CALL_MARK, Input, Output, Ports, WantedSignal
+from selfconf.model.refusal import Undecided
+from selfconf.model.relaxation import AddComponents, Addition
+from selfconf.search.newcomers import ADDITION, impossible, with_mentioned_variables, with_values
+from selfconf.search.problem import Link, Problem
+from selfconf.search.reduction import Fed, LazyReduction, Played, ReducedProblem
+from selfconf.search.relaxation_effort import TRIALS, RelaxationEffort
+from selfconf.search.relaxed_problem import relaxed_by
+from selfconf.search.supposed_outputs import supposed
+
+CHOICES = 8
+"""How many choices of outputs are tried for a role, where interactions name outputs."""
+MOST_ADDED = 200
+"""How many components are asked for at most; a task that lacks more has asked for too many."""
+
+Added = Counter[tuple[int, tuple[Output, ...]]]
+"""How many components are added for each role and choice of outputs."""
+Works = Callable[[AddComponents], bool]
+"""Whether an addition works in the end, which is possible if all recruits are there at once."""
+
+
+def components_to_add(problem: Problem, effort: RelaxationEffort, works: Works) -> AddComponents | None:
+    """Return the fewest components to add, if a few are enough: breadth-first search over sets of additions."""
+    problem = with_mentioned_variables(problem)
+    lacking = _lacking(problem)
+    if lacking is None:
+        return None
+    recruiting = any(role.recruits for role in problem.roles)
+    choices = _choices(problem)
+    waiting = _lacked(lacking, choices)
+    seen = {frozenset[object](added.items()) for added in waiting}
+    for added in itertools.islice(waiting, TRIALS):  # which grows meanwhile
+        if effort.used_up():
+            return None
+        asked = _asked(problem, added)
+        changed = LazyReduction(relaxed_by(problem, asked))
+        playing = effort.solution(changed) if added or recruiting else None
+        if isinstance(playing, Undecided):
+            # What comes later in the queue may be possible, and would not be known to be the fewest.
+            return None
+        if playing is not None and added and works(asked):
+            return _trimmed(problem, added, playing, effort, works)
+        helpful = _helpful(changed.reduced, effort) if playing is None else _feeding_first(changed.problem)
+        waiting += _with_one_more(added, [(role, outputs) for role in helpful for outputs in choices[role]], seen)
+    return None
+
+
+def _choices(problem: Problem) -> list[list[tuple[Output, ...]]]:
+    """Return for each role the choices of outputs for a component to be added; none where none could be eligible."""
+    closed = impossible(problem)
+    return [[] if role in closed else wanted_of(problem, role) for role in range(len(problem.roles))]
+
+
+def _with_one_more(
+    added: Added, ones: Iterable[tuple[int, tuple[Output, ...]]], seen: set[frozenset[object]]
+) -> Iterator[Added]:
+    """Yield additions with one component more, given by its role and outputs, that were not seen, and note them."""
+    for one in ones:
+        further = added + Counter({one: 1})
+        if frozenset(further.items()) not in seen:
+            seen.add(frozenset(further.items()))
+            yield further
+
+
+def _lacked(lacking: Counter[int], choices: Sequence[Sequence[tuple[Output, ...]]]) -> list[Added]:
+    """Return additions for what each role lacks by itself; all that are for one role issue the same."""
+    ways = itertools.product(*([(role, outputs) for outputs in choices[role]] for role in lacking))
+    return [Counter({one: lacking[one[0]] for one in chosen}) for chosen in itertools.islice(ways, TRIALS)]
+
+
+def _lacking(problem: Problem) -> Counter[int] | None:
+    """Return how many candidates each role lacks by itself, if adding as many could be advice at all."""
+    if any(role.maximum is not None and role.maximum < role.minimum for role in problem.roles):
+        return None
+    pairs = zip(problem.roles, problem.candidates, strict=True)
+    lacking = Counter({number: max(0, role.minimum - len(some)) for number, (role, some) in enumerate(pairs)})
+    return +lacking if sum(lacking.values()) <= MOST_ADDED else None
+
+
+def wanted_of(problem: Problem, role: int) -> list[tuple[Output, ...]]:
+    """Return the choices of outputs for a component that could feed all that a role may have to feed.
+
+    It issues each signal that the roles fed by it could need; but where an interaction names the output, that output
+    has one signal only, so that there is a choice for each.
+    """
+    plain: dict[WantedSignal, None] = {}
+    by_name: dict[str, dict[WantedSignal, None]] = {}
+    for sink in problem.sinks[role]:
+        for link in problem.links[sink]:
+            if link.source == role:
+                wanted = plain if link.output is None else by_name.setdefault(link.output, {})
+                for candidate in problem.candidates[sink]:
+                    wanted.update((port.wanted, None) for port in candidate.profile.required if _asks(link, port))
+    names = set(by_name)
+    others = []
+    for one in plain:
+        if not one.signals:
+            continue  # nothing feeds it along an interaction that does not name it
+        stem = name = one.signals[0].short
+        number = 2
+        while name in names:
+            name, number = f"{stem}{number}", number + 1
+        names.add(name)
+        others.append(one.output(name))
+    ways = itertools.product(*([one.output(name) for one in wanted] for name, wanted in by_name.items() if wanted))
+    return [(*others, *chosen) for chosen in itertools.islice(ways, CHOICES)]
+
+
+def _asks(link: Link, port: Input) -> bool:
+    """Return whether an input could be fed along an interaction, by the names: no output feeds what calls, or back."""
+    called = link.output is not None and link.output.endswith(CALL_MARK)
+    return link.input in (None, port.name) and (link.output is None or called is port.is_operation)
+
+
+def _helpful(given: ReducedProblem, effort: RelaxationEffort) -> list[int]:
+    """Return the roles for which one more component could resolve the conflict that there is."""
+    if given.wiped_out() is not None:
+        return []
+    together = effort.core(given)
+    sources = [s.role for r in together if isinstance(r, Fed) for s in given.needs[r.need].sources]
+    played = set(given.slots)
+    # Roles that feed come first: of a role that others feed, a component without inputs is less likely to be had.
+    found = dict.fromkeys((*sources, *(r.role for r in together if isinstance(r, Played))))
+    return [role for role in found if role in played]
+
+
+def _feeding_first(problem: Problem) -> list[int]:
+    """Return the roles that ask for components, those first that feed others.
+
+    Where players lack recruits alone, one more component for any role may leave another free to be recruited.
+    """
+    asked = [number for number, role in enumerate(problem.roles) if role.minimum]
+    return sorted(asked, key=lambda number: not problem.sinks[number])
+
+
+def _in_order(added: tuple[int, tuple[Output, ...]]) -> tuple[int, str]:
+    """Return what additions are sorted by: the role, then the outputs, some of which say more than others."""
+    return added[0], repr(added[1])
+
+
+def _asked(problem: Problem, added: Added) -> AddComponents:
+    """Return additions as a relaxation, those of a role and of equal outputs as one."""
+    return AddComponents(
+        tuple(
+            Addition(problem.roles[role].iri, count, outputs, _named(problem, role) & {o.name for o in outputs})
+            for (role, outputs), count in sorted(added.items(), key=lambda one: _in_order(one[0]))
+        )
+    )
+
+
+def _named(problem: Problem, role: int) -> frozenset[str]:
+    """Return the names by which interactions ask for outputs of a role."""
+    links = (link for sink in problem.sinks[role] for link in problem.links[sink])
+    return frozenset(link.output for link in links if link.source == role and link.output is not None)
+
+
+def _trimmed(
+    problem: Problem, added: Added, playing: list[list[Candidate]], effort: RelaxationEffort, works: Works
+) -> AddComponents:
+    """Return additions with only the outputs that are needed for a solution; `playing` is a solution with all."""
+    for one in sorted(added, key=_in_order):
+        role, left = one
+        for output in one[1]:
+            fewer = tuple(other for other in left if other != output)
+            changed = [*playing[:role], [_without(c, left, fewer) for c in playing[role]], *playing[role + 1 :]]
+            trial: Added = Counter()
+            for (at, outputs), count in added.items():
+                trial[at, fewer if (at, outputs) == (role, left) else outputs] += count
+            if not all(
+                problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]
+            ):
+                found = effort.solution(LazyReduction(relaxed_by(problem, _asked(problem, trial))))
+                if not isinstance(found, list):
+                    continue
+                changed = found
+            if not works(_asked(problem, trial)):
+                continue
+            left, playing, added = fewer, changed, trial
+    return with_values(problem, _asked(problem, added), playing)
+
+
+def _without(candidate: Candidate, known: tuple[Output, ...], outputs: tuple[Output, ...]) -> Candidate:
+    """Return a component that is added, and has the outputs that are known, with these instead; any other as it is."""
+    profile = candidate.profile
+    if not profile.component.startswith(ADDITION) or profile.outputs != supposed(known):
+        return candidate
+    return replace(candidate, profile=replace(profile, ports=Ports(profile.inputs, supposed(outputs))))

@@ -1,0 +1,45 @@
+"""The problem as it is after a relaxation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from selfconf.model.partition import Candidate
+from selfconf.model.relaxation import AcceptNearMiss, AddComponents, AddInteraction, AddRecruits, LetRecruit, Relaxation
+from selfconf.model.template import Interaction
+from selfconf.model.term import IRI
+from selfconf.search.newcomers import newcomer, with_mentioned_variables
+from selfconf.search.problem import Problem
+from selfconf.search.recruits_to_add import with_more_recruits
+
+
+def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:
+    """Return the problem after a relaxation."""
+    if isinstance(relaxation, AddRecruits):
+        return with_more_recruits(problem, relaxation)
+    if isinstance(relaxation, AddComponents):
+        problem = with_mentioned_variables(problem)
+        more: dict[IRI, list[Candidate]] = {}
+        for addition in relaxation.additions:
+            some = more.setdefault(addition.role, [])
+            some += [newcomer(problem, addition, len(some) + k) for k in range(addition.count)]
+        return _with_candidates(problem, more)
+    if isinstance(relaxation, AcceptNearMiss):
+        return _with_candidates(problem, {relaxation.role: [relaxation.candidate]})
+    template = problem.task.template
+    if isinstance(relaxation, AddInteraction):
+        interactions = (*template.interactions, Interaction(relaxation.role, relaxation.sink))
+        template = replace(template, interactions=interactions)
+    else:
+        # Who may be recruited is for the partition to know, which is not changed here.
+        changed = {"recruits": True} if isinstance(relaxation, LetRecruit) else {"minimum": relaxation.minimum}
+        roles = tuple(replace(role, **changed) if role.iri == relaxation.role else role for role in template.roles)
+        template = replace(template, roles=roles)
+    return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
+
+
+def _with_candidates(problem: Problem, more: dict[IRI, list[Candidate]]) -> Problem:
+    candidates = tuple(
+        (*known, *more.get(role.iri, ())) for role, known in zip(problem.roles, problem.candidates, strict=True)
+    )
+    return Problem(problem.task, replace(problem.partition, candidates=candidates), problem.hierarchy)
