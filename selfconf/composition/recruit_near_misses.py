@@ -7,12 +7,11 @@ from dataclasses import replace
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.near_misses import fault_of
-from selfconf.model.candidate_order import candidate_order
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.nearness import Near, ranked
 from selfconf.model.obstacle import NotFedItself, Obstacle
-from selfconf.model.partition import NearMiss
+from selfconf.model.partition import NearMiss, candidate_order
 from selfconf.model.port_likeness import PortLikeness, WantedPorts
 from selfconf.model.profile import Condition, Input, Profile
 from selfconf.model.refusal import InputUnfed, Refusal

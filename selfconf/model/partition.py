@@ -4,14 +4,17 @@ A parameter that is left unbound is a variable shared by the roles that mention 
 variable to be is a bit mask over the variable's domain. A negative mask, with infinitely many bits set, also allows
 what is not in the domain; `ANY_VALUE` (all bits set) does not constrain the variable at all.
 Candidates can play together iff, for each variable, the conjunction of their masks is not zero.
+
+No search may depend on which site answered first. So candidates are ordered by what they say of themselves
+(`candidate_order`); the order decides which configuration is the first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
+from decimal import Decimal
 
-from selfconf.model.candidate_order import candidate_order
 from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.profile import Place, Profile
@@ -166,6 +169,11 @@ def _moved(mask: int, kept: Sequence[int]) -> int:
     if mask < 0:
         return ANY_VALUE & ~sum(1 << bit for bit, place in enumerate(kept) if not mask >> place & 1)
     return sum(1 << bit for bit, place in enumerate(kept) if mask >> place & 1)
+
+
+def candidate_order(profile: Profile) -> tuple[Decimal, str]:
+    """The order in which candidates are tried: higher preference first, then by IRI, never by time of arrival."""
+    return profile.preference.copy_negate(), profile.component  # a minus sign would round
 
 
 def ordered(candidates: list[Candidate]) -> tuple[Candidate, ...]:

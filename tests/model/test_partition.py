@@ -6,9 +6,17 @@ from decimal import Decimal
 
 import pytest
 
-from selfconf.model.candidate_order import candidate_order
 from selfconf.model.obstacle import WrongComponent
-from selfconf.model.partition import ANY_VALUE, Candidate, Mention, NearMiss, Partition, Variable, ordered
+from selfconf.model.partition import (
+    ANY_VALUE,
+    Candidate,
+    Mention,
+    NearMiss,
+    Partition,
+    Variable,
+    candidate_order,
+    ordered,
+)
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 
@@ -19,6 +27,12 @@ def test_candidates_are_tried_by_preference_and_then_by_iri() -> None:
     in_order = [candidate.profile.component for candidate in ordered([Candidate(profile) for profile in profiles])]
     assert in_order == ["urn:z", "urn:a", "urn:b", "urn:y"]
     assert candidate_order(profiles[2]) < candidate_order(profiles[0])
+
+
+def test_the_preferred_come_first_and_names_decide_between_equals() -> None:
+    said = {"b": "2", "a": "2", "c": "10", "d": "-1", "e": "2.0000000000000000000000000000001"}
+    profiles = [Profile(IRI(f"urn:{name}"), frozenset(), preference=Decimal(value)) for name, value in said.items()]
+    assert [one.component[4:] for one in sorted(profiles, key=candidate_order)] == ["c", "e", "a", "b", "d"]
 
 
 def test_a_partition_without_the_lost_keeps_everybody_else_in_order() -> None:

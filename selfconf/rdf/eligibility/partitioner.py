@@ -14,11 +14,19 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from selfconf.errors import TemplateError
-from selfconf.model.candidate_order import candidate_order
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
-from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Partition, Recruit, Variable, ordered
+from selfconf.model.partition import (
+    ANY_VALUE,
+    Candidate,
+    Mention,
+    Partition,
+    Recruit,
+    Variable,
+    candidate_order,
+    ordered,
+)
 from selfconf.model.profile import Profile
 from selfconf.model.template import Role
 from selfconf.model.term import IRI, Term, sort_key

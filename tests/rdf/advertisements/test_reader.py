@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.model.candidate_order import candidate_order
+from selfconf.model.partition import candidate_order
 from selfconf.model.profile import Condition, Input, Operation, OperationalParameter, Output, offered_operation
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.advertisements import loader
