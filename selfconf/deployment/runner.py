@@ -57,7 +57,7 @@ from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.errors import PeerError, ProgrammerError, SelfconfError
-from selfconf.model.configuration import Configuration
+from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import FrozenMapping
 from selfconf.model.obstacle import NotJudged
@@ -77,7 +77,6 @@ from selfconf.model.run_event import (
     TaskWaiting,
 )
 from selfconf.model.term import IRI
-from selfconf.model.wants import Wants
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import component_chunk, owner_of_fail, safe_name, task_identity
 from selfconf.protocol.messages import (

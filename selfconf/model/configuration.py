@@ -8,7 +8,6 @@ from typing import Literal
 
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Term
-from selfconf.model.wants import Wants
 
 
 @immutable
@@ -46,6 +45,19 @@ class ParameterSetting:
     component: IRI
     name: str
     value: Term
+
+
+@immutable
+class Wants:
+    """What the inputs of a component are to follow, and the values of its parameters; by default neither.
+
+    Several tasks may hold a component that can be shared, if they want the same of it.
+    """
+
+    inputs: frozenset[tuple[str, IRI, str]] = frozenset()
+    """An input, the component that it follows, and the output of that one."""
+    values: frozenset[tuple[str, Term]] = frozenset()
+    """The name of an operational parameter, and its value."""
 
 
 @immutable

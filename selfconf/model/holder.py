@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from selfconf.model.configuration import Configuration
+from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
-from selfconf.model.wants import Wants
 
 
 @immutable

@@ -14,9 +14,9 @@ import math
 from typing import Any, TypeVar, get_args
 
 from selfconf.errors import PeerError
+from selfconf.model.configuration import Wants
 from selfconf.model.log_line import LONGEST_LINE, LogLine
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
-from selfconf.model.wants import Wants
 from selfconf.model.wording import is_one_line, one_line
 from selfconf.protocol.keys import is_task_identity
 from selfconf.protocol.messages import (

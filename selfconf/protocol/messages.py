@@ -11,10 +11,10 @@ from dataclasses import field
 from enum import Enum
 from typing import Any
 
+from selfconf.model.configuration import Wants
 from selfconf.model.immutable import immutable
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, Term
-from selfconf.model.wants import Wants
 from selfconf.protocol.keys import task_name
 
 

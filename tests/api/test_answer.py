@@ -17,12 +17,11 @@ from selfconf import configure, read, template
 from selfconf.api.answer import Answer, Inquiry, Method
 from selfconf.composition import Strategy
 from selfconf.errors import AuthorError, BindingError, ProgrammerError, SelfconfError, TemplateError
-from selfconf.model.configuration import Configuration
+from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.hierarchy import Reasoning
 from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
-from selfconf.model.wants import Wants
 from selfconf.project import STRATEGIES
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import SC

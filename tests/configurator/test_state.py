@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from selfconf.configurator.state import Held, Loss, Phase, State
+from selfconf.model.configuration import Wants
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
-from selfconf.model.wants import Wants
 from selfconf.protocol.messages import Cause
 from tests.configurator.builders import CONTROL, TRACKER, navigation
 

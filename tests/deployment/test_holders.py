@@ -9,9 +9,9 @@ from typing import Any
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Request, Sample
 from selfconf.deployment.holders import STATUS, ask_holders, holders_in
+from selfconf.model.configuration import Wants
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI, Literal
-from selfconf.model.wants import Wants
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Status

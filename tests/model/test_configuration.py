@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from itertools import permutations
 
-from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
+from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting, Wants
 from selfconf.model.term import IRI, Literal
-from selfconf.model.wants import Wants
 
 
 def test_a_configuration_knows_its_components_and_their_roles() -> None:
@@ -46,3 +45,12 @@ def test_what_is_wanted_of_a_component_are_its_inputs_and_its_values() -> None:
     )
     assert configuration.wants(a) == Wants()
     assert configuration.wants(b) == Wants(frozenset({("in", a, "out")}), frozenset({("goal", goal)}))
+
+
+def test_two_tasks_want_the_same_in_whatever_order_they_say_it() -> None:
+    eye = IRI("urn:test:eye")
+    one = Wants(frozenset({("in", eye, "a"), ("in", eye, "b")}), frozenset({("goal", Literal("x"))}))
+    other = Wants(frozenset({("in", eye, "b"), ("in", eye, "a")}), frozenset({("goal", Literal("x"))}))
+    assert one == other
+    assert len({one, other, Wants()}) == 2
+    assert one != Wants(one.inputs, frozenset({("goal", Literal("y"))}))

@@ -6,9 +6,9 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from selfconf.model.configuration import Wants
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, BlankNode, Literal
-from selfconf.model.wants import Wants
 from selfconf.protocol.messages import (
     Access,
     Apply,

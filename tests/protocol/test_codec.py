@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.errors import PeerError
+from selfconf.model.configuration import Wants
 from selfconf.model.term import IRI, Term
-from selfconf.model.wants import Wants
 from selfconf.model.wording import one_line
 from selfconf.protocol.codec import KINDS as NAMES
 from selfconf.protocol.codec import LARGEST, decode, decode_term, encode, encode_term
