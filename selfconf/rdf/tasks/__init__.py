@@ -10,7 +10,7 @@ and `free_parameters` which ones are left. `mentions`, `shape_statements`, `subs
 from selfconf.rdf.tasks.bindings import bind, complete, free_parameters, read_term
 from selfconf.rdf.tasks.mistakes import placed
 from selfconf.rdf.tasks.parameters import misfits, suitable
-from selfconf.rdf.tasks.role_shapes import ROLE_STRUCTURE, mentions, shape_statements, substituted
+from selfconf.rdf.tasks.roles import ROLE_STRUCTURE, mentions, shape_statements, substituted
 from selfconf.rdf.tasks.templates import TaskDocument, read_inside, read_task
 
 __all__ = [

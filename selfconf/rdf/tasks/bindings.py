@@ -17,7 +17,7 @@ from selfconf.model.wording import in_full
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import LITERAL
 from selfconf.rdf.tasks.parameters import misfits
-from selfconf.rdf.tasks.role_shapes import mentions, shape_statements
+from selfconf.rdf.tasks.roles import mentions, shape_statements
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, XSD

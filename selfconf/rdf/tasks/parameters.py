@@ -13,7 +13,7 @@ from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, STRING, Literal, Term, sort_key
 from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
-from selfconf.rdf.tasks.role_shapes import mentions
+from selfconf.rdf.tasks.roles import mentions
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 

@@ -1,6 +1,6 @@
-"""Templates and tasks: from triples to the roles, interactions and parameters of a task.
+"""Templates and tasks: from triples to the roles, interactions, parameters and costs of a task.
 
-The shape of each role stays where it is, in the document; `selfconf.rdf.eligibility` compiles it. What makes a template
+What makes a template
 readable is checked here, with one sentence per mistake; the authority is `shapes/template.ttl`, and a test holds
 the two together: of a file with a wrong template or task nothing is read.
 """
@@ -9,26 +9,24 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Iterator
+from fractions import Fraction
 
 from selfconf.errors import TemplateError
+from selfconf.model.cost import CostLevel, CostTerm
 from selfconf.model.immutable import immutable
-from selfconf.model.profile import Place
+from selfconf.model.number import fraction
 from selfconf.model.setting_names import setting
-from selfconf.model.template import MOST_PRIORITY, Role, Setting, Task, Template
+from selfconf.model.template import MOST_PRIORITY, Task, Template
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.model.truth import truth
-from selfconf.rdf.shacl import ONLY_WITH_A_PATH, misfit
-from selfconf.rdf.tasks.costs import cost_of
 from selfconf.rdf.tasks.interactions import interactions_of
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.tasks.parameters import parameters_of
-from selfconf.rdf.tasks.role_shapes import shape_triples
+from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.tasks.template_ports import template_ports
 from selfconf.rdf.turtle import Document, Node
-from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, SH, TYPE, XSD
+from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, TYPE, XSD
 
-WHOLE = frozenset(XSD[name] for name in ("integer", "int", "long", "short", "nonNegativeInteger", "positiveInteger"))
-_COUNT = re.compile(r"\+?[0-9]{1,18}")
 _PRIORITY = re.compile(r"[+-]?[0-9]{1,300}")
 _SAID_OF = {
     **dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits), (SC.Role,)),
@@ -78,10 +76,6 @@ def read_inside(document: Document, component: IRI) -> TaskDocument:
 class _Reader(DocumentReader):
     """Reads one document; every method raises TemplateError with a sentence for the author."""
 
-    def __init__(self, document: Document) -> None:
-        super().__init__(document)
-        self._variables = frozenset[Term](document.instances(SC.Parameter))
-
     def task(self, task: Node) -> Task:
         template_iri = self.only(task, SC.template, "a task names exactly one template by sc:template")
         if template_iri not in self.document.instances(SC.Template):
@@ -108,7 +102,7 @@ class _Reader(DocumentReader):
         names = self._listed(template)
         self._said_of_others()
         head = self.only(template, SC.roles, "")
-        roles = tuple(self._role(name, self.cell(head, number)) for number, name in enumerate(names))
+        roles = roles_of(self.document, head, names)
         return Template(
             iri=template,
             roles=roles,
@@ -164,82 +158,48 @@ class _Reader(DocumentReader):
                     what = f"has sc:{predicate.short}, but is not described as a {words}"
                     raise self.mistake(f"{worded(subject)} {what}", subject)
 
-    def _role(self, name: Term, cell: Term) -> Role:
-        if not isinstance(name, IRI):
-            raise self.mistake("every role needs an IRI", cell, FIRST, name)
-        if SC.Role not in self.document.values(name, TYPE):
-            problem = f"{worded(name)} stands in sc:roles, but is not described as a sc:Role"
-            raise self.mistake(problem, cell, FIRST, name)
-        self._shape(name)
-        minimum, maximum = self._count(name, SC.minCount), self._count(name, SC.maxCount)
-        least = 1 if minimum is None else minimum
-        most = 1 if minimum is None and maximum is None else maximum
-        if most is not None and least > most:
-            problem = f"the role {worded(name)} asks for at least {least} and at most {most} components"
-            raise self.mistake(problem, name, SC.minCount, *self.document.values(name, SC.minCount))
-        types = tuple(value for value in self.document.values(name, SH["class"]) if isinstance(value, IRI))
-        return Role(name, least, most, self._settings(name), types, self._recruits(name), Place(self.document.source))
-
-    def _settings(self, role: IRI) -> tuple[Setting, ...]:
-        """What a role sets, each once; two values for one type of parameter are a mistake."""
-        nodes: dict[Setting, Term] = {}
-        for node in self.document.values(role, SC.sets):
-            kind = self.iri(node, SC.parameterType, f"what {worded(role)} sets needs one sc:parameterType, an IRI")
-            value = self.only(node, SC.value, f"what {worded(role)} sets needs exactly one sc:value")
-            nodes.setdefault(Setting(kind, value), node)
-        for kind, times in Counter(one.type for one in nodes).items():
-            if times > 1:
-                problem = f"the role {worded(role)} sets {worded(kind)} to {times} different values"
-                again = [node for setting, node in nodes.items() if setting.type == kind][1]
-                raise self.mistake(problem, role, SC.sets, again)
-        return tuple(nodes)
-
-    def _recruits(self, role: IRI) -> bool:
-        """Whether a role recruits: it says so, or states the shape that its suppliers have to conform to."""
-        values = self.document.values(role, SC.recruits)
-        if not values:
-            return False
-        value = values[0]
-        said = truth(value)
-        if len(values) > 1 or (isinstance(value, Literal) and said is None):
-            problem = f"sc:recruits of the role {worded(role)} is true, false, or one shape of its suppliers"
-            raise self.mistake(problem, role, SC.recruits, values[-1])
-        if not isinstance(value, Literal):
-            if not self.document.about(value) or self.document.value(value, FIRST) is not None:
-                problem = (
-                    f"the role {worded(role)} recruits what conforms to {worded(value)}, which is no shape of this file"
-                )
-                raise self.mistake(problem, role, SC.recruits, value)
-            wrong = misfit(self.document, shape_triples(self.document, value), self._variables)
-            if wrong is not None:
-                problem = f"the shape of what the role {worded(role)} recruits is not well-formed: {wrong[1]}"
-                raise self.mistake(problem, *wrong[0])
-            return True
-        return said is True
-
-    def _shape(self, role: IRI) -> None:
-        """Raises where the shape of a role is certainly no shape."""
-        for predicate, value in self.document.about(role):
-            if predicate in ONLY_WITH_A_PATH:
-                place = "which belongs into sh:property [ sh:path ... ]"
-                raise self.mistake(f"the role {worded(role)} has sh:{predicate.short}, {place}", role, predicate, value)
-        wrong = misfit(self.document, shape_triples(self.document, role), self._variables)
-        if wrong is not None:
-            problem = f"the shape of the role {worded(role)} is not well-formed: {wrong[1]}"
-            raise self.mistake(problem, *wrong[0])
-
-    def _count(self, role: IRI, predicate: IRI) -> int | None:
-        values = self.document.values(role, predicate)
-        if not values:
-            return None
-        value = values[0]
-        whole = isinstance(value, Literal) and value.datatype in WHOLE and _COUNT.fullmatch(value.lexical)
-        if len(values) > 1 or not isinstance(value, Literal) or not whole:
-            what = f"sc:{predicate.short} of the role {worded(role)}"
-            problem = f"{what} is one whole number from 0 on, of at most 18 digits"
-            raise self.mistake(problem, role, predicate, values[-1])
-        return int(value.lexical)
-
     def _label(self, subject: IRI) -> str | None:
         label = self.document.value(subject, LABEL)
         return label.lexical if isinstance(label, Literal) else None
+
+
+def cost_of(document: Document, template: IRI, roles: frozenset[IRI]) -> tuple[CostLevel, ...]:
+    """The levels of the cost of a template with some roles, each of terms of properties. Raises TemplateError."""
+    return tuple(_CostReader(document).levels(template, roles))
+
+
+class _CostReader(DocumentReader):
+    """Reads the levels of a cost; every method raises TemplateError with a sentence for the author."""
+
+    def levels(self, template: IRI, roles: frozenset[IRI]) -> Iterator[CostLevel]:
+        heads = self.document.values(template, SC.cost)
+        levels = self.document.items(heads[0]) if heads else []
+        if len(heads) > 1 or (heads and not levels):
+            problem = "the cost of a template is one list of levels, sc:cost ( [ sc:term ... ] )"
+            raise self.mistake(problem, template, SC.cost, heads[-1])
+        for level in levels:
+            terms = self.document.values(level, SC.term)
+            if not terms:
+                raise self.mistake("each level of sc:cost has at least one sc:term", level)
+            yield tuple(self._term(term, roles) for term in terms)
+
+    def _term(self, term: Term, known: frozenset[IRI]) -> CostTerm:
+        counted = self.iri(term, SC.property, "a term of sc:cost needs exactly one sc:property, an IRI")
+        weight, otherwise = self._number(term, SC.weight), self._number(term, SC.otherwise)
+        roles = self.document.values(term, SC.ofRole)
+        role = roles[0] if roles else None
+        if len(roles) > 1:
+            problem = "a term of sc:cost has at most one sc:ofRole; write a term for each role"
+            raise self.mistake(problem, term, SC.ofRole, roles[1])
+        if role is not None and (role not in known or not isinstance(role, IRI)):
+            problem = f"a term of sc:cost counts {worded(role)}, which is no role of the template"
+            raise self.mistake(problem, term, SC.ofRole, role)
+        return CostTerm(counted, Fraction(1) if weight is None else weight, otherwise, role)
+
+    def _number(self, term: Term, predicate: IRI) -> Fraction | None:
+        values = self.document.values(term, predicate)
+        found = fraction(values[0]) if values else None
+        if len(values) > 1 or (values and found is None):
+            problem = f"sc:{predicate.short} of a term of sc:cost is one finite number"
+            raise self.mistake(problem, term, predicate, values[-1])
+        return found

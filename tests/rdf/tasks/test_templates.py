@@ -1,16 +1,19 @@
-"""Templates and tasks: roles, interactions, parameters, and a sentence for what is none."""
+"""Templates and tasks: roles, interactions, parameters, costs, and a sentence for what is none."""
 
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
 from selfconf.errors import TemplateError
+from selfconf.model.cost import CostLevel, CostTerm
 from selfconf.model.template import Interaction, Setting, Task
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.tasks import templates
+from selfconf.rdf.tasks.templates import cost_of
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import ROB, SC
 from tests.lab import NAVIGATE, PREFIXES, iri
@@ -18,6 +21,7 @@ from tests.lab import NAVIGATE, PREFIXES, iri
 ROLE = ":r a sc:Role ; sh:class :L ."
 BINDING = "sc:binding [ sc:parameter :p ; sc:value 1 ]"
 INTERACTION = "[] a sc:Interaction ; sc:from :r ; sc:to :s"
+EYE_AND_MIND = frozenset((iri("eye"), iri("mind")))
 
 
 def read(text: str, wanted: IRI | None = None) -> Task:
@@ -39,28 +43,6 @@ def test_figure_7_of_the_paper_is_read_as_five_roles_and_four_interactions() -> 
         ("robot", True, False),
         ("goal", False, True),
     }
-
-
-@pytest.mark.parametrize(
-    ("counts", "minimum", "maximum"),
-    [
-        ("", 1, 1),
-        ("sc:minCount 2 ;", 2, None),
-        ("sc:maxCount 3 ;", 1, 3),
-        ("sc:minCount 0 ; sc:maxCount 1 ;", 0, 1),
-        ("sc:minCount 2 ; sc:maxCount 2 ;", 2, 2),
-    ],
-)
-def test_a_role_asks_for_exactly_one_unless_it_says_otherwise(counts: str, minimum: int, maximum: int | None) -> None:
-    (role,) = read(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; {counts} sh:class :L .").template.roles
-    assert (role.minimum, role.maximum) == (minimum, maximum)
-
-
-@pytest.mark.parametrize(("text", "value"), [("true", True), ("1", True), ("false", False), ("0", False)])
-def test_a_role_says_that_it_recruits_by_a_truth_value_however_it_is_written(text: str, value: bool) -> None:
-    said = f'sc:recruits "{text}"^^xsd:boolean'
-    (role,) = read(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; {said} ; sh:class :L .").template.roles
-    assert role.recruits is value
 
 
 def test_the_long_form_of_an_interaction_names_ports() -> None:
@@ -100,14 +82,6 @@ def test_a_task_has_its_own_priority_or_that_of_its_template(template: str, task
     given, own = (f" ; sc:priority {value}" if value else "" for value in (template, task))
     text = f":t a sc:Template ; sc:roles ( :r ){given} . {ROLE} :k a sc:Task ; sc:template :t{own} ."
     assert read(text).priority == priority
-
-
-def test_the_same_setting_twice_is_one() -> None:
-    settings = ":r sc:sets [ sc:parameterType :P ; sc:value 1 ] , [ sc:parameterType :P ; sc:value 1 ] ."
-    (role,) = read(f":t a sc:Template ; sc:roles ( :r ) . {ROLE} {settings}").template.roles
-    assert [setting.type for setting in role.settings] == [iri("P")]
-    with pytest.raises(TemplateError, match="2 different values"):
-        read(f":t a sc:Template ; sc:roles ( :r ) . {ROLE} {settings.replace('1', '1.0', 1)}")
 
 
 def test_of_several_templates_one_must_be_named() -> None:
@@ -169,25 +143,6 @@ def test_whatever_validation_refuses_in_a_template_or_task_its_reader_refuses(pa
         templates.read_task(document)
 
 
-@pytest.mark.parametrize(
-    "shape",
-    [
-        "sh:class 5",
-        "sh:minCount 1",
-        "sh:property 5",
-        "sh:property [ sh:minCount 1 ]",
-        "sh:or :x",
-        "sh:node 5",
-        "sh:property [ sh:path rob:place ; sh:minInclusive :x ]",
-        "sh:closed 'yes'",
-        "sh:sparql [ sh:select 'SELECT' ]",
-    ],
-)
-def test_a_role_that_is_no_shape_is_not_read(shape: str) -> None:
-    with pytest.raises(TemplateError, match="role"):
-        read(f":t a sc:Template ; sc:roles ( :r ) . {ROLE} :r {shape} .")
-
-
 def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
     task = read(
         f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :n . {ROLE} :n a sc:Parameter ; sc:name 'n' ."
@@ -201,3 +156,55 @@ def test_every_example_that_holds_a_template_is_read(path: Path) -> None:
     document = turtle.parse(path.read_bytes(), path.name)
     if document.instances(SC.Template):
         assert templates.read_task(document).task.template.roles
+
+
+# Costs.
+
+
+def cost(text: str) -> tuple[CostLevel, ...]:
+    """The levels of the cost of the template `:t` in a text."""
+    return cost_of(turtle.parse(PREFIXES + text, "t.ttl"), iri("t"), EYE_AND_MIND)
+
+
+def test_a_template_that_states_no_cost_has_no_levels() -> None:
+    assert cost(":t a sc:Template .") == ()
+
+
+def test_a_term_counts_once_and_for_all_roles_unless_it_says_otherwise() -> None:
+    assert cost(":t sc:cost ( [ sc:term [ sc:property :delay ] ] ) .") == ((CostTerm(iri("delay")),),)
+
+
+def test_a_term_may_state_a_weight_what_counts_otherwise_and_a_role() -> None:
+    term = "[ sc:property :delay ; sc:weight -0.5 ; sc:otherwise 10 ; sc:ofRole :eye ]"
+    expected = CostTerm(iri("delay"), Fraction(-1, 2), Fraction(10), iri("eye"))
+    assert cost(f":t sc:cost ( [ sc:term {term} ] ) .") == ((expected,),)
+
+
+def test_levels_keep_the_order_of_the_list() -> None:
+    levels = cost(":t sc:cost ( [ sc:term [ sc:property :z ] ] [ sc:term [ sc:property :a ] , [ sc:property :b ] ] ) .")
+    assert [{term.property.short for term in level} for level in levels] == [{"z"}, {"a", "b"}]
+
+
+def test_a_weight_is_exact() -> None:
+    ((term,),) = cost(":t sc:cost ( [ sc:term [ sc:property :delay ; sc:weight 0.1 ] ] ) .")
+    assert term.weight == Fraction(1, 10)
+
+
+@pytest.mark.parametrize(
+    ("stated", "sentence"),
+    [
+        ("()", "the cost of a template is one list of levels"),
+        ("[ sc:term [ sc:property :a ] ]", "the cost of a template is one list of levels"),
+        ("( [ sc:term [ sc:property :a ] ] ) , ( [ sc:term [ sc:property :b ] ] )", "is one list of levels"),
+        ("( [ ] )", "each level of sc:cost has at least one sc:term"),
+        ("( [ sc:term [ ] ] )", "needs exactly one sc:property, an IRI"),
+        ('( [ sc:term [ sc:property "delay" ] ] )', "needs exactly one sc:property, an IRI"),
+        ("( [ sc:term [ sc:property :a ; sc:weight 1 , 2 ] ] )", "sc:weight of a term of sc:cost is one finite number"),
+        ('( [ sc:term [ sc:property :a ; sc:otherwise "INF"^^xsd:double ] ] )', "sc:otherwise .* one finite number"),
+        ("( [ sc:term [ sc:property :a ; sc:ofRole :eye , :mind ] ] )", "write a term for each role"),
+        ("( [ sc:term [ sc:property :a ; sc:ofRole :ear ] ] )", "which is no role of the template"),
+    ],
+)
+def test_what_is_no_cost_is_one_sentence(stated: str, sentence: str) -> None:
+    with pytest.raises(TemplateError, match=sentence):
+        cost(f":t sc:cost {stated} .")
