@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import json
+import os
+import signal
+import threading
+from collections.abc import Iterator
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
 from benchmarks.faults import __main__ as faults_program
-from benchmarks.faults.__main__ import report
+from benchmarks.faults.__main__ import Series, report
 from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS
-from benchmarks.faults.ecology import HUB, Sign, lives_at_once
-from benchmarks.faults.trial import KINDS, PHASES, PROMISES, ROUTED_VICTIMS, Outcome, Plan, plan
+from benchmarks.faults.ecology import HUB, Ecology, Halted, Sign, lives_at_once
+from benchmarks.faults.trial import KINDS, PHASES, PROMISES, ROUTED_VICTIMS, Outcome, Plan, Trial, plan
 from tests.benchmark import short_run
 
 
@@ -23,7 +29,7 @@ def test_the_short_run_of_the_adoption_runs() -> None:
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     printed = short_run("benchmarks.faults")
-    assert "1 trials" in printed
+    assert "2 trials at a load of" in printed
 
 
 def test_a_trial_is_decided_by_its_seed_and_every_fault_comes_at_every_phase() -> None:
@@ -64,32 +70,122 @@ def test_every_actor_has_an_advertisement() -> None:
     assert {path.stem for path in ADVERTISEMENTS.glob("*/*.ttl")} == set(OUTPUTS)
 
 
-def test_trials_before_ctrl_c_count_and_the_ecology_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended: list[bool] = []
+class Quiet:
+    """An ecology in which nothing is left of what it has started."""
 
-    class Quiet:
-        """An ecology in which nothing is left of what it has started."""
+    made: ClassVar[list[Quiet]] = []
 
-        def __init__(self, folder: Path, routed: bool) -> None:
-            pass
+    def __init__(self, folder: Path, routed: bool, halt: threading.Event) -> None:
+        self.halt, self.closed = halt, False
+        self.made.append(self)
 
-        def close(self) -> list[str]:
-            ended.append(True)
-            return []
+    def close(self) -> list[str]:
+        self.closed = True
+        return []
 
-    class Third:
-        """A trial, of which the third is interrupted."""
+
+@pytest.fixture
+def quiet(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Quiet]]:
+    monkeypatch.setattr(faults_program, "Ecology", Quiet)
+    Quiet.made.clear()
+    yield Quiet.made
+    assert all(ecology.closed for ecology in Quiet.made)
+
+
+def test_workers_play_each_trial_once_beside_each_other_in_ecologies_of_their_own(
+    monkeypatch: pytest.MonkeyPatch, quiet: list[Quiet]
+) -> None:
+    together = threading.Barrier(3)
+
+    class Met:
+        """A trial that ends when two others are under way."""
 
         def __init__(self, ecology: Quiet, planned: Plan) -> None:
             self.trial = planned.trial
 
         def carry_out(self) -> Outcome:
-            if self.trial.endswith("/2"):
-                raise KeyboardInterrupt
+            together.wait(30)
             return Outcome(self.trial, "running: kill drive")
 
-    monkeypatch.setattr(faults_program, "Ecology", Quiet)
+    monkeypatch.setattr(faults_program, "Trial", Met)
+    series = Series([plan(1, number, 10.0) for number in range(6)], 1.0, False)
+    series.play(3)
+    assert sorted(one.trial for one in series.outcomes) == [f"1/{number}" for number in range(6)]
+    assert len(quiet) == 3
+
+
+def test_after_a_broken_promise_an_ecology_is_made_anew_and_what_happened_is_kept(
+    monkeypatch: pytest.MonkeyPatch, quiet: list[Quiet], tmp_path: Path
+) -> None:
+    class Second:
+        """A trial, of which the second breaks a promise."""
+
+        def __init__(self, ecology: Quiet, planned: Plan) -> None:
+            self.trial = planned.trial
+
+        def carry_out(self) -> Outcome:
+            outcome = Outcome(self.trial, "running: kill drive", history=[(7.5, "lost"), (7.0, "kill drive")])
+            outcome.judge("once a run has ended nobody acts", 5.0 if self.trial == "1/1" else 0.0)
+            return outcome
+
+    monkeypatch.setattr(faults_program, "Trial", Second)
+    series = Series([plan(1, number, 10.0) for number in range(4)], 1.0, False, tmp_path / "kept")
+    series.play(1)
+    assert len(series.outcomes) == 4
+    assert len(quiet) == 2
+    (kept,) = (tmp_path / "kept").iterdir()
+    assert kept.name == "1-1.txt"
+    assert kept.read_text().splitlines() == ["running: kill drive", "   0.000 kill drive", "   0.500 lost"]
+
+
+def test_trials_before_ctrl_c_count_and_the_ecologies_are_ended(
+    monkeypatch: pytest.MonkeyPatch, quiet: list[Quiet]
+) -> None:
+    class Third:
+        """A trial, of which the third is interrupted, and the fourth, if it is under way, is halted."""
+
+        def __init__(self, ecology: Quiet, planned: Plan) -> None:
+            self.trial, self.halt = planned.trial, ecology.halt
+
+        def carry_out(self) -> Outcome:
+            if self.trial in ("1/2", "1/3"):
+                if self.trial == "1/2":
+                    os.kill(os.getpid(), signal.SIGINT)
+                assert self.halt.wait(30)
+                raise Halted
+            return Outcome(self.trial, "running: kill drive")
+
     monkeypatch.setattr(faults_program, "Trial", Third)
-    outcomes = faults_program.measure(1, list(range(5)), 10.0, 1.0)
-    assert [one.trial for one in outcomes] == ["1/0", "1/1"]
-    assert ended == [True]
+    series = Series([plan(1, number, 10.0) for number in range(50)], 1.0, False)
+    series.play(2)
+    assert {"1/0", "1/1"} <= {one.trial for one in series.outcomes}
+    assert not {"1/2", "1/3"} & {one.trial for one in series.outcomes}
+    assert quiet  # and the fixture sees that each has been closed
+
+
+@pytest.mark.process
+def test_an_ecology_that_is_halted_waits_for_nothing_and_can_be_closed(tmp_path: Path) -> None:
+    halt = threading.Event()
+    ecology = Ecology(tmp_path, halt=halt)
+    halt.set()
+    with pytest.raises(Halted):
+        ecology.let_pass(60.0)
+    sites = list(ecology.programs)
+    assert ecology.close() == []
+    assert [site.ended for site in sites] == [0, 0]
+
+
+@pytest.mark.process
+def test_a_fault_of_a_reservation_comes_though_all_components_live_already(tmp_path: Path) -> None:
+    ecology = Ecology(tmp_path)
+    seen = []
+    try:
+        for number in range(2):
+            outcome = Trial(ecology, Plan(f"1/{number}", "reservation", ())).carry_out()
+            assert not outcome.broken
+            seen.append(json.dumps([what for _, what in sorted(outcome.history)]))
+    finally:
+        ecology.close()
+    assert '"waking' in seen[0].replace("\\", "")
+    assert "waking" not in seen[1]
+    assert outcome.took["a task comes to the phase of the fault"] < 25.0

@@ -10,6 +10,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections import defaultdict
 from collections.abc import Callable
@@ -101,6 +102,8 @@ class Program:
         os.set_blocking(self._process.stdout.fileno(), False)
         self._unread = b""
         self.lines: list[str] = []
+        self._parsed = 0
+        self._events: list[dict[str, Any]] = []
 
     @property
     def number(self) -> int:
@@ -134,8 +137,10 @@ class Program:
 
     @property
     def events(self) -> list[dict[str, Any]]:
-        """The events of a run, in order."""
-        return [json.loads(line) for line in self.lines if line.startswith("{")]
+        """The events of a run, in order; each line is parsed once, however often they are looked at."""
+        self._events += [json.loads(line) for line in self.lines[self._parsed :] if line.startswith("{")]
+        self._parsed = len(self.lines)
+        return self._events
 
     def send(self, number: int) -> None:
         """Send a signal."""
@@ -151,10 +156,18 @@ class Program:
         self._process.stdout.close()
 
 
-class Ecology:
-    """Sites, components and configurators, all real processes; everything is read by this one thread."""
+class Halted(Exception):
+    """The benchmark has been halted while an ecology waited for something."""
 
-    def __init__(self, folder: Path, through_hub: bool = False) -> None:
+
+class Ecology:
+    """Sites, components and configurators, all real processes; everything is read by this one thread.
+
+    It shares no name, port or folder with another one, so that several live beside each other, each with a thread. Once
+    `halt` is set, whatever waits in it raises `Halted`; it can be closed all the same.
+    """
+
+    def __init__(self, folder: Path, through_hub: bool = False, halt: threading.Event | None = None) -> None:
         self.name = f"faults-{secrets.token_hex(3)}"
         self._hub = with_port("tcp/127.0.0.1:0") if through_hub else ""
         runtime = folder / self.name
@@ -169,10 +182,15 @@ class Ecology:
         if through_hub:
             self.environment[rendezvous.CONNECT_VARIABLE] = self._hub
         self._runtime = runtime
+        self._halt = halt or threading.Event()
         self.programs: list[Program] = []
         self.sites: dict[str, Program] = {}
-        for name in (HUB, *SITES) if through_hub else SITES:
-            self.start_site(name)
+        try:
+            for name in (HUB, *SITES) if through_hub else SITES:
+                self.start_site(name)
+        except BaseException:
+            self.close()
+            raise
 
     def start_site(self, name: str) -> None:
         """Start a site, and wait until it serves."""
@@ -180,7 +198,12 @@ class Ecology:
         site = Program(self._environment_of(name), *where, *(("--listen", self._hub) if name == HUB else ()))
         self.programs.append(site)
         self.sites[name] = site
-        if not self.until(lambda: any(" on tcp/" in line for line in site.lines), PATIENCE):
+
+        def serves() -> bool:
+            return any(" on tcp/" in line for line in site.lines)
+
+        self.until(lambda: serves() or site.ended is not None, PATIENCE)
+        if not serves():
             raise RuntimeError(f"site {name} does not begin: {site.lines}")
 
     def _advertisements(self, name: str) -> Path:
@@ -209,8 +232,13 @@ class Ecology:
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Read what everybody says until a condition holds; whether it does in time."""
+        return self._until(condition, seconds, self._halt)
+
+    def _until(self, condition: Callable[[], bool], seconds: float, halt: threading.Event | None = None) -> bool:
         deadline = time.monotonic() + seconds
         while True:
+            if halt is not None and halt.is_set():
+                raise Halted
             self._read(0.0)
             if condition():
                 return True
@@ -247,8 +275,8 @@ class Ecology:
         for program in self.programs:
             program.send(signal.SIGCONT)
             program.send(signal.SIGTERM)
-        self.until(lambda: all(program.ended is not None for program in self.programs), 8.0)
-        self.until(lambda: not self.left(), 5.0)
+        self._until(lambda: all(program.ended is not None for program in self.programs), 8.0)
+        self._until(lambda: not self.left(), 5.0)
         left = [self.witnesses.processes[process] for process in self.left()]
         for process in self.left():
             os.kill(process, signal.SIGKILL)

@@ -6,11 +6,10 @@ what it is, and whether a second one follows. `PROMISES` are what is looked at, 
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -22,12 +21,15 @@ from benchmarks.faults.ecology import HUB, PATIENCE, SITES, Ecology, Sign, lives
 
 PHASES = {
     "discovery": ("query",),
-    "reservation": ("waking",),
+    "reservation": ("watching",),
     "activation": ("activating",),
     "running": ("running",),
     "repair": ("running", "lost"),
 }
-"""The phases of a run, each with the acts that are waited for; before `lost` a position sensor is made to fail."""
+"""The phases of a run, each with the acts that are waited for; before `lost` a position sensor is made to fail.
+
+A component is watched at once before it is reserved, or before its site is asked to start it where it is dormant.
+"""
 KINDS = {"kill": 0.0, "end": 0.0, "stop 0.5 s": 0.5, "stop 2 s": 2.0, "stop 10 s": 10.0}
 """What happens to a process, and for how many seconds it stands still."""
 VICTIMS = ("component", "component", "site", "configurator", "configurator")
@@ -44,6 +46,7 @@ HEALS = 25.0
 """Seconds after which a run must be running again: a site starts a component within 15."""
 
 PROMISES = {
+    "a task comes to the phase of the fault": PATIENCE,
     "after the fault the task is running again": HEALS,
     "without its configurator nobody acts": LEASE + GRACE + SLACK,
     "no component acts in two processes at once": LEASE + GRACE + SLACK,
@@ -64,6 +67,10 @@ class Outcome:
     fault: str
     took: dict[str, float] = field(default_factory=dict)
     broken: dict[str, str] = field(default_factory=dict)
+    load: float = 0.0
+    """The load of the machine at its end, averaged over a minute."""
+    history: list[tuple[float, str]] = field(default_factory=list)
+    """What happened: the faults, what the configurators said, who began and ceased to act; each with its time."""
 
     def judge(self, promise: str, seconds: float, detail: str = "") -> None:
         """Note how long a promise took."""
@@ -142,21 +149,43 @@ class Trial:
         self._judge_end()
         return self.outcome
 
+    def _remember(self, what: str, clock: float) -> None:
+        """Add to what happened, at a time of the monotonic clock."""
+        self.outcome.history.append((clock, what))
+
+    def _forget_configurator(self) -> None:
+        """Read a configurator that has ended, or is given up, no more."""
+        self.ecology.forget(self.configurator)
+        ahead = time.time() - time.monotonic()
+        for event in self.configurator.events:
+            self._remember(json.dumps(event), event["time"] - ahead)
+
     # What happens.
 
     def _await_phase(self) -> None:
         for act in PHASES[self.plan.phase]:
+            began = time.monotonic()
             if act == "lost":
                 self._make_fail()
-            self.ecology.until(partial(self._has_done, act), PATIENCE)
+            reached = self.ecology.until(partial(self._has_done, act), PATIENCE)
+            took = time.monotonic() - began if reached else 99.0
+            self.outcome.judge("a task comes to the phase of the fault", took, f"no {act!r}")
 
     def _has_done(self, act: str) -> bool:
         return not {act, "refused"}.isdisjoint(self.configurator.acts)
 
     def _make_fail(self) -> None:
-        process = self.ecology.witnesses.process_of("tracker") or self.ecology.witnesses.process_of("odometry")
-        if process is not None:
-            os.kill(process, signal.SIGUSR1)
+        """Make the position sensor fail that acts; a component that begins to act says so within 20 ms."""
+        acting: list[Sign] = []
+
+        def found() -> bool:
+            signs = self.ecology.witnesses.acting(self.began)
+            acting[:] = [sign for sign in signs if sign.name in ("tracker", "odometry")]
+            return bool(acting)
+
+        if self.ecology.until(found, PATIENCE):
+            with suppress(ProcessLookupError):
+                os.kill(acting[-1].process, signal.SIGUSR1)
 
     def _process(self, fault: Fault) -> int | None:
         if fault.victim == "component":
@@ -168,6 +197,7 @@ class Trial:
         process = self._process(fault)
         if process is None:
             return
+        self._remember(str(fault), time.monotonic())
         seconds = KINDS[fault.kind]
         if seconds:
             os.kill(process, signal.SIGSTOP)
@@ -227,7 +257,7 @@ class Trial:
             self.ecology.until(lambda: self.configurator.ended is not None, 10.0)
             if self.configurator.ended is None:
                 self.outcome.judge("Ctrl-C ends the run with exit code 0", 99.0, "it does not end")
-            self.ecology.forget(self.configurator)
+            self._forget_configurator()
             self.configurator = self.ecology.run()
         began = steady = time.monotonic()
         while time.monotonic() < min(steady + STEADY, began + HEALS + STEADY):
@@ -272,21 +302,14 @@ class Trial:
 
     def _judge_status(self) -> None:
         began = time.monotonic()
-        try:
-            said = subprocess.run(
-                [sys.executable, "-m", "selfconf", "status", "--format", "json", "--ecology", self.ecology.name],
-                env=self.ecology.environment,
-                capture_output=True,
-                text=True,
-                timeout=20,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            self.outcome.judge("status names the task that runs", 20.0, "it hangs")
-            return
-        named = said.returncode == 0 and '"running"' in said.stdout
+        asked = self.ecology.start("status", "--format", "json", "--ecology", self.ecology.name)
+        hangs = not self.ecology.until(lambda: asked.ended is not None, 20.0)
         seconds = time.monotonic() - began
-        self.outcome.judge("status names the task that runs", seconds if named else 99.0, said.stdout + said.stderr)
+        self.ecology.forget(asked)
+        said = "it hangs" if hangs else " ".join(line.strip() for line in asked.lines)
+        named = asked.ended == 0 and '"running"' in said
+        self._remember(f"status: {said}", began)
+        self.outcome.judge("status names the task that runs", seconds if named else 99.0, said[:200])
 
     def _judge_end(self) -> None:
         self.configurator.send(signal.SIGINT)
@@ -301,7 +324,10 @@ class Trial:
         late = self.ecology.witnesses.acting(over)
         last = max((sign.time for sign in late), default=over) - over
         self.outcome.judge("once a run has ended nobody acts", last, _names(late))
-        self.ecology.forget(self.configurator)
+        self._forget_configurator()
+        for sign in self.ecology.witnesses.signs:
+            if sign.what != "acts":
+                self._remember(f"{sign.name} {sign.process} {sign.what}", sign.time)
         self.ecology.witnesses.forget(time.monotonic())
 
 
