@@ -1,14 +1,31 @@
-"""What pySHACL has said of components, kept as long as it holds: judging is dear, and ecologies change by a few."""
+"""What pySHACL is shown of components and says of them, kept as long as it holds.
+
+Judging is dear, and ecologies change by a few components at a time. Most roles are compiled in full; then neither
+rdflib nor pySHACL is loaded.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
 
+from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
+from selfconf.rdf.eligibility.compiler import bound_shape, left_to_judge
 from selfconf.rdf.eligibility.role_tests import CompiledRole
+from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.vocabulary import RDFS, SC, TYPE
+
+if TYPE_CHECKING:
+    import rdflib
+
+_CLASSIFYING = frozenset((TYPE, SC.signalType, SC.parameterType))
+"""What has a class as its value, of which a shape sees what lies above it."""
 
 Violations = tuple[ShapeViolated | NotJudged, ...]
 """What keeps a component from conforming to a shape; nothing if it conforms."""
@@ -64,3 +81,94 @@ class Judgements:
             self._anywhere.setdefault(advertisement, {})[question] = violations
         elif ecology is self._ecology:
             self._here.setdefault(advertisement, {})[question] = violations
+
+
+class ShapeJudge:
+    """Has pySHACL judge components by the shapes of one document, under a hierarchy."""
+
+    def __init__(self, document: Document, hierarchy: Hierarchy) -> None:
+        self._document, self._hierarchy = document, hierarchy
+        self._kept = Judgements()
+
+    def look_at(self, ecology: AdvertisementIndex) -> None:
+        """Keep what is said of an ecology from now on, and of what was said before what holds in it."""
+        self._kept.look_at(ecology)
+
+    def violations(
+        self,
+        role: CompiledRole,
+        focus: Sequence[Advertisement],
+        ecology: AdvertisementIndex,
+        values: Values,
+        subjects: rdflib.Graph | None = None,
+    ) -> dict[IRI, Violations]:
+        """What pySHACL finds wrong with some components of an ecology, parameters replaced by their values."""
+        said = {a: self._kept.known(role, a, values, ecology) for a in focus}
+        asked = [advertisement for advertisement, violations in said.items() if violations is None]
+        wrong = self._judged(asked, role, ecology, values, subjects)
+        for advertisement in asked:
+            said[advertisement] = violations = tuple(wrong.get(advertisement.component, ()))
+            self._kept.keep(role, advertisement, values, ecology, violations)
+        return {advertisement.component: violations for advertisement, violations in said.items() if violations}
+
+    def _judged(
+        self,
+        focus: Sequence[Advertisement],
+        role: CompiledRole,
+        ecology: AdvertisementIndex,
+        values: Values,
+        subjects: rdflib.Graph | None,
+    ) -> dict[IRI, list[ShapeViolated | NotJudged]]:
+        if not focus:
+            return {}
+        from selfconf.rdf.conformance import violations
+        from selfconf.rdf.rdflib_terms import to_rdflib
+
+        shapes = to_rdflib(bound_shape(left_to_judge(self._document, role), values))
+        seen = self.subjects(role, focus, ecology) if subjects is None else subjects
+        sizes = {advertisement.component: advertisement.breadth for advertisement in focus}
+        return violations(seen, shapes, role.iri, list(sizes), self._document.source, sizes=sizes)
+
+    def subjects(self, role: CompiledRole, focus: Sequence[Advertisement], ecology: AdvertisementIndex) -> rdflib.Graph:
+        """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
+        from selfconf.rdf.eligibility.lazy_graph import LazyStore
+        from selfconf.rdf.rdflib_terms import rdflib_triple
+
+        shown = focus if role.local else ecology.values()
+        components = frozenset(advertisement.component for advertisement in shown)
+        named = free_values.looked_at(self._document, role.iri)
+
+        def said(advertisement: Advertisement) -> Iterator[Triple]:
+            seen = self._visible_of(advertisement, components)
+            return seen if named is None else (triple for triple in seen if triple[1] in named)
+
+        store = LazyStore()
+        for advertisement in shown:
+            if advertisement.self_contained:
+                store.defer(advertisement.component, partial(said, advertisement))
+            else:
+                for triple in said(advertisement):
+                    store.graph.add(rdflib_triple(triple))
+        return store.graph
+
+    def visible(self, advertisements: Collection[Advertisement]) -> Iterator[Triple]:
+        """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.
+
+        Each speaks for its own component: what it says about another is not seen.
+        """
+        components = frozenset(advertisement.component for advertisement in advertisements)
+        for advertisement in advertisements:
+            yield from self._visible_of(advertisement, components)
+
+    def _visible_of(self, advertisement: Advertisement, components: frozenset[IRI]) -> Iterator[Triple]:
+        """What the shape sees of one advertisement beside those of other components."""
+        for subject, predicate, value in advertisement.triples:
+            if subject != advertisement.component and subject in components:
+                continue
+            for above in self._hierarchy.superproperties(predicate):
+                yield subject, above, value  # the property itself is one of them
+            if predicate in _CLASSIFYING and isinstance(value, IRI):
+                for kind in self._hierarchy.superclasses(value) - {value}:
+                    yield value, RDFS.subClassOf, kind
+                    if predicate == TYPE:
+                        yield subject, TYPE, kind

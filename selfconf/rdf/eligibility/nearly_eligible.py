@@ -166,7 +166,7 @@ def _reasons(
     """All that keeps some components out for each value of a free parameter, behind what the tests have told of it."""
     focus = list(told)
     tests = {a: _failed(partitioner, role, a) for a in focus}
-    subjects = partitioner.subjects(role, focus, ecology)
+    subjects = partitioner.judge.subjects(role, focus, ecology)
     reasons: dict[Advertisement, dict[Term, list[Obstacle]]] = {a: {} for a in focus}
     for value in _values(partitioner, role, parameter, focus):
         values = {} if parameter is None else {parameter: value}
@@ -203,7 +203,9 @@ def _values(
     if parameter is None:
         return [ANOTHER]
     listed = free_values.enumerated(partitioner.document, parameter)
-    stated = listed | free_values.seen(left_to_judge(partitioner.document, role), role.iri, partitioner.visible(focus))
+    stated = listed | free_values.seen(
+        left_to_judge(partitioner.document, role), role.iri, partitioner.judge.visible(focus)
+    )
     suitable = sorted(partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
     return suitable if listed else [*suitable, ANOTHER]
 

@@ -7,7 +7,7 @@ says more than the tests, pySHACL judges the components that pass them, all in o
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import partial
 from itertools import chain
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import immutable
-from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
+from selfconf.model.obstacle import NotJudged, Obstacle
 from selfconf.model.partition import (
     ANY_VALUE,
     Candidate,
@@ -39,16 +39,16 @@ from selfconf.rdf.eligibility.advertisement_index import (
     ClassClosure,
     TypeSet,
 )
-from selfconf.rdf.eligibility.compiler import bound_shape, compile_role, left_to_judge
+from selfconf.rdf.eligibility.compiler import compile_role, left_to_judge
 from selfconf.rdf.eligibility.free_values import contradictory, mentions_of, stated_on_paths
-from selfconf.rdf.eligibility.judgements import Judgements, Values, Violations
+from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
-from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import RDFS, SC, TYPE
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import SC
 
 if TYPE_CHECKING:
     import rdflib
@@ -56,8 +56,6 @@ if TYPE_CHECKING:
 Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
 ANOTHER = IRI("urn:selfconf:another-value")
 """A value that no component has: what it lets pass, any value lets pass."""
-_CLASSIFYING = frozenset((TYPE, SC.signalType, SC.parameterType))
-"""What has a class as its value, of which a shape sees what lies above it."""
 _NOTHING: Mapping[IRI, frozenset[Term]] = {}
 
 
@@ -104,7 +102,7 @@ class Partitioner:
         self._above = ClassClosure(hierarchy)
         self.not_judged: dict[IRI, NotJudged] = {}
         """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""
-        self._judgements = Judgements()
+        self.judge = ShapeJudge(self.document, hierarchy)
         self._acceptance = Acceptance(hierarchy)
         self.suitable = free_values.Suitable(self._parameters, self.document)
 
@@ -117,7 +115,8 @@ class Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
-        other.not_judged, other._judgements, other._acceptance = {}, Judgements(), Acceptance(hierarchy)
+        other.judge = ShapeJudge(self.document, hierarchy)
+        other.not_judged, other._acceptance = {}, Acceptance(hierarchy)
         return other
 
     def reading(self, document: Document, role: IRI) -> Partitioner:
@@ -125,7 +124,7 @@ class Partitioner:
         other = copy(self)
         other.document = document
         other.roles = (other._compiled(self.task.template.role(role)),)
-        other.not_judged, other._judgements = {}, Judgements()
+        other.not_judged, other.judge = {}, ShapeJudge(document, self.hierarchy)
         return other
 
     def partition(self, advertisements: Advertisements) -> Partition:
@@ -148,7 +147,7 @@ class Partitioner:
             *self._mentions(variables),
         )
         judged = self._acceptance.judged(
-            self.task.template, found, lambda component: tuple(self.visible([ecology[component]]))
+            self.task.template, found, lambda component: tuple(self.judge.visible([ecology[component]]))
         )
         self.not_judged |= self._acceptance.not_judged
         return with_sent_requests(judged, self.hierarchy)
@@ -159,7 +158,9 @@ class Partitioner:
 
     def unaccepted(self, ecology: AdvertisementIndex, component: IRI, output: str, shape: str) -> Obstacle | None:
         """What keeps an output of a component from conforming to the shape that an input accepts."""
-        return self._acceptance.obstacle(shape, (component, output), lambda one: tuple(self.visible([ecology[one]])))
+        return self._acceptance.obstacle(
+            shape, (component, output), lambda one: tuple(self.judge.visible([ecology[one]]))
+        )
 
     def _recruits(self, ecology: AdvertisementIndex) -> tuple[Recruit, ...]:
         """The components that may supply the players of each role that recruits, in the order of preference."""
@@ -198,7 +199,7 @@ class Partitioner:
     def eligible(self, ecology: AdvertisementIndex) -> list[list[EligibleComponent]]:
         """For each role the components that conform to it, unordered. Raises TemplateError."""
         self.not_judged = {}
-        self._judgements.look_at(ecology)
+        self.judge.look_at(ecology)
         found: list[list[EligibleComponent]] = []
         by_value: dict[int, tuple[IRI, list[Passed]]] = {}
         for number, role in enumerate(self.roles):
@@ -259,7 +260,7 @@ class Partitioner:
                 stated[parameter] |= values
         for number, (parameter, passed) in by_value.items():
             role = self.roles[number]
-            shown = self.visible([a for a, _ in passed] if role.local else ecology.values())
+            shown = self.judge.visible([a for a, _ in passed] if role.local else ecology.values())
             stated[parameter] |= free_values.seen(left_to_judge(self.document, role), role.iri, shown)
             stated[parameter] |= free_values.enumerated(self.document, parameter)
         suitable = {parameter: self.suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
@@ -303,7 +304,7 @@ class Partitioner:
         """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
         survivors = [advertisement for advertisement, _ in passed]
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
-        subjects = self.subjects(role, survivors, ecology)
+        subjects = self.judge.subjects(role, survivors, ecology)
         others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
         for value in (*sorted(values, key=sort_key), *others):
             outside = self.violations(role, survivors, ecology, {parameter: value}, subjects)
@@ -325,80 +326,11 @@ class Partitioner:
         values: Values,
         subjects: rdflib.Graph | None = None,
     ) -> dict[IRI, Violations]:
-        """What pySHACL finds wrong with some components of an ecology, parameters replaced by their values."""
-        said = {a: self._judgements.known(role, a, values, ecology) for a in focus}
-        asked = [advertisement for advertisement, violations in said.items() if violations is None]
-        wrong = self._judged(asked, role, ecology, values, subjects)
-        for advertisement in asked:
-            said[advertisement] = violations = tuple(wrong.get(advertisement.component, ()))
-            self._judgements.keep(role, advertisement, values, ecology, violations)
-        found = {advertisement.component: violations for advertisement, violations in said.items() if violations}
+        """What pySHACL finds wrong with some components of an ecology; what cannot be judged is noted."""
+        found = self.judge.violations(role, focus, ecology, values, subjects)
         for component, violations in found.items():
             self.not_judged.update((component, one) for one in violations if isinstance(one, NotJudged))
         return found
-
-    def _judged(
-        self,
-        focus: Sequence[Advertisement],
-        role: CompiledRole,
-        ecology: AdvertisementIndex,
-        values: Values,
-        subjects: rdflib.Graph | None,
-    ) -> dict[IRI, list[ShapeViolated | NotJudged]]:
-        if not focus:
-            return {}
-        # Most roles are compiled in full, and then neither rdflib nor pySHACL is loaded.
-        from selfconf.rdf.conformance import violations
-        from selfconf.rdf.rdflib_terms import to_rdflib
-
-        shapes = to_rdflib(bound_shape(left_to_judge(self.document, role), values))
-        seen = self.subjects(role, focus, ecology) if subjects is None else subjects
-        sizes = {advertisement.component: advertisement.breadth for advertisement in focus}
-        return violations(seen, shapes, role.iri, list(sizes), self.document.source, sizes=sizes)
-
-    def subjects(self, role: CompiledRole, focus: Sequence[Advertisement], ecology: AdvertisementIndex) -> rdflib.Graph:
-        """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""
-        from selfconf.rdf.eligibility.lazy_graph import LazyStore
-        from selfconf.rdf.rdflib_terms import rdflib_triple
-
-        shown = focus if role.local else ecology.values()
-        components = frozenset(advertisement.component for advertisement in shown)
-        named = free_values.looked_at(self.document, role.iri)
-
-        def said(advertisement: Advertisement) -> Iterator[Triple]:
-            seen = self._visible_of(advertisement, components)
-            return seen if named is None else (triple for triple in seen if triple[1] in named)
-
-        store = LazyStore()
-        for advertisement in shown:
-            if advertisement.self_contained:
-                store.defer(advertisement.component, partial(said, advertisement))
-            else:
-                for triple in said(advertisement):
-                    store.graph.add(rdflib_triple(triple))
-        return store.graph
-
-    def visible(self, advertisements: Collection[Advertisement]) -> Iterator[Triple]:
-        """What the shape sees: the advertisements, and under a hierarchy what follows for types and properties.
-
-        Each speaks for its own component: what it says about another is not seen.
-        """
-        components = frozenset(advertisement.component for advertisement in advertisements)
-        for advertisement in advertisements:
-            yield from self._visible_of(advertisement, components)
-
-    def _visible_of(self, advertisement: Advertisement, components: frozenset[IRI]) -> Iterator[Triple]:
-        """What the shape sees of one advertisement beside those of other components."""
-        for subject, predicate, value in advertisement.triples:
-            if subject != advertisement.component and subject in components:
-                continue
-            for above in self.hierarchy.superproperties(predicate):
-                yield subject, above, value  # the property itself is one of them
-            if predicate in _CLASSIFYING and isinstance(value, IRI):
-                for kind in self.hierarchy.superclasses(value) - {value}:
-                    yield value, RDFS.subClassOf, kind
-                    if predicate == TYPE:
-                        yield subject, TYPE, kind
 
     def _variables(self, eligible: list[list[EligibleComponent]]) -> Iterator[Variable]:
         for parameter in sorted(self.free):

@@ -118,7 +118,7 @@ def visible(advertisement: Advertisement, hierarchy: Hierarchy) -> list[tuple[ob
     """What shapes see of an advertisement, as roles do."""
     index = AdvertisementIndex.of([advertisement])
     task = template(f"{PREFIXES}:t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Sensor .")
-    return list(Partitioner(task.document, hierarchy).visible(list(index.values())))
+    return list(Partitioner(task.document, hierarchy).judge.visible(list(index.values())))
 
 
 TASK = f"""{PREFIXES}:t a sc:Template ; sc:roles ( :sensor :display ) .
