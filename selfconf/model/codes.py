@@ -431,12 +431,11 @@ CODES: tuple[Code, ...] = (
         ("BindingKnown",),
     ),
     Code(
-        "SC-K05", "A task stands in one file with its template.",
-        "A task is configured from one file; a task whose template is elsewhere is not found there. The configuration "
-        "of a task is judged by its template, and by advertisements, where these stand in its own file: put them into "
-        "one.",
+        "SC-K05", "A task stands in one file with its template, a configuration beside its template.",
+        "A task is configured from one file; a task whose template is elsewhere is not found there. A configuration is "
+        "judged by its template, and by the advertisements of its components: name their files in the same command.",
         ":music a sc:Task ; sc:template :radio .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
-        ("TaskTemplateHere",),
+        ("TaskTemplateHere", "ConfigurationTemplateGiven"),
         Severity.WARNING,
     ),
     Code(
@@ -497,7 +496,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-C07", "The roles of the template, and no others, are played by as many components as they ask for.",
-        "This is checked where configuration and template stand in one file.",
+        "This is checked where the template is given in the same command.",
         f"{_PAIR}\n:now a sc:Configuration ; sc:template :radio ;\n"
         "    sc:assignment [ a sc:Assignment ; sc:role :source ; sc:component :tuner ] .",
         f"{_PAIR}\n{_ANSWER}",
@@ -505,19 +504,21 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-C08", "Every connection follows an interaction of the template.",
-        "This is checked where configuration and template stand in one file.",
+        "This is checked where the template is given in the same command.",
         _PAIR.replace(" ; sc:feeds :sink", "") + "\n" + _ANSWER, f"{_PAIR}\n{_ANSWER}",
         ("ConnectionWanted",),
     ),
     Code(
         "SC-C09", "The two ports of a connection exist and their types match.",
-        "This is checked where configuration and advertisements stand in one file.",
+        "This is checked where the advertisements of both components are given in the same command. The types of ports "
+        "match along the hierarchy of the loaded ontologies.",
         f"{_PORTS}\n{_ANSWER}".replace("rob:Audio", "rob:Text", 1), f"{_PORTS}\n{_ANSWER}",
         ("ConnectionMatches",),
     ),
     Code(
         "SC-C10", "Every matching pair of ports along an interaction is connected, and every input is fed.",
-        "This is checked where configuration, template and advertisements stand in one file.",
+        "This is checked where template and advertisements are given in the same command. Here ports match that have "
+        "one type.",
         f"{_PORTS}\n{_PAIR}\n:now a sc:Configuration ; sc:template :radio ;\n    {_CAST} .",
         f"{_PORTS}\n{_PAIR}\n{_ANSWER}",
         ("ConnectionMissing", "InputFed"),

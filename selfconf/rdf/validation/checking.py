@@ -2,9 +2,10 @@
 
 Two passes. The first reads every file by Oxigraph and learns which terms there are; a file in which
 nothing is suspicious has passed then. The second checks the others: places by rdflib's parser,
-violations by pySHACL, malformed roles, lints. Each file is judged on its own triples. What the files of a
-run share is only the knowledge which terms exist, which can make a warning of a term or take it away, and
-which components are described twice. An ontology is known alike whether it is among the files, given as an
+violations by pySHACL, malformed roles, lints. Each file is judged on its own triples; a configuration also by what
+others say of its template and its components (`described_elsewhere`). What the files of a run share besides is only the
+knowledge which terms exist, which can make a warning of a term or take it away, and which components are described
+twice. An ontology is known alike whether it is among the files, given as an
 ontology, or ships with selfconf.
 """
 
@@ -53,6 +54,8 @@ class UnclearedFile:
     source: SourceText
     elsewhere: dict[str, str] = field(default_factory=dict)
     """Components of it that another file, which is named, describes as well."""
+    beside: tuple[tuple[SourceText, tuple[str, ...]], ...] = ()
+    """The files that describe templates and components of its configurations, each with the IRIs of those."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +68,16 @@ class FileChecker:
     def __call__(self, suspect: UnclearedFile) -> list[Diagnostic]:
         """The problems of a file."""
         # rdflib and pySHACL take longer to load than thousands of good files take to pass.
+        from selfconf.rdf.validation.described_elsewhere import descriptions
         from selfconf.rdf.validation.file_check import FileCheck, shapes_of
 
         check = FileCheck(shapes_of(*(source.text() for source in self.shapes)), self.index)
-        return check.of(suspect.source.text(), suspect.source.name, suspect.source.base, suspect.elsewhere)
+        source = suspect.source
+        beside = descriptions(
+            (other.octets.removeprefix(_BYTE_ORDER_MARK), other.name, other.base, things)
+            for other, things in suspect.beside
+        )
+        return check.of(source.text(), source.name, source.base, suspect.elsewhere, beside)
 
     @cached_property
     def knowledge(self) -> bytes:
@@ -81,8 +90,10 @@ class FileChecker:
         """A digest of all that the outcome depends on; a memory of outcomes adds the versions of the programs."""
         source = suspect.source
         elsewhere = repr(sorted(suspect.elsewhere.items()))
-        said = (source.name, source.base, elsewhere)
-        return _digest(self.knowledge, source.octets, *(text.encode() for text in said)).hexdigest()
+        beside = repr([(other.name, other.base, things) for other, things in suspect.beside])
+        said = (source.name, source.base, elsewhere, beside)
+        octets = (source.octets, *(other.octets for other, _ in suspect.beside))
+        return _digest(self.knowledge, *octets, *(text.encode() for text in said)).hexdigest()
 
 
 CheckEach = Callable[[FileChecker, Sequence[UnclearedFile]], Iterable[list[Diagnostic]]]
@@ -154,10 +165,22 @@ def _loaded(source: SourceText) -> Prefiltered:
 def _uncleared(files: Iterable[SourceText], seen: dict[str, Prefiltered], index: TermIndex) -> Iterator[UnclearedFile]:
     """The files that the prefilter does not clear, or that describe what another file describes."""
     elsewhere = described_twice(seen)
-    for source in files:
-        found = seen.get(source.name)
-        if found is not None and (source.name in elsewhere or not (found.clear and index.clear(found))):
-            yield UnclearedFile(source, elsewhere.get(source.name, {}))
+    by_name = {source.name: source for source in files}
+    describing: dict[str, str] = {}
+    for name in sorted(seen):
+        for thing in (*seen[name].components, *seen[name].templates):
+            if not thing.startswith("_:"):
+                describing.setdefault(thing, name)
+    for name, source in by_name.items():
+        found = seen.get(name)
+        if found is None or (name not in elsewhere and found.clear and index.clear(found)):
+            continue
+        beside: dict[str, list[str]] = defaultdict(list)
+        if found.answers:
+            for thing in sorted(found.referred.difference(found.components, found.templates) & describing.keys()):
+                beside[describing[thing]].append(thing)
+        described = tuple((by_name[other], tuple(things)) for other, things in sorted(beside.items()))
+        yield UnclearedFile(source, elsewhere.get(name, {}), described)
 
 
 def _read(source: SourceText) -> tuple[list[Diagnostic], Prefiltered | None]:

@@ -15,7 +15,7 @@ from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.input_shapes import unaccepted_shapes
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.terms import lint
-from selfconf.rdf.validation.shape_violations import Shapes, shape_violations
+from selfconf.rdf.validation.shape_violations import AnswerJudge, Shapes, shape_violations
 from selfconf.rdf.validation.term_index import TermIndex
 from selfconf.rdf.validation.unfit_values import unfit_values
 from selfconf.rdf.validation.well_formedness import endless_lists, malformed_roles
@@ -40,11 +40,13 @@ class FileCheck:
     shapes: Shapes
     index: TermIndex
 
-    def of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
-        """The problems of one file, in no particular order."""
+    def of(
+        self, text: str, name: str, base: str, elsewhere: Mapping[str, str], beside: Graph | None = None
+    ) -> list[Diagnostic]:
+        """The problems of one file, in no particular order; `beside` is what others say of its configurations."""
         try:
             with processor_limit(FILE_SECONDS):
-                return self._of(text, name, base, elsewhere)
+                return self._of(text, name, base, elsewhere, Graph() if beside is None else beside)
         except NotTurtleError as error:
             message = f"This is not Turtle 1.1: {error.message.rstrip('.')}."
             return [at(Positions(name, text), error.offset, "SC-S01", message)]
@@ -57,12 +59,12 @@ class FileCheck:
             )
             return [at(Positions(name, text), 0, "SC-S05", message)]
 
-    def _of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str]) -> list[Diagnostic]:
+    def _of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str], beside: Graph) -> list[Diagnostic]:
         graph, positions = parse_with_positions(text, name, base)
         violations = list(endless_lists(graph, positions))
         if not violations:  # pySHACL does not come back from a list without an end
             violations = [
-                *shape_violations(graph, positions, self.shapes),
+                *shape_violations(graph, positions, self.shapes, AnswerJudge(beside, self.index)),
                 *malformed_roles(graph, positions),
                 *unaccepted_shapes(graph, positions),
             ]

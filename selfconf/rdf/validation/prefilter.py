@@ -41,6 +41,8 @@ _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
 _SCHEMA = frozenset((OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDFS.Class, RDF.Property))
 _PLACING = frozenset((RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty))
 """What gives its subject a place in a hierarchy."""
+_REFERRING = (SC.template, SC.component, SC.recruited, SC["from"], SC.to)
+"""How tasks and configurations name their templates and components."""
 TERM_POSITIONS = frozenset(
     (TYPE, SC.signalType, SC.parameterType, RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range)
 ) | {SH[name] for name in ("class", "path", "datatype", "nodeKind", "targetClass", "inversePath")}
@@ -86,6 +88,11 @@ class Prefiltered:
     relevant: bool = False
     """Whether the file speaks of anything that is validated."""
     components: list[str] = field(default_factory=list)
+    templates: list[str] = field(default_factory=list)
+    answers: bool = False
+    """Whether the file has a configuration."""
+    referred: set[str] = field(default_factory=set)
+    """What is named as a template or a component of a task or a configuration, and other things."""
     used: set[str] = field(default_factory=set)
     """The terms of vocabularies that the file uses: predicates, classes, signal types, datatypes."""
     signals: set[str] = field(default_factory=set)
@@ -184,6 +191,11 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
             found.object_properties.add(subject)
     if SC.Component in types:
         found.components.append(subject)
+    if SC.Template in types:
+        found.templates.append(subject)
+    found.answers = found.answers or SC.Configuration in types
+    for predicate in _REFERRING:
+        found.referred.update(value for value in properties.get(predicate, ()) if isinstance(value, str))
     found.signals.update(value for value in properties.get(SC.signalType, ()) if isinstance(value, str))
     found.relevant = found.relevant or any(_validated(term) for term in (*properties, *types))
 

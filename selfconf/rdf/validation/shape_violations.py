@@ -1,7 +1,9 @@
 """Judging one file by the shapes: pySHACL finds the violations, and each is taken to its place in the text.
 
 A file is judged alone, on its own triples, so that no file can change the verdict on another; the shapes
-come from nowhere else than from selfconf. A violation (SHACL, 3.6.2) names a focus node and mostly a
+come from nowhere else than from selfconf. Configurations alone are judged with descriptions from other files. In which
+mode one was computed is not known: types of its ports match along the hierarchy of the loaded ontologies, and only
+ports of equal types have to be connected. A violation (SHACL, 3.6.2) names a focus node and mostly a
 value or a path. It is shown where its author would look for it: at the value that must not be there, at
 the second of two values where one is allowed, at the node that lacks something.
 """
@@ -26,7 +28,9 @@ from selfconf.model.immutable import immutable
 from selfconf.rdf.permitted_fields import COMPONENT
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.read_shapes import ReadShapes
+from selfconf.rdf.validation.described_elsewhere import merged, with_hierarchy
 from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.term_index import TermIndex
 
 _SC = Namespace("https://w3id.org/selfconf#")
 _SH = Namespace("http://www.w3.org/ns/shacl#")
@@ -67,6 +71,10 @@ _LISTING = (_SHAPES.RolesList, _SHAPES.RolesDistinct, _SHAPES.FedRoleListed)
 """Shapes whose queries only find what `_lists_stray` sees first; rdflib goes down a list by recursion."""
 
 
+_ANSWERS = ((_SH.targetClass, _SC.Configuration), (_SH.targetObjectsOf, _SC.task))
+"""The targets of shapes that judge configurations."""
+_ALONG_HIERARCHY = frozenset((_SHAPES.ConnectionMatches,))
+"""The shapes that ask whether types match, which they may do by what lies above them."""
 _TARGETS = (_SH.targetClass, _SH.targetSubjectsOf, _SH.targetObjectsOf)
 """The kinds of targets (SHACL, 2.1.3) of the shapes that ship with selfconf."""
 
@@ -89,6 +97,11 @@ class Shapes:
         """Read the shapes, and find their targets."""
         targets = tuple((s, kind, o) for kind in _TARGETS for s, o in shapes.subject_objects(kind))
         return cls(shapes, ReadShapes(shapes), targets)
+
+    @property
+    def answers(self) -> frozenset[Node]:
+        """The shapes that judge configurations."""
+        return frozenset(shape for shape, kind, value in self.targets if (kind, value) in _ANSWERS)
 
     def needed(self, graph: Graph) -> frozenset[Node]:
         """The shapes with targets that a file may violate."""
@@ -172,10 +185,37 @@ def reported_violations(
         )
 
 
-def shape_violations(graph: Graph, positions: Positions, shapes: Shapes) -> list[Diagnostic]:
+@immutable
+class AnswerJudge:
+    """By what the configurations of a file are judged besides the file."""
+
+    beside: Graph
+    """What other files say of their templates and components."""
+    index: TermIndex
+
+    def violations(self, graph: Graph, read: ReadShapes, only: frozenset[Node]) -> Iterator[ReportedViolation]:
+        """What some shapes find in the configurations of a file."""
+        if not only:
+            return
+        whole = merged(graph, self.beside)
+        of_others = set(self.beside.subjects()) - set(graph.subjects())
+        found = list(reported_violations(whole, read, only - _ALONG_HIERARCHY))
+        if not only.isdisjoint(_ALONG_HIERARCHY):
+            found += reported_violations(with_hierarchy(whole, self.index), read, only & _ALONG_HIERARCHY)
+        yield from (violation for violation in found if violation.focus not in of_others)
+
+
+def shape_violations(
+    graph: Graph, positions: Positions, shapes: Shapes, judge: AnswerJudge | None = None
+) -> list[Diagnostic]:
     """Every violation in one file, in no particular order."""
+    judge = judge or AnswerJudge(Graph(), TermIndex())
     places = _Places(graph, positions, shapes.all)
-    reported = reported_violations(graph, shapes.read, shapes.needed(graph))
+    needed = shapes.needed(graph)
+    reported = [
+        *reported_violations(graph, shapes.read, needed - shapes.answers),
+        *judge.violations(graph, shapes.read, needed & shapes.answers),
+    ]
     found = [(places.offset(violation), violation) for violation in reported]
     return [
         at(

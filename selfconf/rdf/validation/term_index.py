@@ -92,13 +92,17 @@ class TermIndex:
 
     def serves(self, offered: str, wanted: str) -> bool:
         """Whether a class is another or lies below it, by what the loaded ontologies say."""
+        return wanted in self.at_or_above(offered)
+
+    def at_or_above(self, offered: str) -> set[str]:
+        """A class with all that the loaded ontologies put above it."""
         found, waiting = {offered}, [offered]
         while waiting:
             lower = waiting.pop()
             higher = {upper for one, upper in self.above if one == lower} - found
             found |= higher
             waiting += higher
-        return wanted in found
+        return found
 
     def confused(self, iri: str) -> str | None:
         """The known namespace that this one is easily confused with, if it is another.
