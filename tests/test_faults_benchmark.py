@@ -16,7 +16,8 @@ from benchmarks.faults import __main__ as faults_program
 from benchmarks.faults.__main__ import Series, report
 from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS
 from benchmarks.faults.ecology import HUB, Ecology, Halted, Sign, lives_at_once
-from benchmarks.faults.trial import KINDS, PHASES, PROMISES, ROUTED_VICTIMS, Outcome, Plan, Trial, plan
+from benchmarks.faults.plan import KINDS, PHASES, ROUTED_VICTIMS, Plan, plan
+from benchmarks.faults.trial import PROMISES, Outcome, Trial
 from tests.benchmark import short_run
 
 
@@ -189,3 +190,48 @@ def test_a_fault_of_a_reservation_comes_though_all_components_live_already(tmp_p
     assert '"waking' in seen[0].replace("\\", "")
     assert "waking" not in seen[1]
     assert outcome.took["a task comes to the phase of the fault"] < 25.0
+
+
+class Said:
+    """A configurator, which says more each time that it is read."""
+
+    def __init__(self, *more: tuple[str, ...]) -> None:
+        self.acts: list[str] = ["running"]
+        self._more = list(more)
+
+    def read(self) -> None:
+        self.acts += self._more.pop(0)
+
+
+class Asked(Trial):
+    """A trial in which `status` says one thing after the other."""
+
+    def __init__(self, said: Said, *answers: str) -> None:
+        self.configurator, self.outcome = said, Outcome("1/0", "running: kill drive")  # type: ignore[assignment]  # only `acts` and `read` are used
+        self.answers = list(answers)
+        self.waited = 0
+
+    def _status(self) -> tuple[float, str]:
+        return 0.5, self.answers.pop(0)
+
+    def _await_running(self) -> None:
+        self.waited += 1
+
+
+STATUS = "status names the task that runs"
+
+
+def test_status_is_asked_anew_only_where_the_task_did_not_run_on_meanwhile() -> None:
+    disturbed = Asked(Said(("lost", "composed"), ()), 'phase "reserving"', 'phase "running"')
+    disturbed._judge_status()
+    assert (disturbed.waited, disturbed.outcome.took) == (1, {STATUS: 0.5})
+    wrong = Asked(Said(()), 'phase "reserving"', 'phase "running"')
+    wrong._judge_status()
+    assert wrong.outcome.broken == {STATUS: '99.00 s phase "reserving"'}
+
+
+def test_status_that_never_names_the_task_breaks_the_promise() -> None:
+    never = Asked(Said(("lost",), ("connected",), ("cut off",)), "", "", "")
+    never._judge_status()
+    assert STATUS in never.outcome.broken
+    assert never.answers == []

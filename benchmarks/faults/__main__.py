@@ -25,7 +25,8 @@ from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
 from pathlib import Path
 
 from benchmarks.faults.ecology import Ecology, Halted
-from benchmarks.faults.trial import PROMISES, ROUTED_VICTIMS, VICTIMS, Outcome, Plan, Trial, plan
+from benchmarks.faults.plan import ROUTED_VICTIMS, VICTIMS, Plan, plan
+from benchmarks.faults.trial import PROMISES, Outcome, Trial
 from benchmarks.machine import described, table
 
 TOLD = 10
