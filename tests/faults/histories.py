@@ -14,12 +14,13 @@ plays it again and drops every action that is not needed (`tests.faults.replay`)
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial, wraps
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from unittest import mock
 
 from selfconf import discovery
@@ -31,6 +32,7 @@ from selfconf.deployment import TaskRunner
 from selfconf.deployment.runner import LONGEST_PAUSE
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
+from selfconf.protocol.activation import Activation
 from selfconf.protocol.messages import Wire
 from selfconf.sdk import runtime as component_runtime
 from selfconf.sdk.component import Refused
@@ -55,6 +57,25 @@ TURNS = 3
 """How often everybody speaks at most in the end, until every task is decided meanwhile."""
 
 
+Found = TypeVar("Found")
+
+
+def looked_up_once(look_up: Callable[[History], Found]) -> Callable[[History], Found]:
+    """Keep what is found in a history for as long as this stands still."""
+
+    @wraps(look_up)
+    def find(history: History) -> Found:
+        known = history.known
+        if known is None:
+            return look_up(history)
+        if find not in known:
+            known[find] = look_up(history)
+        found: Found = known[find]
+        return found
+
+    return find
+
+
 def startable(advertisement: str) -> str:
     """An advertisement with a command, by which its site can start the component."""
     return advertisement.removesuffix(".") + '; sc:grounding [ sc:command "simulated" ] .'
@@ -69,6 +90,8 @@ class Life:
     recorder: Speaker
     node: MemoryBus
     thread: SimulatedCodeThread
+    _held: tuple[Activation | None, bool, Mapping[str, bool]] = field(default=(None, False, {}), repr=False)
+    """By whom it is held, and the activation that says so."""
 
     @property
     def awake(self) -> bool:
@@ -79,6 +102,16 @@ class Life:
     def component(self) -> IRI:
         """Which component it is a life of."""
         return self.runtime.profile.component
+
+    @property
+    def holds(self) -> Mapping[str, bool]:
+        """The supervisors of the tasks that hold it, each with whether it acts for it."""
+        activation, active = self.runtime.activation, self.runtime.active
+        known, acted, held = self._held
+        if known is not activation or acted is not active:
+            held = {hold.claim.supervisor: hold.active and active for hold in activation.holds}
+            self._held = activation, active, held
+        return held
 
     @property
     def followed(self) -> set[tuple[str, Wire]]:
@@ -138,6 +171,8 @@ class History:
         self._nodes: dict[str, MemoryBus] = {}
         self._isolated: set[str] = set()
         self._powerless: list[MemoryBus] = []
+        self.known: dict[Callable[[History], object], Any] | None = None
+        """What was looked up while the history stands still; None while it goes on."""
         for name in ecology.sites:
             self._begin_site(name)
         for name in ecology.processes:
@@ -247,7 +282,17 @@ class History:
 
     # What there is.
 
+    @contextmanager
+    def standing_still(self) -> Iterator[None]:
+        """Look up only once what is asked for several times, while nothing happens."""
+        self.known = {}
+        try:
+            yield
+        finally:
+            self.known = None
+
     @property
+    @looked_up_once
     def lives(self) -> list[Life]:
         """The lives of all components, with those of the composites that live now."""
         return [*self.processes, *self.composites()]
@@ -267,6 +312,7 @@ class History:
             if composites.living and self.node(site) is not None:
                 yield from composites.living.values()
 
+    @looked_up_once
     def living(self) -> list[TaskRunner]:
         """The configurators that have not died, those inside of composites too."""
         runners = [inside.runner for inside in self.insides() if inside.runner is not None]

@@ -6,7 +6,8 @@ that may not last for longer than its bound; a bound of zero means never. What m
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from selfconf.bus.memory import LEASE
@@ -19,7 +20,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.supervision import GRACE
-from tests.faults.histories import ASKED, History, Life
+from tests.faults.histories import ASKED, History, Life, looked_up_once
 
 CALLS = 2.0
 """Seconds after which a configurator looks again at a call that was not answered."""
@@ -49,15 +50,9 @@ def retries(history: History) -> float:
     return 20 * CALLS if history.script.faults.loss else 2 * CALLS
 
 
-def holds(life: Life) -> dict[str, bool]:
-    """The supervisors of the tasks that hold a component, each with whether it acts for it."""
-    activation = life.runtime.activation
-    return {hold.claim.supervisor: hold.active and life.runtime.active for hold in activation.holds}
-
-
 def supervisors(history: History, life: Life) -> Iterator[TaskRunner]:
     """The living configurators that a component acts for."""
-    held = holds(life)
+    held = life.holds
     return (agent for agent in history.living() if held.get(agent.supervisor))
 
 
@@ -67,34 +62,46 @@ def node_of(agent: TaskRunner) -> MemoryBus:
     return agent.bus
 
 
-def awake(history: History) -> Iterator[Life]:
+@looked_up_once
+def awake(history: History) -> list[Life]:
     """The lives that are neither over, nor paused, nor busy."""
-    return (life for life in history.lives if life.awake)
+    return [life for life in history.lives if life.awake]
+
+
+@looked_up_once
+def acting(history: History) -> list[Life]:
+    """The lives of `awake` that act."""
+    return [life for life in awake(history) if life.runtime.active]
+
+
+@looked_up_once
+def lives_by_component(history: History) -> Mapping[IRI, list[Life]]:
+    """The lives of each component that are not over."""
+    found: dict[IRI, list[Life]] = {}
+    for life in history.lives:
+        if life.node.open:
+            found.setdefault(life.component, []).append(life)
+    return found
 
 
 def two_lives_act(history: History) -> Iterator[str]:
     """One life acts: of several processes of one component at most one is active."""
-    acting: dict[str, int] = {}
-    for life in awake(history):
-        if life.runtime.active:
-            acting[life.name] = acting.get(life.name, 0) + 1
-    yield from (f"{name} acts in {number} lives" for name, number in acting.items() if number > 1)
+    numbers = Counter(life.name for life in acting(history))
+    yield from (f"{name} acts in {number} lives" for name, number in numbers.items() if number > 1)
 
 
 def acts_for_nobody(history: History) -> Iterator[str]:
     """A component that acts is held by a configurator that lives, and that it sees."""
-    for life in awake(history):
-        if life.runtime.active:
-            seen = [one for one in supervisors(history, life) if history.network.reaches(node_of(one), life.node)]
-            if not seen:
-                yield f"{life.name} {life.runtime.life} acts for {sorted(holds(life))}, which is gone"
+    for life in acting(history):
+        if not any(history.network.reaches(node_of(one), life.node) for one in supervisors(history, life)):
+            yield f"{life.name} {life.runtime.life} acts for {sorted(life.holds)}, which is gone"
 
 
 def acts_unknown(history: History) -> Iterator[str]:
     """The configurator of a component that acts counts on it, or wants it released."""
-    for life in awake(history):
-        component = life.runtime.profile.component
-        for agent in supervisors(history, life) if life.runtime.active else ():
+    for life in acting(history):
+        component = life.component
+        for agent in supervisors(history, life):
             known = component in agent.state.held or component in agent.state.owed
             if not known and not node_of(agent).paused:
                 yield f"{life.name} {life.runtime.life} acts for {agent.name}, which does not know"
@@ -103,9 +110,8 @@ def acts_unknown(history: History) -> Iterator[str]:
 def held_for_nothing(history: History) -> Iterator[str]:
     """A component is held only by tasks that know of it."""
     for life in awake(history):
-        component = life.runtime.profile.component
-        held = holds(life)
-        for agent in history.living():
+        component, held = life.component, life.holds
+        for agent in history.living() if held else ():
             known = component in agent.state.held or component in agent.state.owed
             if agent.supervisor in held and not known and not node_of(agent).paused:
                 yield f"{life.name} {life.runtime.life} is held for {agent.name}, which does not know"
@@ -113,26 +119,26 @@ def held_for_nothing(history: History) -> Iterator[str]:
 
 def obeys_two(history: History) -> Iterator[str]:
     """No component acts for two tasks that disagree."""
-    for life in awake(history):
-        wants = {str(hold.wants) for hold in life.runtime.activation.holds if hold.active}
-        if life.runtime.active and len(wants) > 1:
+    for life in acting(history):
+        holds = [hold for hold in life.runtime.activation.holds if hold.active]
+        if len(holds) > 1 and len({str(hold.wants) for hold in holds}) > 1:
             yield f"{life.name} {life.runtime.life} acts for tasks that disagree"
 
 
 def acts_on_part(history: History) -> Iterator[str]:
     """An actuator acts only while no other task holds a part of its configuration."""
-    for life in awake(history):
-        if life.runtime.active and not life.runtime.profile.outputs:
+    for life in acting(history):
+        if not life.runtime.profile.outputs:
             for agent in supervisors(history, life):
                 for component in agent.configuration.components if agent.configuration is not None else ():
                     for other in strangers(history, component, agent):
                         yield f"{life.name} acts for {agent.name}, and {component.short} is held by {other}"
 
 
-def strangers(history: History, component: str, agent: TaskRunner) -> Iterator[str]:
+def strangers(history: History, component: IRI, agent: TaskRunner) -> Iterator[str]:
     """The other tasks that hold a component which cannot be shared, and its only life."""
-    lives = [life for life in history.lives if life.node.open and life.runtime.profile.component == component]
-    if not any(holds(life).get(agent.supervisor) is not None for life in lives):
+    lives = lives_by_component(history).get(component, ())
+    if not any(agent.supervisor in life.holds for life in lives):
         for life in lives:
             for hold in life.runtime.activation.holds:
                 if not life.runtime.profile.is_shareable:
@@ -152,51 +158,49 @@ def runs_without(history: History) -> Iterator[str]:
                     yield f"{agent.name} is running without {component.short}"
 
 
-def _acts_for(history: History, agent: TaskRunner, component: str) -> bool:
-    return any(
-        life.runtime.profile.component == component and holds(life).get(agent.supervisor)
-        for life in history.lives
-        if life.node.open
-    )
+def _acts_for(history: History, agent: TaskRunner, component: IRI) -> bool:
+    return any(life.holds.get(agent.supervisor) for life in lives_by_component(history).get(component, ()))
 
 
 def runs_with_anothers(history: History) -> Iterator[str]:
     """No two tasks run with one component that cannot be shared."""
-    running: dict[str, str] = {}
-    alone = {life.runtime.profile.component for life in history.lives if not life.runtime.profile.is_shareable}
+    running: dict[IRI, str] = {}
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and not node_of(agent).paused and agent.configuration is not None:
-            for component in alone.intersection(agent.configuration.components):
-                if component in running:
+            for component in {*agent.configuration.components}:
+                if component in running and component in alone(history):
                     yield f"{agent.name} and {running[component]} both run with {component.short}"
                 running[component] = agent.name
 
 
+@looked_up_once
+def alone(history: History) -> set[IRI]:
+    """The components that cannot be shared."""
+    return {life.component for life in history.lives if not life.runtime.profile.is_shareable}
+
+
 def acts_blind(history: History) -> Iterator[str]:
     """No actuator is on while nobody feeds it; one that is in `started` comes to rest as soon as that returns."""
-    for life in awake(history):
-        if life.thread.starting:
-            continue
-        told = [said for said in life.recorder.said if said in (("started",), ("stopped",))]
+    for life in acting(history):
         actuates = bool(life.runtime.profile.signal_inputs) and not life.runtime.profile.outputs
-        if actuates and life.runtime.active and told[-1:] == [("started",)]:
+        if not actuates or life.thread.starting:
+            continue
+        told = (said for said in reversed(life.recorder.said) if said in (("started",), ("stopped",)))
+        if next(told, None) == ("started",):
             sources = {wire.component for _, wire in life.followed}
             if not any(feeds(history, source, life) for source in sources):
                 yield f"{life.name} {life.runtime.life} is on, and nobody feeds it"
 
 
-def feeds(history: History, source: str, life: Life) -> bool:
+def feeds(history: History, source: IRI, life: Life) -> bool:
     """Whether a component acts, and its signals get through."""
-    return any(
-        one.runtime.profile.component == source and one.runtime.active and history.network.reaches(one.node, life.node)
-        for one in awake(history)
-    )
+    return any(one.component == source and history.network.reaches(one.node, life.node) for one in acting(history))
 
 
 def hangs_unnoticed(history: History) -> Iterator[str]:
     """A component whose code hangs does not count as active."""
-    for life in awake(history):
-        if life.thread.hangs and life.runtime.active:
+    for life in acting(history):
+        if life.thread.hangs:
             yield f"{life.name} {life.runtime.life} hangs, and counts as active"
 
 
@@ -275,7 +279,7 @@ def wired_otherwise(history: History) -> Iterator[str]:
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and agent.configuration is not None:
             for life in awake(history):
-                if holds(life).get(agent.supervisor) and life.name not in history.script.ecology.composites:
+                if life.holds.get(agent.supervisor) and life.name not in history.script.ecology.composites:
                     wanted = {
                         (c.input, *end)
                         for c in agent.configuration.connections
@@ -304,14 +308,14 @@ def ends_behind(history: History, agent: TaskRunner, source: IRI, output: str) -
 
 def unanswered(history: History) -> Iterator[str]:
     """Every operation that a component needs is answered, by a component that acts."""
-    acting = {life.component for life in awake(history) if life.runtime.active}
+    components = {life.component for life in acting(history)}
     for life in awake(history):
         for needed in life.runtime.profile.needed_operations:
             said = life.recorder.said
             if life.runtime.active and (ASKED, needed.name) in said:
                 after = said[len(said) - said[::-1].index((ASKED, needed.name)) :]
                 answers = [one for one in after if one[0] == needed.name.removesuffix(CALL_MARK)]
-                if not any(len(one) == 3 and one[1] == "answered" and one[2] in acting for one in answers):
+                if not any(len(one) == 3 and one[1] == "answered" and one[2] in components for one in answers):
                     yield f"{life.name} has asked by {needed.name}, and has come to {answers}"
 
 
@@ -320,7 +324,7 @@ def lacks_a_value(history: History) -> Iterator[str]:
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and agent.configuration is not None:
             for life in awake(history):
-                if holds(life).get(agent.supervisor):
+                if life.holds.get(agent.supervisor):
                     said = since_rest(life)
                     for setting in agent.configuration.settings:
                         mine = setting.component == life.runtime.profile.component
@@ -343,10 +347,9 @@ def started_without_values(history: History) -> Iterator[str]:
 
 def unheard(history: History) -> Iterator[str]:
     """Every input has heard what each output that it follows has issued last."""
-    acting = [life for life in awake(history) if life.runtime.active]
-    for life in acting:
+    for life in acting(history):
         for port, wire in life.followed:
-            for source in (one for one in acting if one.runtime.profile.component == wire.component):
+            for source in (one for one in acting(history) if one.runtime.profile.component == wire.component):
                 if (port, f"the last of {source.runtime.life}") not in life.recorder.said:
                     yield f"{life.name} has not heard the last of {source.name}"
 

@@ -18,7 +18,7 @@ from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.inputs import HANDOVER, JUST_COME, Inputs
 from tests.faults.histories import History, Life
-from tests.faults.invariants import Invariant, awake, feeds, holds, node_of
+from tests.faults.invariants import Invariant, acting, awake, feeds, node_of
 
 STAYS, GOES_ON = "a failed upgrade leaves what ran", "what runs on does not stop"
 DELIVERS = "what is new delivers first"
@@ -34,8 +34,8 @@ def starves(history: History) -> Iterator[str]:
     """
     for agent in history.agents:
         before = agent.state.fallback
-        for life in awake(history) if before is not None and history.lab.is_open(agent) else ():
-            if life.runtime.active and holds(life).get(agent.supervisor) and isinstance(life.runtime.inputs, Inputs):
+        for life in acting(history) if before is not None and history.lab.is_open(agent) else ():
+            if life.holds.get(agent.supervisor) and isinstance(life.runtime.inputs, Inputs):
                 assert before is not None
                 yield from _starving(history, agent, before, life)
 
@@ -56,7 +56,7 @@ def _is_lost(history: History, agent: TaskRunner, component: IRI, sink: Life) ->
         life.component == component
         and history.network.reaches(life.node, sink.node)
         and life.runtime.activation.phase is not ActivationPhase.FAILED
-        and agent.supervisor in holds(life)
+        and agent.supervisor in life.holds
         for life in awake(history)
     )
 
@@ -142,7 +142,7 @@ class UpgradeWatch:
     def _acting(self, agent: TaskRunner, configuration: Configuration) -> Iterator[Life]:
         for life in awake(self._history):
             acts = life.runtime.activation.phase is ActivationPhase.ACTIVE
-            if acts and life.component in configuration.components and agent.supervisor in holds(life):
+            if acts and life.component in configuration.components and agent.supervisor in life.holds:
                 yield life
 
     def _follow(self, agent: TaskRunner, state: State, going: Upgrade) -> None:
@@ -183,8 +183,8 @@ class UpgradeWatch:
 
     def _started(self, component: IRI) -> float:
         """When the life of a component that acts was started."""
-        acting = (life for life in awake(self._history) if life.component == component and life.runtime.active)
-        return max((life.recorder.started_at for life in acting), default=0.0)
+        lives = (life for life in acting(self._history) if life.component == component)
+        return max((life.recorder.started_at for life in lives), default=0.0)
 
     def _is_fed(self, life: Life) -> bool:
         ports = {port for port, _ in life.followed}

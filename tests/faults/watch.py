@@ -70,9 +70,10 @@ class Watch:
     def look(self) -> None:
         """Look at the ecology as it is now; conditions need a second look only if something has changed."""
         if self._is_changed():
-            self._note_composed()
-            self.upgrades.look()
-            self._compare()
+            with self._history.standing_still():
+                self._note_composed()
+                self.upgrades.look()
+                self._compare()
         now = self._history.network.time
         if now < self._overdue:
             return
