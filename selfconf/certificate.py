@@ -191,7 +191,7 @@ class _Check:
 
     def _takes(self, taken: IRI | None, given: IRI | None) -> bool:
         """Return whether what is given may go where a type is taken; None is nothing."""
-        return taken is given if None in (taken, given) else self.hierarchy.matches(given or IRI(""), taken or IRI(""))
+        return taken is given if taken is None or given is None else self.hierarchy.matches(given, taken)
 
     def _values(self, players: Players) -> Iterator[str]:
         names = {parameter.iri: parameter.name for parameter in self.template.parameters}

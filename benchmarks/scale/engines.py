@@ -136,15 +136,15 @@ def profiles(graph: rdflib.Graph) -> list[Profile]:
 
     def ports(component: rdflib.term.Node, link: str, kind: str) -> Sequence[tuple[str, IRI]]:
         nodes = graph.objects(component, sc[link])
-        return sorted((str(graph.value(node, sc.name)), IRI(graph.value(node, sc[kind]))) for node in nodes)
+        return sorted((str(graph.value(node, sc.name)), IRI(str(graph.value(node, sc[kind])))) for node in nodes)
 
     found = []
     for component in graph.subjects(rdflib.RDF.type, sc.Component):
-        said = [(IRI(p), from_rdflib(o)) for p, o in graph.predicate_objects(component)]
+        said = [(IRI(str(p)), from_rdflib(o)) for p, o in graph.predicate_objects(component)]
         found.append(
             Profile(
-                component=IRI(component),
-                types=frozenset(IRI(kind) for kind in graph.objects(component, rdflib.RDF.type)),
+                component=IRI(str(component)),
+                types=frozenset(IRI(str(kind)) for kind in graph.objects(component, rdflib.RDF.type)),
                 properties=tuple(sorted((pair for pair in said if pair[0] not in STRUCTURE), key=property_order)),
                 ports=Ports(
                     tuple(Input(name, (signal,)) for name, signal in ports(component, "hasInput", "signalType")),

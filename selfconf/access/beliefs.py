@@ -24,7 +24,7 @@ def believed(folder: Path) -> Mapping[IRI, str]:
         raise AuthorError(f"cannot be read: {error}", file=str(path)) from None
     if not isinstance(said, dict) or not all(isinstance(site, str) for site in said.values()):
         raise AuthorError("is no object of components, each with the name of a site", file=str(path))
-    return {IRI(component): site for component, site in said.items()}
+    return {IRI.unchecked(component): site for component, site in said.items()}
 
 
 def believe(folder: Path, component: IRI, site: str) -> None:

@@ -75,7 +75,7 @@ class Principal:
     def written(cls, text: str) -> Principal:
         """The principal that a person has written: a common name, or the IRI of a component. Raises AuthorError."""
         if ":" in text:
-            return cls.component(IRI(text.strip("<>")))
+            return cls.component(IRI.unchecked(text.strip("<>")))
         try:
             return cls.of(text)
         except PeerError:

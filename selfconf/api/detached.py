@@ -88,7 +88,7 @@ def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Compos
             options.get("steps"),
             options.get("seconds"),
         )
-        document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI(record.wanted))
+        document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI.unchecked(record.wanted))
         task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
         return task, method, method.composer(task)
 

@@ -250,9 +250,9 @@ class EndpointEcology(Ecology):
 def _term(cell: Mapping[str, str]) -> Term:
     """A term of SPARQL 1.1 Query Results JSON."""
     if cell["type"] == "uri":
-        return IRI(cell["value"])
+        return IRI.unchecked(cell["value"])
     if cell["type"] == "bnode":
         return BlankNode(f"_:{cell['value']}")
     if "xml:lang" in cell:
         return Literal(cell["value"], RDF.langString, cell["xml:lang"])
-    return Literal(cell["value"], IRI(cell["datatype"])) if "datatype" in cell else Literal(cell["value"])
+    return Literal(cell["value"], IRI.unchecked(cell["datatype"])) if "datatype" in cell else Literal(cell["value"])

@@ -54,7 +54,9 @@ def main() -> None:
         for text in asked["advertisements"]:
             good, _ = read_advertisements(text.encode(), "")  # what does not conform plays in no task
             ecology.update({one.component: one for one in good})
-        told = explained_refusal(decode(asked["record"].encode(), TaskRecord), ecology, set(map(IRI, asked["lost"])))
+        told = explained_refusal(
+            decode(asked["record"].encode(), TaskRecord), ecology, set(map(IRI.unchecked, asked["lost"]))
+        )
     except (SelfconfError, MemoryError, RecursionError) as error:
         told = {"detail": str(error) or type(error).__name__}
     print(json.dumps(told))

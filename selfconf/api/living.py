@@ -332,7 +332,7 @@ class LivingEcology(Ecology):
             except TurtleError as error:
                 complaints.append(f"left out a configuration: {error}")
                 continue
-            dataset.add(IRI(f"urn:selfconf:{sample.key}"), document.triples())
+            dataset.add(IRI.unchecked(f"urn:selfconf:{sample.key}"), document.triples())
         self._complaints = tuple(complaints)
         return dataset
 

@@ -71,7 +71,13 @@ class LivingTask:
     def kept(cls, record: TaskRecord) -> LivingTask:
         """A task that the sites keep and that none runs now."""
         return cls(
-            task_name(record.task), record.priority, record.beginning, "kept", IRI(record.wanted), "", detached=True
+            task_name(record.task),
+            record.priority,
+            record.beginning,
+            "kept",
+            IRI.unchecked(record.wanted),
+            "",
+            detached=True,
         )
 
     def body(self) -> dict[str, object]:

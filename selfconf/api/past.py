@@ -116,14 +116,14 @@ def _events(several: list[PastConfiguration]) -> Iterator[Mapping[str, Any]]:
 
 
 def _configuration(name: str, document: Document) -> PastConfiguration | None:
-    body, node = deployed_body(document), IRI(name)
+    body, node = deployed_body(document), IRI.unchecked(name)
     generated = _moment(document.value(node, PROV.generatedAtTime))
     if body is None or generated is None:
         return None
     asked = document.value(node, SC.task)
     agent = document.value(node, PROV.wasAttributedTo)
     named = None if asked is None else document.value(asked, SC.name)
-    task = _text(named) or (asked.short if isinstance(asked, IRI) else IRI(body["template"]).short)
+    task = _text(named) or (asked.short if isinstance(asked, IRI) else IRI.unchecked(body["template"]).short)
     failures = sorted(_failures(document, node), key=lambda failure: failure["time"])
     ended = _moment(document.value(node, PROV.invalidatedAtTime))
     revises = str(document.value(node, PROV.wasRevisionOf) or "")

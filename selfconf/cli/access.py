@@ -61,7 +61,7 @@ def _believe(given: argparse.Namespace, site: str, component: str) -> int:
     folder = rendezvous.keys_folder(given.keys)
     if folder is None:
         raise AuthorError("whose sites shall believe it? give their folder of keys: --keys DIR")
-    believe(folder, IRI(component.strip("<>")), site)
+    believe(folder, IRI.unchecked(component.strip("<>")), site)
     print(f"the sites of {folder} believe that {component} is that of site {site}")
     return 0
 
@@ -75,7 +75,7 @@ def _task(given: argparse.Namespace, ecology: LivingEcology) -> int:
         print(json.dumps({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]}))
         return 0
     for component, heard in links.items():
-        print(f"{IRI(component)!r} hears {', '.join(repr(IRI(one)) for one in heard) or 'no component'}")
+        print(f"{component!r} hears {', '.join(map(repr, heard)) or 'no component'}")
     return 0
 
 

@@ -92,9 +92,9 @@ def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> 
     for line in _held(status, names) if deployed is None else _configuration(deployed, status, names):
         yield f"  {line}"
     for lost, cause in status.lost.items():
-        yield f"  lost: {names(IRI(lost))} ({cause})"
+        yield f"  lost: {names(IRI.unchecked(lost))} ({cause})"
     for slow, count in status.dropped.items():
-        yield f"  too slow: {names(IRI(slow))} has passed over {count} signals"
+        yield f"  too slow: {names(IRI.unchecked(slow))} has passed over {count} signals"
     for component in status.owed:
         yield f"  out of control: {names(component)} was turned off and has not obeyed"
 
@@ -108,22 +108,23 @@ def _configuration(body: Mapping[str, Any], status: Status, names: Names) -> Ite
     """What is deployed: which values are bound, which component plays which role, and which feeds which."""
     for name, value in body["bindings"].items():
         yield f"{one_line(name)} = {_value(value, names)}"
-    width = max((len(names(IRI(role["role"]))) for role in body["roles"]), default=0)
+    width = max((len(names(IRI.unchecked(role["role"]))) for role in body["roles"]), default=0)
     for role in body["roles"]:
-        yield f"{names(IRI(role['role'])):{width}}  {', '.join(names(IRI(one)) for one in role['components'])}"
+        players = ", ".join(names(IRI.unchecked(one)) for one in role["components"])
+        yield f"{names(IRI.unchecked(role['role'])):{width}}  {players}"
     for one in body["recruits"]:
-        yield f"recruit: {names(IRI(one))}"
+        yield f"recruit: {names(IRI.unchecked(one))}"
     played = {*body["recruits"], *(one for role in body["roles"] for one in role["components"])}
     yield from (f"also held: {names(one)}" for one in status.components if one not in played)
     for wire in body["connections"]:
-        source, sink = (names(IRI(wire[end]["component"])) for end in ("from", "to"))
+        source, sink = (names(IRI.unchecked(wire[end]["component"])) for end in ("from", "to"))
         yield f"{source} {one_line(wire['from']['output'])} -> {sink} {one_line(wire['to']['input'])}"
 
 
 def _value(value: Any, names: Names) -> str:
     """A value as people read it: a short IRI, or a literal as JSON."""
     is_iri = isinstance(value, str) and value.startswith(("http://", "https://", "urn:"))
-    return names(IRI(value)) if is_iri else json.dumps(value, ensure_ascii=False)
+    return names(IRI.unchecked(value)) if is_iri else json.dumps(value, ensure_ascii=False)
 
 
 def _body(status: Status, deployed: Mapping[str, Any] = MappingProxyType({})) -> dict[str, object]:

@@ -27,12 +27,20 @@ def recorded_configuration(record: Mapping[str, Any]) -> Configuration:
     """The configuration that a record speaks of. Raises PeerError for what is none."""
     try:
         return Configuration(
-            IRI(record["template"]),
-            tuple(Assignment(IRI(role), tuple(map(IRI, components))) for role, components in record["roles"]),
-            tuple(Connection(IRI(a), output, IRI(b), port) for a, output, b, port in record["connections"]),
-            tuple(ParameterSetting(IRI(c), name, decode_term(value)) for c, name, value in record["parameters"]),
+            IRI.unchecked(record["template"]),
+            tuple(
+                Assignment(IRI.unchecked(role), tuple(map(IRI.unchecked, components)))
+                for role, components in record["roles"]
+            ),
+            tuple(
+                Connection(IRI.unchecked(a), output, IRI.unchecked(b), port)
+                for a, output, b, port in record["connections"]
+            ),
+            tuple(
+                ParameterSetting(IRI.unchecked(c), name, decode_term(value)) for c, name, value in record["parameters"]
+            ),
             {name: decode_term(value) for name, value in record["bindings"].items()},
-            tuple(map(IRI, record.get("recruits", ()))),
+            tuple(map(IRI.unchecked, record.get("recruits", ()))),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise PeerError(f"not the record of a configuration: {error!r}") from None

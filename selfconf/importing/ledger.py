@@ -30,4 +30,4 @@ class ImportLedger:
 
     def minted(self, *path: str) -> IRI:
         """The IRI of something to which its source gives a name, but no IRI."""
-        return IRI(self.namespace + "/".join(map(slug, path)))
+        return IRI.unchecked(self.namespace + "/".join(map(slug, path)))

@@ -23,10 +23,11 @@ def absolute(text: str) -> IRI | None:
     if not _ABSOLUTE.match(text):
         return None
     try:
-        ox_term(IRI(text))
+        iri = IRI(text)
+        ox_term(iri)
     except ValueError:
         return None
-    return IRI(text)
+    return iri
 
 
 def slug(text: str) -> str:

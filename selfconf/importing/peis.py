@@ -143,7 +143,7 @@ def _component(name: str, parts: list[Part], source: SourceDocument, ledger: Imp
     said = [(RDFS.comment, Literal(parts[2]))] if isinstance(parts[2], str) and parts[2] else []
     return ImportedComponent(
         ledger.names.component(ledger.minted(called), source),
-        (kind or IRI(ledger.namespace + "Component"),),
+        (kind or IRI.unchecked(ledger.namespace + "Component"),),
         labels=(Literal(called),),
         properties=(
             *said,

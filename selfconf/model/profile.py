@@ -86,12 +86,12 @@ class Operation(IRI):
     @classmethod
     def of(cls, response: IRI | None) -> Operation:
         """The type of operations with that type of response; None stands for one that answers nothing."""
-        return cls(f"-> <{response or ''}>")
+        return cls.unchecked(f"-> <{response or ''}>")
 
     @property
     def response(self) -> IRI | None:
         """The type of what is answered; None if nothing is."""
-        return IRI(self[4:-1]) or None
+        return IRI.unchecked(self[4:-1]) or None
 
     @property
     def short(self) -> str:

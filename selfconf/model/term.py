@@ -5,22 +5,55 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from selfconf.model.immutable import immutable
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 XSD_NAMESPACE = "http://www.w3.org/2001/XMLSchema#"
 
 
+_NOT_IN_AN_IRI = re.compile(r'[\x00-\x20<>"{}|^`\\]')
+"""The characters that Turtle and SPARQL allow in no IRI (their production IRIREF)."""
+
+
 class IRI(str):
-    """An absolute IRI, without the angle brackets.
+    """An absolute IRI, without the angle brackets. Raises ValueError for a text that no IRI can be.
 
     >>> IRI("https://example.org/my-home#clock")
     <https://example.org/my-home#clock>
     >>> IRI("https://example.org/my-home#clock").short
     'clock'
+    >>> IRI("https://example.org/my home")
+    Traceback (most recent call last):
+    ValueError: 'https://example.org/my home' is no IRI: it has ' ', which is written as %20
     """
 
     __slots__ = ()
+
+    def __new__(cls, text: str) -> Self:
+        if not isinstance(text, str):
+            raise TypeError(f"an IRI is made of text, not of {type(text).__name__}")
+        wrong = _NOT_IN_AN_IRI.search(text)
+        if wrong is not None:
+            raise ValueError(f"{text!r} is no IRI: it has {wrong[0]!r}, which is written as %{ord(wrong[0]):02X}")
+        if not text:
+            raise ValueError("'' is no IRI: a text that is not empty is needed, as 'https://example.org/my-home#clock'")
+        return cls.unchecked(text)
+
+    @classmethod
+    def unchecked(cls, text: str) -> Self:
+        """A text as an IRI, whatever it is, in a third of the time: what a parser, a message or a record has said.
+
+        The empty text may stand for no IRI.
+        """
+        return str.__new__(cls, text)
+
+    def __reduce__(self) -> tuple[Callable[[str], Self], tuple[str]]:
+        """Copies and pickles are made of what is an IRI already."""
+        return self.unchecked, (str(self),)
 
     def __repr__(self) -> str:
         return f"<{self}>"

@@ -197,7 +197,7 @@ def _task_identity(value: object) -> str:
 
 
 def _iri(value: object) -> IRI:
-    return IRI(_label(value))
+    return IRI.unchecked(_label(value))
 
 
 def _maybe_iri(value: object) -> IRI | None:

@@ -48,7 +48,7 @@ class StampReader:
 
     def __init__(self) -> None:
         self._beginning: bytes | None = None  # no stamp begins with nothing, but what is no stamp may
-        self._raw, self._said = False, Stamp(IRI(""), "", 0, 0.0)
+        self._raw, self._said = False, Stamp(IRI.unchecked(""), "", 0, 0.0)
         """What stamps with that beginning say, but for number and time."""
 
     def read(self, attachment: bytes) -> tuple[bool, Stamp]:

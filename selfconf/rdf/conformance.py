@@ -227,7 +227,7 @@ def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, 
                 said.setdefault(predicate, value[1] if isinstance(value, tuple) else value)
         path = said.get(_SH.resultPath)
         message = str(said.get(_SH.resultMessage) or "does not conform")
-        one = ShapeViolated(message, IRI(str(path)) if isinstance(path, rdflib.URIRef) else None)
+        one = ShapeViolated(message, IRI.unchecked(str(path)) if isinstance(path, rdflib.URIRef) else None)
         constraint = (said.get(_SH.sourceConstraintComponent), message) if path is None else ()
         thing = said.get(_SH.sourceShape), *constraint
         least[thing] = min(one, least.get(thing, one), key=lambda violation: violation.message)

@@ -24,7 +24,7 @@ def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
     """A name for a deployed configuration: what it is and when."""
     plain = replace(configuration, bindings=dict(configuration.bindings))  # whatever kind of mapping it holds
     digest = hashlib.blake2s(repr((plain, epoch, *configuration.recruits)).encode(), digest_size=8).hexdigest()
-    return IRI(f"urn:selfconf:configuration:{digest}")
+    return IRI.unchecked(f"urn:selfconf:configuration:{digest}")
 
 
 # complexity: one line for each thing that is stated, in the order in which it is read
@@ -112,7 +112,7 @@ def configuration_triples(
     if generated is not None:
         yield name, PROV.generatedAtTime, moment(generated)
     if configurator is not None:
-        agent = IRI(f"urn:selfconf:configurator:{configurator}")
+        agent = IRI.unchecked(f"urn:selfconf:configurator:{configurator}")
         yield name, PROV.wasAttributedTo, agent
         yield agent, TYPE, PROV.SoftwareAgent
     if revises is not None:

@@ -42,9 +42,9 @@ def rdflib_term(value: Term) -> rdflib.URIRef | rdflib.BNode | rdflib.Literal:
 def from_rdflib(node: rdflib.term.Node) -> Term:
     """One of rdflib's terms as a value of the model."""
     if isinstance(node, rdflib.URIRef):
-        return IRI(node)
+        return IRI.unchecked(node)
     if isinstance(node, rdflib.Literal):
-        datatype = IRI(node.datatype) if node.datatype else IRI("http://www.w3.org/2001/XMLSchema#string")
+        datatype = IRI.unchecked(node.datatype) if node.datatype else IRI("http://www.w3.org/2001/XMLSchema#string")
         if node.language:
             datatype = IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString")
         return Literal(str(node), datatype, node.language)
@@ -57,5 +57,5 @@ def to_document(triples: Iterable[tuple[rdflib.term.Node, ...]], source: str) ->
     for subject, predicate, value in triples:
         about = from_rdflib(subject)
         assert not isinstance(about, Literal)
-        statements.setdefault(about, []).append((IRI(str(predicate)), from_rdflib(value)))
+        statements.setdefault(about, []).append((IRI.unchecked(str(predicate)), from_rdflib(value)))
     return Document(source, statements, {})

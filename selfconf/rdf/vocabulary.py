@@ -17,11 +17,11 @@ class Namespace:
         self.base = base
 
     def __getattr__(self, name: str) -> IRI:
-        member = self.__dict__[name] = IRI(self.base + name)  # found at once from then on
+        member = self.__dict__[name] = IRI.unchecked(self.base + name)  # found at once from then on
         return member
 
     def __getitem__(self, name: str) -> IRI:
-        return IRI(self.base + name)
+        return IRI.unchecked(self.base + name)
 
     def __contains__(self, iri: object) -> bool:
         return isinstance(iri, str) and iri.startswith(self.base)

@@ -33,7 +33,7 @@ def ecology_names(prefixes: Mapping[str, str], iris: Iterable[str]) -> tuple[Nam
     Advertisements travel without their prefixes. So beside the prefixes that are known the empty one stands for the
     namespace that most of the IRIs have, and of several for the first.
     """
-    spaces = Counter(iri[: len(iri) - len(IRI(iri).short)] for iri in iris)
+    spaces = Counter(iri[: len(iri) - len(IRI.unchecked(iri).short)] for iri in iris)
     known = set(prefixes.values())
     found = min((space for space in spaces if space not in known), key=lambda one: (-spaces[one], one), default="")
     if not found or "" in prefixes:

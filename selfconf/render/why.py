@@ -164,7 +164,7 @@ def _means(term: str, thing: str) -> bool:
 
 
 def _name(thing: object) -> str:
-    return short(IRI(str(thing))) or str(thing)
+    return short(IRI.unchecked(str(thing))) or str(thing)
 
 
 def _loss(event: EventBody) -> str:

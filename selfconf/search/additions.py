@@ -129,7 +129,7 @@ def _optional(problem: Problem, needed: Mapping[int, int], room: int) -> Problem
         (
             *some,
             *(
-                Candidate(Profile(IRI(f"{ABSENT}:{number}:{place}"), properties=_ABSENT_ONCE), admits)
+                Candidate(Profile(IRI.unchecked(f"{ABSENT}:{number}:{place}"), properties=_ABSENT_ONCE), admits)
                 for place in range(slots.get(number, 0))
             ),
         )

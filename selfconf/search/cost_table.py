@@ -14,7 +14,7 @@ from selfconf.search.problem import Problem
 
 LEADING_LEVELS = 2
 """Levels before those that the template states: how many newcomers there are, and how many terms are unknown."""
-NO_ROLE = IRI("")
+NO_ROLE = IRI.unchecked("")
 """The role of a recruit, which no term of a cost names."""
 Amounts = tuple[Fraction, ...]
 """What something costs, level by level."""

@@ -41,7 +41,7 @@ def newcomer(problem: Problem, addition: Addition, number: int) -> Candidate:
         else:
             admits.append(_statable(mention, variable) if mention is not None and mention.required else ANY_VALUE)
     ports = Ports(outputs=supposed(addition.outputs))
-    return Candidate(Profile(IRI(f"{ADDITION}{number}:{addition.role}"), ports=ports), tuple(admits))
+    return Candidate(Profile(IRI.unchecked(f"{ADDITION}{number}:{addition.role}"), ports=ports), tuple(admits))
 
 
 def impossible(problem: Problem) -> set[int]:

@@ -45,7 +45,7 @@ def with_more_recruits(problem: Problem, added: AddRecruits) -> Problem:
     index = {role.iri: number for number, role in enumerate(problem.roles)}
     more = [
         Recruit(
-            Profile(IRI(f"{NEWCOMER}{number}"), ports=Ports(outputs=supposed(one.outputs))),
+            Profile(IRI.unchecked(f"{NEWCOMER}{number}"), ports=Ports(outputs=supposed(one.outputs))),
             frozenset((index[one.role],)),
         )
         for number, one in enumerate(added.additions)

@@ -89,7 +89,7 @@ class Board:
 
     def lost(self, task: str) -> frozenset[IRI]:
         """The components that a task has lost and that have not come back."""
-        return frozenset(map(IRI, self._tasks.get(task, {}).get("lost", ())))
+        return frozenset(map(IRI.unchecked, self._tasks.get(task, {}).get("lost", ())))
 
     def state(self) -> Body:
         """Everything, with the identifier of the last event that it holds."""

@@ -65,7 +65,7 @@ class Directory:
 
     async def thing(self, request: Request) -> Response:
         """`/things/{id}`: one description; as Turtle, the advertisement itself."""
-        found = self._board.advertised.get(IRI(request.path_params["id"]))
+        found = self._board.advertised.get(IRI.unchecked(request.path_params["id"]))
         if found is None:
             return problem(404, "no component of this IRI is advertised; /things lists them all")
         media = acceptable(request.headers.get("accept", ""), [TD, JSON_LD_MEDIA, "application/json", "text/turtle"])

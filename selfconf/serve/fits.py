@@ -42,7 +42,7 @@ class Fits:
 
     async def respond(self, request: Request) -> Response:
         """`/fit?component=IRI`: for each task that runs, by its identity, the roles; or why they are not known."""
-        found = self._board.advertised.get(IRI(request.query_params.get("component", "")))
+        found = self._board.advertised.get(IRI.unchecked(request.query_params.get("component", "")))
         if found is None:
             return problem(404, "no component of this IRI is advertised; /fit?component=IRI takes one of /things")
         tasks = {}

@@ -18,7 +18,7 @@ TOLD = frozenset(
 )
 """The acts of a run that are worth a line on the page."""
 
-_UNKNOWN = Status("", "unknown", IRI(""), 0, 0.0)
+_UNKNOWN = Status("", "unknown", IRI.unchecked(""), 0, 0.0)
 """What is said of a task whose configurator has not said anything yet."""
 
 

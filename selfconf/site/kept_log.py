@@ -126,7 +126,7 @@ def _line(line: str) -> LogLine:
     if len(parts) < 4:
         return LogLine(parts[0], "", (), " ".join(parts[1:]))
     time, stream, sources, text = parts
-    return LogLine(time, stream, tuple(map(IRI, sources.split(","))), text)
+    return LogLine(time, stream, tuple(map(IRI.unchecked, sources.split(","))), text)
 
 
 def _place(position: str) -> tuple[int, int]:

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import selfconf as sc
+from selfconf.model.profile import Operation
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal, Term, sort_key
 from tests.protocol.strategies import terms
 
@@ -22,6 +28,31 @@ from tests.protocol.strategies import terms
 )
 def test_the_short_name_of_an_iri_is_its_last_segment(iri: str, short: str) -> None:
     assert IRI(iri).short == short
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "'' is no IRI: a text that is not empty is needed"),
+        ("urn:my home", "'urn:my home' is no IRI: it has ' ', which is written as %20"),
+        *((f"urn:a{wrong}b", "is no IRI: it has ") for wrong in '<>"{}|^`\\\n\x00'),
+    ],
+)
+def test_what_can_be_no_iri_is_refused_in_a_sentence_and_passed_on_where_it_was_heard(text: str, words: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(words)):
+        sc.IRI(text)
+    heard = IRI.unchecked(text)
+    assert isinstance(heard, IRI)
+    assert heard == text
+    assert pickle.loads(pickle.dumps(heard)) == copy.copy(heard) == heard
+    assert type(copy.deepcopy(heard)) is IRI
+    assert type(copy.copy(Operation.of(None))) is Operation
+
+
+def test_an_iri_is_made_of_text() -> None:
+    with pytest.raises(TypeError, match="an IRI is made of text, not of NoneType"):
+        IRI(None)  # type: ignore[arg-type]  # that is what is tested
+    assert IRI("https://example.org/ä?q=1#x%20y") == "https://example.org/ä?q=1#x%20y"
 
 
 @given(st.lists(terms, max_size=10))

@@ -41,7 +41,7 @@ characters = st.characters(exclude_categories=["Cs", "Cc", "Cf", "Zl", "Zp"])
 texts = st.text(characters, max_size=20)
 names = st.text(characters, min_size=1, max_size=20)
 identities = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9._-]{0,20}~[A-Za-z0-9][A-Za-z0-9._-]{0,20}", fullmatch=True)
-iris = st.builds(lambda tail: IRI(f"https://example.org/{tail}"), texts)
+iris = st.builds(lambda tail: IRI.unchecked(f"https://example.org/{tail}"), texts)
 numbers = st.integers(min_value=0, max_value=1 << 62)
 seconds = st.floats(allow_nan=False, allow_infinity=False)
 supervisors = st.builds(

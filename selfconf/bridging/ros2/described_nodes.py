@@ -66,7 +66,7 @@ def translated_name(name: str, translation: SignalTranslation) -> str:
 def node_iri(token: RosToken, namespace: str = NODE_NAMESPACE) -> IRI:
     """The component that a node is."""
     path = "/".join(map(slug, token.full_name.strip("/").split("/")))
-    return IRI(f"{namespace}{token.node.domain}/{path}")
+    return IRI.unchecked(f"{namespace}{token.node.domain}/{path}")
 
 
 def is_bridged(token: RosToken) -> bool:

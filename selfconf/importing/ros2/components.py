@@ -88,7 +88,7 @@ class NodeReader:
             if name in taken:
                 self.ledger.leave_out("feedback of actions", "a topic of the node has its name", self.source)
             else:
-                yield ImportedPort(name, () if kind is None else (IRI(kind + FEEDBACK_MESSAGE),))
+                yield ImportedPort(name, () if kind is None else (IRI.unchecked(kind + FEEDBACK_MESSAGE),))
 
     def _operation(self, interface: NodeInterface, optional: bool = False) -> ImportedOperation:
         kind = self._type(interface)
@@ -99,7 +99,9 @@ class NodeReader:
                 self.ledger.leave_out("feedback of actions that are called", reason, self.source)
         else:
             asked, answered = REQUEST, RESPONSE
-        request, response = (None, None) if kind is None else (IRI(kind + asked), IRI(kind + answered))
+        request, response = (
+            (None, None) if kind is None else (IRI.unchecked(kind + asked), IRI.unchecked(kind + answered))
+        )
         return ImportedOperation(interface.name, request, response, optional, interface.properties())
 
     def _type(self, interface: NodeInterface) -> IRI | None:

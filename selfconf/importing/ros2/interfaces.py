@@ -106,4 +106,4 @@ def feedback_port(action: str) -> str:
 def type_iri(name: str, kind: InterfaceKind) -> IRI | None:
     """The IRI of a ROS type, written `package/msg/Name`, `package/Name` or `package.Name`."""
     found = _TYPE.fullmatch(name.strip())
-    return None if found is None else IRI(f"{TYPE_BASE}{found['package']}/{kind.segment}/{found['name']}")
+    return None if found is None else IRI.unchecked(f"{TYPE_BASE}{found['package']}/{kind.segment}/{found['name']}")

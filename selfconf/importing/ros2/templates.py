@@ -63,7 +63,7 @@ def interaction(template: IRI, number: int, source: IRI, output: str, sink: IRI,
         (SC.to, (sink,)),
         (SC.input, (Literal(taken),)),
     )
-    return Description(IRI(f"{template}/connection/{number}"), statements)
+    return Description(IRI.unchecked(f"{template}/connection/{number}"), statements)
 
 
 def fact(path: IRI, value: str) -> NestedNode:

@@ -284,7 +284,7 @@ def read_advertisements(
             and (not suspects or suspects.isdisjoint(said))
             and not subject.startswith(blank)
         ):
-            found.append(LoadedAdvertisement(IRI(subject[1:-1]), types, tuple(said), origin))
+            found.append(LoadedAdvertisement(IRI.unchecked(subject[1:-1]), types, tuple(said), origin))
             said.clear()
         elif types and any(component_type in statement.types for statement in said):
             found.append((subject, said))
@@ -314,7 +314,7 @@ def _judged(
         statements = origin.linked(said, known)
         if statements is not None and _plain(subject, statements, known):
             types = next(statement.types for statement in statements if statement.types)
-            good.append(LinkedAdvertisement(IRI(subject[1:-1]), types, statements, origin, tuple(said)))
+            good.append(LinkedAdvertisement(IRI.unchecked(subject[1:-1]), types, statements, origin, tuple(said)))
             continue
         ((component, profile, problems),) = advertisements.profiles(origin.document(subject, said, _LINKS))
         if profile is None or problems:

@@ -116,7 +116,7 @@ def port_of(link: str, text: str) -> PortText | None:
 
 def ported(link: str, port: PortText) -> Profile | Ports:
     """The part of a statement with one port."""
-    name, type_ = port.name, IRI(port.type)
+    name, type_ = port.name, IRI.unchecked(port.type)
     if link == _HAS_INPUT:
         return Ports((Input(name, (type_,), None if port.depth is None else int(port.depth)),))
     if link == _HAS_OUTPUT:
@@ -151,5 +151,5 @@ def property_of(text: str) -> tuple[IRI, Term] | None:
     elif language:
         value = Literal(lexical, RDF.langString, language)
     else:
-        value = Literal(lexical, IRI(datatype) if datatype else STRING)
-    return IRI(predicate), value
+        value = Literal(lexical, IRI.unchecked(datatype) if datatype else STRING)
+    return IRI.unchecked(predicate), value

@@ -138,7 +138,7 @@ class StatementTable(dict[str, Statement]):
             self._structure(statement, predicate)
         else:
             if predicate not in self._allowed:
-                self._allowed[predicate] = allowed(IRI(predicate[1:-1]), SUBJECT)
+                self._allowed[predicate] = allowed(IRI.unchecked(predicate[1:-1]), SUBJECT)
             if not self._allowed[predicate]:
                 self.suspects.add(statement)
         return statement
@@ -166,7 +166,7 @@ class StatementTable(dict[str, Statement]):
             if len(good) < len(types):
                 self.suspects.add(statement)
         else:
-            good = frozenset(map(IRI, text[len("a <") : -1].split("> , <")))
+            good = frozenset(map(IRI.unchecked, text[len("a <") : -1].split("> , <")))
         statement.slot, statement.part, statement.types = TYPE, _NOTHING, good
 
     def _structure(self, statement: Statement, predicate: str) -> None:

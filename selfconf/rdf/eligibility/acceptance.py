@@ -113,7 +113,7 @@ class OutputShape:
             return statement
         # The last segment of the name is how an obstacle calls the property.
         steps = ".".join(step.short for step in _steps(self._document, value))
-        return predicate, self._names.setdefault(value, IRI(f"{_PATH}{len(self._names)}#{steps}"))
+        return predicate, self._names.setdefault(value, IRI.unchecked(f"{_PATH}{len(self._names)}#{steps}"))
 
     def conforming(
         self, outputs: Sequence[Port], seen: SeenOutputs, not_judged: dict[Port, NotJudged] | None = None

@@ -95,7 +95,7 @@ class RelevantPredicates(dict[str, bool]):
         self[f"<{SC.hasParameter}>"] = any(isinstance(test, ParameterTest) for test in tests)
 
     def __missing__(self, predicate: str) -> bool:
-        above = self._hierarchy.superproperties(IRI(predicate[1:-1]))
+        above = self._hierarchy.superproperties(IRI.unchecked(predicate[1:-1]))
         self[predicate] = found = not self._paths.isdisjoint(above)
         return found
 

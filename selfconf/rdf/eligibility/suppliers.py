@@ -16,7 +16,7 @@ _SUPPLIERS = "urn:selfconf:suppliers:"
 def with_named_suppliers(document: Document) -> Document:
     """A template in which the shapes of suppliers have names: pySHACL is asked about a shape by its IRI."""
     names = {
-        value: IRI(f"{_SUPPLIERS}{subject}")
+        value: IRI.unchecked(f"{_SUPPLIERS}{subject}")
         for subject, said in document.statements.items()
         for predicate, value in said
         if predicate == SC.recruits and isinstance(value, BlankNode)

@@ -39,7 +39,7 @@ def owlrl_owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
     for predicate in HIERARCHY:
         for subject, value in graph.subject_objects(rdflib.URIRef(predicate)):
             if isinstance(subject, rdflib.URIRef) and isinstance(value, rdflib.URIRef):
-                yield IRI(subject), predicate, IRI(value)
+                yield IRI.unchecked(subject), predicate, IRI.unchecked(value)
 
 
 def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning, entail: Entailment = owlrl_owl_rl) -> Hierarchy:

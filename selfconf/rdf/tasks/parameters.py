@@ -157,8 +157,8 @@ def _judged(parameter: Parameter, values: Iterable[Term], document: Document) ->
     from selfconf.rdf.conformance import violations
     from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
 
-    probes = {IRI(f"{_PROBE}:{number}"): value for number, value in enumerate(values)}
-    probe, probe_shape = IRI(_PROBE), IRI(f"{_PROBE}-shape")
+    probes = {IRI.unchecked(f"{_PROBE}:{number}"): value for number, value in enumerate(values)}
+    probe, probe_shape = IRI(_PROBE), IRI.unchecked(f"{_PROBE}-shape")
     shapes = to_rdflib(document.triples())
     node, path = rdflib.URIRef(probe_shape), rdflib.BNode()
     shapes.add((node, rdflib.URIRef(TYPE), rdflib.URIRef(SH.NodeShape)))

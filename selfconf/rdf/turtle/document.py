@@ -28,13 +28,13 @@ def term(node: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> Term:
     if isinstance(node, ox.NamedNode):
         return resource(node.value)
     if isinstance(node, ox.Literal):
-        return Literal(node.value, IRI(node.datatype.value), node.language)
+        return Literal(node.value, IRI.unchecked(node.datatype.value), node.language)
     return BlankNode(str(node))
 
 
 def resource(iri: str) -> Node:
     """What an IRI names: a blank node, if it stands for one."""
-    return BlankNode(f"_:{iri[len(SKOLEM) :]}") if iri.startswith(SKOLEM) else IRI(iri)
+    return BlankNode(f"_:{iri[len(SKOLEM) :]}") if iri.startswith(SKOLEM) else IRI.unchecked(iri)
 
 
 def named(node: Node) -> str:

@@ -39,7 +39,7 @@ def unfit_values(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
         name = str(graph.value(parameter, URIRef(SC.name)))
         values = [from_rdflib(one.value) for one in given]
         try:
-            reasons = misfits(Parameter(IRI(str(parameter)), name), values, document)
+            reasons = misfits(Parameter(IRI.unchecked(str(parameter)), name), values, document)
         except TemplateError as error:  # the parameter is no shape that could be asked
             reasons = dict.fromkeys(values, error.message)
         for one, value in zip(given, values, strict=True):

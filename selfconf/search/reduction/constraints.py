@@ -45,7 +45,7 @@ class Distinct:
 
 Constraint = Played | Fed | Shared | Distinct
 
-NO_COMPONENT = IRI("")
+NO_COMPONENT = IRI.unchecked("")
 """The component of an option that leaves a slot empty, where the role of the slot need not be played."""
 
 

@@ -146,7 +146,12 @@ def _fails(normal: NormalForm, statement: ShapeStatement, value: Node) -> bool:
     if predicate in _OF_THE_TEXT and isinstance(value, Literal) and value.datatype not in _TEXTS:
         return False  # rdflib may have written it in another way
     flags = [from_rdflib(flag) for flag in normal.source.values(shape, SH.flags)]
-    tests, _ = compiled({IRI(str(predicate)): [from_rdflib(wanted)], **({IRI(str(SH.flags)): flags} if flags else {})})
+    tests, _ = compiled(
+        {
+            IRI.unchecked(str(predicate)): [from_rdflib(wanted)],
+            **({IRI.unchecked(str(SH.flags)): flags} if flags else {}),
+        }
+    )
     try:
         return not all(test.passes(from_rdflib(value)) for test in tests)
     except TemplateError:

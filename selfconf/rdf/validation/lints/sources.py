@@ -36,7 +36,7 @@ def incommensurable_units(file: LintedFile) -> Iterator[Diagnostic]:
         if (None, _INPUT, port) not in file.graph:
             continue
         units = sorted({str(unit) for output in outputs.of(port) for unit in file.graph.objects(output, _UNIT)})
-        if units and all(differ_in_dimension(IRI(unit), IRI(wanted)) for unit in units):
+        if units and all(differ_in_dimension(IRI.unchecked(unit), IRI.unchecked(str(wanted))) for unit in units):
             message = (
                 f"{file.short(str(wanted))} is of another dimension than {file.short(units[0])}, which an output of "
                 "this signal type in this file has."
@@ -47,7 +47,7 @@ def incommensurable_units(file: LintedFile) -> Iterator[Diagnostic]:
 def misnamed_units(file: LintedFile) -> Iterator[Diagnostic]:
     """Units whose names are spelt out, which QUDT calls otherwise: nothing is known of them."""
     for port, unit in sorted(file.graph.subject_objects(_UNIT), key=lambda pair: file.offset(pair[0])):
-        meant = meant_unit(IRI(unit)) if isinstance(unit, URIRef) and unit in UNIT else None
+        meant = meant_unit(IRI.unchecked(unit)) if isinstance(unit, URIRef) and unit in UNIT else None
         if meant is not None:
             message = f"QUDT has no unit {file.short(str(unit))}; did you mean {file.short(UNIT[meant])}?"
             yield at(file.positions, file.positions.triples[port, _UNIT, unit].object, "SC-L23", message)
