@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 from selfconf import files, library
-from selfconf.api.answer import Answer, Method
+from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
 from selfconf.api.composites import Composites
 from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
@@ -16,11 +17,13 @@ from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.bus.memory import Faults, Network
 from selfconf.bus.memory_bus import MemoryBus
+from selfconf.composition import TimeLimit
 from selfconf.configurator import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError
-from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.run_event import AnyRunEvent
+from selfconf.model.configuration import Configuration
+from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import Advertisement
@@ -75,11 +78,15 @@ class MemoryRun:
         self.events: list[AnsweredEvent] = []
         """What has happened, in order; the same values as those of `Run.events`."""
         self.refusal: Refusal | Undecided | None = None
+        """Why the task has ended, where there is no configuration, explained as that of a `Run` is."""
         self.ended = False
-        composer = method.composer(task)
+        self._method, self._able = method, dict[IRI, Advertisement]()
+        self._explained: tuple[Refusal, Refusal] | None = None
+        """The refusal that was explained last, and its explanation."""
+        self._composer = composer = method.composer(task)
         request = RunRequest(
             task=task.document.task,
-            compose=composer.compose,
+            compose=self._compose,
             standby=composer.standby,
             not_judged=composer.not_judged,
             usable=composer.usable,
@@ -125,11 +132,30 @@ class MemoryRun:
     def __repr__(self) -> str:
         return f"<run of {self._task.task.template.iri.short}: {self.phase}>"
 
+    def _compose(
+        self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Outcome:
+        answer = self._composer.compose(found, lost, running)
+        if isinstance(answer, Refusal):
+            self._able = {component: one for component, one in found.items() if component not in lost}
+            self._explained = None
+        return answer
+
+    def _explain(self, refusal: Refusal) -> Refusal:
+        """A refusal with all that can be found out: no time passes in the ecology meanwhile."""
+        if self._explained is None or self._explained[0] != refusal:
+            limit, described = TimeLimit(None), self._ecology.advertisements
+            found = refusal_with_places(self._composer, self._able, refusal, self._method, limit, described)
+            self._explained = refusal, found
+        return self._explained[1]
+
     def _report(self, event: AnyRunEvent) -> None:
+        if isinstance(event, TaskWaiting | TaskRefused) and isinstance(event.refusal, Refusal):
+            event = replace(event, refusal=self._explain(event.refusal))
         self.events.append(answered_event(event, self._task))
 
     def _ended(self, refusal: Refusal | Undecided | None) -> None:
-        self.refusal, self.ended = answered(refusal, self._task), True
+        self.refusal, self.ended = self._explain(refusal) if isinstance(refusal, Refusal) else refusal, True
 
 
 class MemoryEcology:

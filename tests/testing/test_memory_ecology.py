@@ -12,7 +12,7 @@ import selfconf as sc
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.sdk import Component, Signal
 from selfconf.testing import Faults, MemoryEcology
-from selfconf.values import ComponentLost, TaskRefused, TaskRunning
+from selfconf.values import ComponentLost, TaskRefused, TaskRunning, TaskWaiting
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix sh: <http://www.w3.org/ns/shacl#> .
@@ -104,6 +104,26 @@ def test_a_task_that_cannot_run_says_why() -> None:
     assert isinstance(run.events[-1], TaskRefused)
     assert run.events[-1].refusal == run.refusal
     assert repr(run.refusal).startswith("<no configuration for :tell")
+    (repair,) = run.refusal.repairs
+    assert "source" in str(repair)
+
+
+def test_a_refusal_is_explained_as_that_of_configure() -> None:
+    task, files = sc.template("examples/clock/tell-the-time.ttl").bind(room=":cellar"), "examples/clock"
+    ecology = MemoryEcology()
+    for name in ("clock", "display"):
+        ecology.add(Component(), f"{files}/{name}.ttl")
+    expected = sc.configure(task, sc.read(files))
+    assert isinstance(expected, sc.Refusal)
+    refused = ecology.run(task)
+    assert ecology.until(lambda: refused.ended)
+    waiting = ecology.run(task, wait=True)
+    assert ecology.until(lambda: waiting.events[-1:] != [] and isinstance(waiting.events[-1], TaskWaiting))
+    for refusal in (refused.refusal, refused.events[-1].refusal, waiting.events[-1].refusal):  # type: ignore[union-attr]  # both have one
+        assert refusal == expected
+        assert refusal.repairs
+        assert refusal.near_misses
+        assert str(refusal) == str(expected)
 
 
 def test_what_runs_is_read_by_role_as_an_answer_of_the_library_is() -> None:
