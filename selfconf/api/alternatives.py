@@ -6,7 +6,7 @@ a cost, the cheapest such configuration is reported; else only whether there is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 
 from selfconf.api.answer import Inquiry
@@ -29,14 +29,21 @@ SECONDS_FOR_ALL = 20.0
 def alternatives(inquiry: Inquiry, seconds: float = SECONDS_FOR_ALL) -> dict[IRI, list[Alternative]]:
     """The candidates of each role in their order, each with what would come of it; within so many seconds in all."""
     limit = TimeLimit(seconds)
-    answer = _answer(inquiry, None, limit)
     partition = inquiry.composer.partition(inquiry.ecology)
-    roles = zip(inquiry.task.roles, partition.candidates, strict=True)
-    return {role.iri: list(_of_role(inquiry, role, candidates, answer, limit)) for role, candidates in roles}
+    roles = list(zip(inquiry.task.roles, partition.candidates, strict=True))
+    held = {c.profile.component for role, some in roles for c in some if inquiry.holder(role, c.profile) is not None}
+    taken = held.union(inquiry.holders)  # recruits, too, which have no role
+    answer = _answer(inquiry, None, taken, limit)
+    return {role.iri: list(_of_role(inquiry, role, candidates, answer, taken, limit)) for role, candidates in roles}
 
 
 def _of_role(
-    inquiry: Inquiry, role: Role, candidates: Sequence[Candidate], answer: Optimum | Outcome, limit: TimeLimit
+    inquiry: Inquiry,
+    role: Role,
+    candidates: Sequence[Candidate],
+    answer: Optimum | Outcome,
+    taken: Collection[IRI],
+    limit: TimeLimit,
 ) -> Iterator[Alternative]:
     levels, hierarchy = inquiry.composer.task.task.template.cost, inquiry.composer.hierarchy
     chosen = _players(answer, role.iri)
@@ -46,17 +53,19 @@ def _of_role(
         one = Alternative(profile.component, profile.preference, price[1:], int(price[0]), False, "not tried")
         if profile.component in chosen:
             yield _with(one._replace(chosen=True), answer)
-        elif profile.component in inquiry.holders or role.minimum != 1 or number >= MOST_TRIED:
+        elif profile.component in taken or role.minimum != 1 or number >= MOST_TRIED:
             yield one  # one that another task holds cannot play, and of several players none is alone
         else:
-            yield _with(one, _answer(inquiry, (role.iri, profile.component), limit))
+            yield _with(one, _answer(inquiry, (role.iri, profile.component), taken, limit))
 
 
-def _answer(inquiry: Inquiry, played: tuple[IRI, IRI] | None, limit: TimeLimit) -> Optimum | Outcome:
+def _answer(
+    inquiry: Inquiry, played: tuple[IRI, IRI] | None, taken: Collection[IRI], limit: TimeLimit
+) -> Optimum | Outcome:
     """The last answer in the time, of the whole task or of one with a role that is played by one component."""
 
     def ask() -> Optimum | Outcome:
-        *_, last = inquiry.composer.answers(inquiry.ecology, frozenset(inquiry.holders), None, played)
+        *_, last = inquiry.composer.answers(inquiry.ecology, frozenset(taken), None, played)
         return last
 
     too_late: Optimum | Outcome = Undecided(seconds=SECONDS_FOR_ALL)

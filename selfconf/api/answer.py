@@ -24,8 +24,9 @@ from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.left_out import LeftOut
 from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
-from selfconf.model.profile import Place
+from selfconf.model.profile import Place, Profile
 from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.template import Role
 from selfconf.model.term import IRI
 from selfconf.model.wording import plain
 from selfconf.rdf.advertisements import Advertisement
@@ -244,6 +245,21 @@ class Inquiry:
             *(LeftOut(self._place(component), component, why.reason) for component, why in not_judged),
         )
         """The components that play no role, or feed nothing, as what they say cannot be judged, or not in time."""
+
+    def holder(self, role: Role, profile: Profile) -> Holder | None:
+        """Who holds a component so that it cannot play a role; what its inputs would follow is not known beforehand."""
+        sharer = self._sharers.get(profile.component)
+        if sharer is None:
+            return self.holders.get(profile.component)
+        bindings, hierarchy = self.task.document.task.bindings, self.composer.hierarchy
+        values = {
+            (parameter.name, bindings.get(wanted, wanted) if isinstance(wanted, IRI) else wanted)
+            for setting in role.settings
+            for wanted in (setting.value,)
+            for parameter in profile.parameters
+            if hierarchy.matches(setting.type, parameter.type)
+        }
+        return None if sharer.wants.values == values else sharer
 
     def _place(self, component: IRI) -> Place:
         """Where a component is described."""

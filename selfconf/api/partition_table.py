@@ -49,8 +49,13 @@ class RolePartition(Tabular):
 
     @property
     def held(self) -> Mapping[IRI, Holder]:
-        """The eligible components that other tasks hold, as of the same or a higher priority, each with its holder."""
-        return FrozenMapping({c: self._inquiry.holders[c] for c in self.eligible if c in self._inquiry.holders})
+        """The eligible components that other tasks hold, as of the same or a higher priority, each with its holder.
+
+        One that can be shared is held where its holder has other values for its parameters than the role sets.
+        """
+        profiles = [candidate.profile for candidate in self.candidates]
+        found = ((profile.component, self._inquiry.holder(self.role, profile)) for profile in profiles)
+        return FrozenMapping({component: holder for component, holder in found if holder is not None})
 
     @property
     def excluded(self) -> tuple[Exclusion, ...]:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import selfconf as sc
 from selfconf import partition, read, template
 from selfconf.api.partition_table import PartitionTable
 from selfconf.errors import BindingError, TemplateError
+from selfconf.model.configuration import Wants
+from selfconf.model.holder import Holder
 from selfconf.model.obstacle import PropertyUnmet, WrongType
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
@@ -35,6 +39,23 @@ def test_a_partition_cannot_be_changed(task: sc.TaskSpecification, home: sc.Ecol
     with pytest.raises(TypeError):
         found["drive"].held[found["drive"].eligible[0]] = None  # type: ignore[index]  # that is what is tested
     assert found["drive"].excluded is found["drive"].excluded
+
+
+@pytest.mark.parametrize(
+    ("priority", "goal", "held"), [(0, "(AT KITCHEN)", True), (0, "(AT BEDROOM)", False), (-1, "x", False)]
+)
+def test_what_can_be_shared_is_held_where_its_holder_has_set_it_to_something_else(
+    task: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch, priority: int, goal: str, held: bool
+) -> None:
+    cap = sc.IRI("https://w3id.org/selfconf/peis-home#thinking-cap")
+    text = Path("examples/peis-home/thinking-cap.ttl").read_text()
+    shared = text.replace("rob:NavigationControl ;", "rob:NavigationControl ; sc:shareable true ;")
+    others = [path for path in Path("examples/peis-home").iterdir() if path.stem != "thinking-cap"]
+    holder = Holder("watch~1", priority, wants=Wants(values=frozenset({("goal", sc.Literal(goal))})))
+    monkeypatch.setattr(sc.Ecology, "holders", lambda _: {cap: holder})
+    found = sc.partition(task, sc.read(*others, shared))
+    assert dict(found["control"].held) == ({cap: holder} if held else {})
+    assert found.sufficient is not held
 
 
 def test_each_excluded_component_has_its_obstacles(task: sc.TaskSpecification, home: sc.Ecology) -> None:
