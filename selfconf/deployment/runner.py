@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from selfconf.bus.port import Bus, Sample, Undo, Urgency
+from selfconf.bus.port import Bus, Urgency
 from selfconf.configurator import (
     DEPLOYING,
     Accepted,
@@ -30,9 +30,7 @@ from selfconf.configurator import (
     Event,
     Failed,
     Finish,
-    Freed,
     HandedOver,
-    Improvable,
     Loss,
     Phase,
     QueueFor,
@@ -44,19 +42,20 @@ from selfconf.configurator import (
     State,
     Stopped,
     Unwatch,
-    WaitedLong,
     WakeUp,
     Watch,
     step,
 )
 from selfconf.deployment.calls import Calls
+from selfconf.deployment.component_messages import ComponentMessages
 from selfconf.deployment.holders import ask_holders
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
+from selfconf.deployment.retries import Retries
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.discovery import Discovery, EcologyView
-from selfconf.errors import PeerError, ProgrammerError, SelfconfError
+from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import FrozenMapping
@@ -77,25 +76,13 @@ from selfconf.model.run_event import (
     TaskWaiting,
 )
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode
-from selfconf.protocol.keys import component_chunk, owner_of_fail, safe_name, task_identity
-from selfconf.protocol.messages import (
-    Cause,
-    Fail,
-    Free,
-    Moved,
-    Status,
-    Wire,
-)
+from selfconf.protocol.keys import safe_name, task_identity
+from selfconf.protocol.messages import Status, Wire
 
 log = logging.getLogger(__name__)
 
 AT_LEISURE = 0.01
 """Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
-TRY_AGAIN = 5.0
-"""After how many seconds a patient configurator that waits tries lost components again; the pause doubles each time."""
-LONGEST_PAUSE = 60.0
-"""The longest such pause, in seconds; after as many, a task that may change for the better looks what is free now."""
 PULSE = 0.25
 """How often, in seconds, a configurator looks whether it has been suspended."""
 SUSPENDED = 1.0
@@ -141,28 +128,19 @@ class TaskRunner:
             request.outside,
         )
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
+        self._retries = Retries(self.ecology, self._now, self._step, self._calls, request.upgrade)
         self._record = DeploymentRecord(bus, self.keys, self.name, self.identity, request, self.status, self.stop)
         self._notices = RunNotices(bus, self.keys, self.name, task)
-        self._watched: set[IRI] = set()
         self._left_out: set[IRI] = set()
         self._events: deque[Event] = deque()
         self._stepping = False
         self._unreported: list[AnyRunEvent] = []
         self._asked = 0
         """How often the ecology was asked."""
-        self._look_again: Undo = lambda: None
-        self._pause = TRY_AGAIN
-        self._chance_at: float | None = None
-        """When lost components are tried again, which may be overdue; None: no time is set."""
-        self._improve: Undo = lambda: None
-        self._improve_later: Undo = lambda: None
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
-        # One subscription for the FAIL of all components: one for each that joins would delay its activation.
+        self._messages = ComponentMessages(self.ecology, task, self._now, self._step, self._calls)
         self._subscriptions = [
-            bus.subscribe(self.keys.any_fail(), self._received_fail, Urgency.EVENT),
-            bus.subscribe(self.keys.any_free(), self._received_free, Urgency.EVENT),
-            bus.subscribe(self.keys.any_moved(), self._received_moved, Urgency.EVENT),
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
             bus.subscribe(self.keys.reopens(), lambda _: self._liveness.reopens(), Urgency.EVENT),
         ]
@@ -227,20 +205,18 @@ class TaskRunner:
     def _take(self, event: Event) -> None:
         before, known = self.state.phase, self.state.lost
         if isinstance(event, Appeared):
-            self._pause = TRY_AGAIN
-            if self._chance_at is not None:
-                self._chance_at = min(self._chance_at, self.bus.now() + TRY_AGAIN)
+            self._retries.appeared()
         self.state, effects = step(self.state, event)
         if self.state.lost is not known:
             self._notice(known)
         for effect in effects:
             self._carry_out(effect)
         if isinstance(event, Appeared) and self.state.phase is Phase.RUNNING and self.state.target is not None:
-            self._settle()
+            self._retries.settle()
             if event.lives:
                 self._stand_by(self.state.target)
         if isinstance(event, Composed) and self.state.phase is Phase.RUNNING and self.state.taken:
-            self._look_whether_free()
+            self._retries.look_whether_free()
         if self.state.phase is not before:
             self._changed_phase(before)
 
@@ -284,55 +260,14 @@ class TaskRunner:
 
         self.request.aside(work)
 
-    def _settle(self) -> None:
-        """Look, after a while, whether what has appeared would be rather had; each time anew, so that it settles."""
-        if self.request.upgrade is not None:
-            self._improve()
-            self._improve = self.bus.later(self.request.upgrade, partial(self._step, Improvable()))
-
-    def _look_whether_free(self) -> None:
-        """Look again, after a while, for what would be rather had: only tasks that wait hear that it is free."""
-        self._improve_later()
-        if self.request.upgrade is not None:
-            self._improve_later = self.bus.later(LONGEST_PAUSE, partial(self._step, Improvable()))
-
     def _changed_phase(self, before: Phase) -> None:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
         if self.state.phase is Phase.RUNNING:
-            self._pause, self._chance_at = TRY_AGAIN, None
+            self._retries.runs()
         if self.state.phase is Phase.REFUSED and self.state.patient:
             self._report(TaskWaiting(self.state.refusal, self.losses))
-            self._await_another_chance()
-
-    def _await_another_chance(self) -> None:
-        """Set the time for that; one that is set stays, or a site that is asked again and again would put it off."""
-        now = self.bus.now()
-        if self._chance_at is None:
-            self._chance_at = now + self._pause
-            self._pause = min(2 * self._pause, LONGEST_PAUSE)
-        self._look_again()
-        self._look_again = self.bus.later(max(0.0, self._chance_at - now), self._forgive)
-
-    def _forgive(self) -> None:
-        """While the task is refused, try lost components again that may be able to act by now."""
-        if self.state.phase is not Phase.REFUSED:
-            return  # it is overdue when the task is refused again
-        self._chance_at = None
-        again = {component: "" for component, loss in self.state.lost.items() if self._may_be_able(component, loss)}
-        if again or self.state.lost:
-            pause = self._pause
-            self._step(Appeared(again))
-            self._pause = pause  # what has not come from outside is no reason to try again sooner
-        else:
-            self._await_another_chance()
-
-    def _may_be_able(self, component: IRI, loss: Loss) -> bool:
-        """Whether a component lives, or its site can start it, and it obeys what it received last."""
-        if component in self._out_of_control and not loss.busy:
-            return False
-        found = self.ecology.discovery.found.get(component)
-        return self.ecology.life(component) is not None or (found is not None and found.startable)
+            self._retries.await_another_chance()
 
     @property
     def _out_of_control(self) -> tuple[IRI, ...]:
@@ -374,9 +309,9 @@ class TaskRunner:
                 self._compose(effect)
             case Watch():
                 self._report(FailWatched(effect.component))
-                self._watched.add(effect.component)
+                self._messages.watch(effect.component)
             case Unwatch():
-                self._watched.discard(effect.component)
+                self._messages.unwatch(effect.component)
             case WakeUp():
                 self._calls.wake(effect)
             case ReserveOf():
@@ -396,7 +331,7 @@ class TaskRunner:
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())
                 self._report(TaskRunning(effect.configuration, self.state.epoch))
                 self._stand_by(effect.configuration)
-                self._settle()
+                self._retries.settle()
             case Finish():
                 self._finish(effect)
 
@@ -407,6 +342,7 @@ class TaskRunner:
             self._report_all()
         finally:  # the end of a task must not depend on what receives the reports
             self._leave()  # a component that could not be released turns itself off now
+            self._messages.close()
             for undo in self._subscriptions:
                 undo()
             self._record.close()
@@ -514,60 +450,6 @@ class TaskRunner:
             self._report(SearchEnded(outcome, seconds))
         wanted = outcome.components if isinstance(outcome, Configuration) else ()
         self._liveness.select(wanted, lambda: self._step(composed))
-
-    def _received_fail(self, sample: Sample) -> None:
-        try:
-            fail = decode(sample.payload, Fail)
-        except PeerError as error:
-            log.warning("passed over a FAIL on %s: %s", sample.key, error)
-            return
-        own = sample.key == self.keys.fail(fail.component)
-        reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
-        if not self._heeds(fail):
-            return
-        if own:
-            self._calls.heard_fail(fail)
-        if fail.cause is Cause.LET_GO and fail.component in self.state.held:
-            log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
-        around = self._calls.composite_around(fail.component) if reported else None
-        if fail.component in self._watched and (own or reported):
-            self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
-        elif around is not None and around in self._watched:
-            self._step(Failed(around, "", fail.cause, f"{fail.component.short} inside of it: {fail.detail}"))
-
-    def _heeds(self, fail: Fail) -> bool:
-        """Whether a FAIL may be about this task, as far as it says itself."""
-        if fail.task not in ("", self.identity.task):
-            return False
-        if fail.cause is Cause.LET_GO:
-            return fail.epoch > 0  # else it has obeyed a release, which those need to know that follow its outputs
-        held = self.state.held.get(fail.component)
-        # An older component names no task with a yield, and this one may be the one that asks.
-        return fail.cause is not Cause.YIELD or (held is not None and held.reserved)
-
-    def _received_moved(self, sample: Sample) -> None:
-        try:
-            moved = decode(sample.payload, Moved)
-        except PeerError as error:
-            log.warning("passed over a notice on %s: %s", sample.key, error)
-            return
-        mine = sample.key == self.keys.moved(moved.component) and moved.component in self.state.held
-        if mine and self.state.held[moved.component].life in ("", moved.life):
-            self._calls.moved(moved.component, moved.outputs, moved.callers)
-            self._step(Rewired(moved.component))
-
-    def _received_free(self, sample: Sample) -> None:
-        try:
-            free = decode(sample.payload, Free)
-        except PeerError as error:
-            log.warning("passed over a notice on %s: %s", sample.key, error)
-            return
-        if sample.key != self.keys.free(free.component):
-            return
-        if free.task == self.identity.task:
-            self._step(Freed(free.component))
-        elif not free.task:
-            self._step(WaitedLong(free.component, self.state.epoch))
 
     def status(self) -> Status:
         """What is deployed, by which configurator, since when."""

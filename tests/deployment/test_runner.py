@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from selfconf.bus.port import Replies, Urgency
+from selfconf.bus.port import Replies
 from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.liveness import AUDIT
-from selfconf.deployment.runner import LONGEST_PAUSE, TRY_AGAIN, TaskRunner
+from selfconf.deployment.retries import TRY_AGAIN
+from selfconf.deployment.runner import TaskRunner
 from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome, Refusal, TooFewEligible
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Verdict
+from selfconf.protocol.messages import CallAnswer, Cause, Release, Verdict
 from selfconf.rdf import conformance as shacl
 from selfconf.render.run_events import event_body
-from selfconf.sdk.component import Refused
 from selfconf.sdk.supervision import GRACE
 from tests.deployment.tasks import TASK
-from tests.faults.ecologies import CHOICE
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
 
 
@@ -177,33 +175,6 @@ def test_an_output_that_promised_a_rate_and_stops_is_replaced(tmp_path: Path, mo
     assert lab.acts("lost")[0].cause == "silence"
 
 
-def test_the_fail_of_a_component_that_was_activated_anew_counts(lab: Lab) -> None:
-    agent = lab.agent()
-    lab.running(agent)
-    lab.components["odometry"].fail("idle, so nobody hears")
-    lab.components["tracker"].fail("lost")
-    lab.let_pass(1.0)
-    assert lab.active() == TASK | {"odometry"}
-    lab.components["odometry"].fail("now it does")
-    lab.let_pass(1.0)
-    assert agent.state.phase is Phase.REFUSED
-
-
-def test_a_stranger_cannot_make_a_component_fail(lab: Lab) -> None:
-    agent = lab.agent()
-    lab.running(agent)
-    mallory = lab.network.node()
-    forged = encode(Fail(iri("person-tracker"), "", 1, Cause.FAIL, "says who"))
-    for key in (lab.keys.fail(iri("pippi-drive")), lab.keys.fail(iri("thinking-cap"))):
-        mallory.publisher(key, Urgency.EVENT).put(forged)
-    mallory.publisher(lab.keys.fail(iri("person-tracker")), Urgency.EVENT).put(b"not a message")
-    silent = encode(Fail(iri("person-tracker"), "", 1, Cause.SILENCE, "says a stranger"))
-    mallory.publisher(lab.keys.fail(iri("pippi-drive")), Urgency.EVENT).put(silent)
-    lab.let_pass(1.0)
-    assert agent.state.phase is Phase.RUNNING
-    assert lab.active() == TASK | {"tracker"}
-
-
 def test_when_the_configurator_dies_everything_turns_itself_off_and_a_new_one_recovers(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
@@ -305,23 +276,6 @@ def test_patience_recovers_when_a_lost_component_lives_again(lab: Lab) -> None:
     assert lab.active() == set()
 
 
-def test_patience_goes_on_when_a_component_that_another_configurator_held_is_free(lab: Lab) -> None:
-    first = lab.agent()
-    lab.running(first)
-    second = lab.agent(patient=True)
-    lab.let_pass(3 * TRY_AGAIN)
-    assert second.state.phase is Phase.REFUSED
-    assert {detail for waiting in lab.acts("waiting") for detail in waiting.lost.values()} == {
-        f"refused, the task navigate (priority 0, configurator {first.name}) holds it"
-    }
-    first.stop()
-    assert lab.running(second)
-    assert lab.active() == TASK | {"tracker"}
-    hold = lab.runtimes["drive"].activation.first
-    assert hold is not None
-    assert hold.claim.supervisor == second.supervisor
-
-
 SPARE = {
     name: f":{name} a sc:Component, :Drive ; sc:preference {preference} ; sc:shareable false ."
     for name, preference in (("left", 2), ("right", 1))
@@ -409,56 +363,6 @@ def test_a_component_is_shared_with_a_task_that_gives_it_the_same_values_alone(
         assert [(component, holder.name) for component, holder in refused.refusal.held][-1] == (iri("oracle"), "first")
 
 
-def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
-    first = lab.agent()
-    lab.running(first)
-    second = lab.agent(patient=True)
-    lab.let_pass(2 * TRY_AGAIN)
-    lab.crash(first)
-    assert lab.running(second)
-    assert lab.active() == TASK | {"tracker"}
-
-
-def test_patience_tries_every_lost_component_that_lives_again_at_intervals_that_double(lab: Lab) -> None:
-    drive = lab.components["drive"]
-    drive.refusal = Refused("the battery is empty")
-    tried: list[float] = []
-    started = drive.started
-
-    def note() -> None:
-        tried.append(lab.network.time)
-        started()
-
-    drive.started = note  # type: ignore[method-assign]  # it notes when
-    agent = lab.agent(patient=True)
-    lab.let_pass(5 * LONGEST_PAUSE)
-    assert agent.state.phase is Phase.REFUSED
-    pauses = [round(after - before) for before, after in itertools.pairwise(tried)]
-    doubling = [TRY_AGAIN * 2**number for number in range(4)]
-    assert pauses == [*doubling, *[LONGEST_PAUSE] * (len(pauses) - len(doubling))]
-    assert len(pauses) > len(doubling)
-    drive.refusal = None
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, LONGEST_PAUSE + 1.0)
-
-
-def test_the_pause_of_a_patient_task_is_short_again_after_it_has_run(lab: Lab) -> None:
-    agent = lab.agent(patient=True)
-    lab.running(agent)
-    for _ in range(2):
-        lab.crash("drive")
-        lab.let_pass(4 * TRY_AGAIN)
-        lab.component("drive")
-        assert lab.running(agent)
-    drive = lab.components["drive"]
-    drive.refusal = Refused("the battery is empty")
-    drive.fail("the battery is empty")
-    lab.let_pass(1.0)
-    assert agent.state.phase is Phase.REFUSED
-    drive.refusal = None
-    lab.let_pass(TRY_AGAIN + 1.0)
-    assert agent.state.phase is Phase.RUNNING
-
-
 def test_a_task_of_higher_priority_has_the_components_and_the_other_waits_and_goes_on_afterwards(lab: Lab) -> None:
     low = lab.agent(patient=True)
     lab.running(low)
@@ -472,29 +376,11 @@ def test_a_task_of_higher_priority_has_the_components_and_the_other_waits_and_go
     assert lab.active() == TASK | {"tracker"}
 
 
-def test_a_task_that_changes_for_the_better_takes_in_the_end_what_another_has_let_go_of(tmp_path: Path) -> None:
-    lab = Lab(tmp_path, advertised=CHOICE.advertisements)
-    for site, names in CHOICE.sites.items():
-        lab.site(site, *names)
-    for name in CHOICE.advertisements:
-        lab.component(name)
-    first = lab.agent()
-    lab.running(first)
-    second = lab.agent(upgrade=0.5)
-    assert lab.running(second)
-    others = TASK | {"tracker"}
-    assert lab.active() == others | {"second-control", "second-drive"}
-    lab.let_pass(LONGEST_PAUSE)
-    first.stop()
-    assert lab.until(lambda: lab.active() == others, LONGEST_PAUSE + 1.0)
-    assert second.state.phase is Phase.RUNNING
-
-
 def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
     """It lives, but hears nothing of what it is asked."""
     low = lab.agent()
     lab.running(low)
-    low._watched.clear()
+    low._messages._watched.clear()
     high = lab.agent(priority=5)
     assert lab.until(lambda: high.state.phase is Phase.RUNNING, 20.0)
     for name in ("control", "drive"):
@@ -565,12 +451,3 @@ def test_a_configurator_that_has_ended_asks_nobody_any_more(lab: Lab, monkeypatc
     monkeypatch.setattr(agent.bus, "later", lambda seconds, action: timers.append(seconds))
     lab.let_pass(10.0)
     assert timers == []
-
-
-def test_a_site_that_never_answers_does_not_put_off_another_chance(lab: Lab) -> None:
-    lab.network.node().announce(lab.keys.site_life("silent", "1"))
-    agent = lab.agent(patient=True)
-    assert lab.running(agent)
-    lab.components["drive"].fail("jammed")
-    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 3 * TRY_AGAIN)

@@ -29,7 +29,7 @@ from selfconf.bus.memory import Faults
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
-from selfconf.deployment.runner import LONGEST_PAUSE
+from selfconf.deployment.retries import LONGEST_PAUSE
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import Activation

@@ -153,8 +153,8 @@ MUTATIONS = {
     "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
     "nobody waits in vain": Mutation(
         {
-            "selfconf.deployment.runner.TaskRunner._received_free": nothing,
-            "selfconf.deployment.runner.TaskRunner._forgive": nothing,
+            "selfconf.deployment.component_messages.ComponentMessages._received_free": nothing,
+            "selfconf.deployment.retries.Retries._forgive": nothing,
         },
         (SECOND, Action(4.0, "stop_task", "task-1")),
     ),
@@ -200,9 +200,7 @@ MUTATIONS = {
         (*BETTER, Action(5.5, "refuse", "tracker"), LATER),
         upgrades=True,
     ),
-    "the better is reached": Mutation(
-        {"selfconf.deployment.runner.TaskRunner._settle": nothing}, BETTER, upgrades=True
-    ),
+    "the better is reached": Mutation({"selfconf.deployment.retries.Retries.settle": nothing}, BETTER, upgrades=True),
     "nothing breaks": Mutation({f"{LIVENESS}.Liveness._ended": breaks}, (Action(2.0, "crash", "pippi"),)),
 }
 

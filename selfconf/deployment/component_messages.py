@@ -1,0 +1,108 @@
+"""What components say of themselves on the bus, as events of a configurator's machine: FAIL, free, moved."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from selfconf.bus.port import Sample, Urgency
+from selfconf.configurator import Event, Failed, Freed, Rewired, State, WaitedLong
+from selfconf.deployment.calls import Calls
+from selfconf.discovery import EcologyView
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import component_chunk, owner_of_fail
+from selfconf.protocol.messages import Cause, Fail, Free, Moved
+
+log = logging.getLogger(__name__)
+
+
+class ComponentMessages:
+    """Receives what components say, and feeds the machine of one task with what is about it."""
+
+    def __init__(
+        self,
+        ecology: EcologyView,
+        task: str,
+        state: Callable[[], State],
+        step: Callable[[Event], None],
+        calls: Calls,
+    ) -> None:
+        self._keys, self._task = ecology.keys, task
+        self._state, self._step, self._calls = state, step, calls
+        self._watched: set[IRI] = set()
+        bus = ecology.bus
+        # One subscription for the FAIL of all components: one for each that joins would delay its activation.
+        self._subscriptions = [
+            bus.subscribe(self._keys.any_fail(), self._received_fail, Urgency.EVENT),
+            bus.subscribe(self._keys.any_free(), self._received_free, Urgency.EVENT),
+            bus.subscribe(self._keys.any_moved(), self._received_moved, Urgency.EVENT),
+        ]
+
+    def watch(self, component: IRI) -> None:
+        """Let the FAIL of a component count from now on."""
+        self._watched.add(component)
+
+    def unwatch(self, component: IRI) -> None:
+        """Pass over the FAIL of a component from now on."""
+        self._watched.discard(component)
+
+    def close(self) -> None:
+        """Receive nothing any more."""
+        for undo in self._subscriptions:
+            undo()
+
+    def _received_fail(self, sample: Sample) -> None:
+        try:
+            fail = decode(sample.payload, Fail)
+        except PeerError as error:
+            log.warning("passed over a FAIL on %s: %s", sample.key, error)
+            return
+        own = sample.key == self._keys.fail(fail.component)
+        reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
+        if not self._heeds(fail):
+            return
+        if own:
+            self._calls.heard_fail(fail)
+        if fail.cause is Cause.LET_GO and fail.component in self._state().held:
+            log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
+        around = self._calls.composite_around(fail.component) if reported else None
+        if fail.component in self._watched and (own or reported):
+            self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
+        elif around is not None and around in self._watched:
+            self._step(Failed(around, "", fail.cause, f"{fail.component.short} inside of it: {fail.detail}"))
+
+    def _heeds(self, fail: Fail) -> bool:
+        """Whether a FAIL may be about this task, as far as it says itself."""
+        if fail.task not in ("", self._task):
+            return False
+        if fail.cause is Cause.LET_GO:
+            return fail.epoch > 0  # else it has obeyed a release, which those need to know that follow its outputs
+        held = self._state().held.get(fail.component)
+        # An older component names no task with a yield, and this one may be the one that asks.
+        return fail.cause is not Cause.YIELD or (held is not None and held.reserved)
+
+    def _received_moved(self, sample: Sample) -> None:
+        try:
+            moved = decode(sample.payload, Moved)
+        except PeerError as error:
+            log.warning("passed over a notice on %s: %s", sample.key, error)
+            return
+        mine = sample.key == self._keys.moved(moved.component) and moved.component in self._state().held
+        if mine and self._state().held[moved.component].life in ("", moved.life):
+            self._calls.moved(moved.component, moved.outputs, moved.callers)
+            self._step(Rewired(moved.component))
+
+    def _received_free(self, sample: Sample) -> None:
+        try:
+            free = decode(sample.payload, Free)
+        except PeerError as error:
+            log.warning("passed over a notice on %s: %s", sample.key, error)
+            return
+        if sample.key != self._keys.free(free.component):
+            return
+        if free.task == self._task:
+            self._step(Freed(free.component))
+        elif not free.task:
+            self._step(WaitedLong(free.component, self._state().epoch))

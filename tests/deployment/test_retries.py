@@ -1,0 +1,107 @@
+"""When lost components are tried again, and when what runs is looked at for something better."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+from selfconf.configurator.state import Phase
+from selfconf.deployment.retries import LONGEST_PAUSE, TRY_AGAIN
+from selfconf.sdk.component import Refused
+from tests.deployment.tasks import TASK
+from tests.faults.ecologies import CHOICE
+from tests.lab import Lab
+
+
+def test_patience_goes_on_when_a_component_that_another_configurator_held_is_free(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(patient=True)
+    lab.let_pass(3 * TRY_AGAIN)
+    assert second.state.phase is Phase.REFUSED
+    assert {detail for waiting in lab.acts("waiting") for detail in waiting.lost.values()} == {
+        f"refused, the task navigate (priority 0, configurator {first.name}) holds it"
+    }
+    first.stop()
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker"}
+    hold = lab.runtimes["drive"].activation.first
+    assert hold is not None
+    assert hold.claim.supervisor == second.supervisor
+
+
+def test_patience_goes_on_when_the_configurator_that_held_a_component_is_killed(lab: Lab) -> None:
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(patient=True)
+    lab.let_pass(2 * TRY_AGAIN)
+    lab.crash(first)
+    assert lab.running(second)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_patience_tries_every_lost_component_that_lives_again_at_intervals_that_double(lab: Lab) -> None:
+    drive = lab.components["drive"]
+    drive.refusal = Refused("the battery is empty")
+    tried: list[float] = []
+    started = drive.started
+
+    def note() -> None:
+        tried.append(lab.network.time)
+        started()
+
+    drive.started = note  # type: ignore[method-assign]  # it notes when
+    agent = lab.agent(patient=True)
+    lab.let_pass(5 * LONGEST_PAUSE)
+    assert agent.state.phase is Phase.REFUSED
+    pauses = [round(after - before) for before, after in itertools.pairwise(tried)]
+    doubling = [TRY_AGAIN * 2**number for number in range(4)]
+    assert pauses == [*doubling, *[LONGEST_PAUSE] * (len(pauses) - len(doubling))]
+    assert len(pauses) > len(doubling)
+    drive.refusal = None
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, LONGEST_PAUSE + 1.0)
+
+
+def test_the_pause_of_a_patient_task_is_short_again_after_it_has_run(lab: Lab) -> None:
+    agent = lab.agent(patient=True)
+    lab.running(agent)
+    for _ in range(2):
+        lab.crash("drive")
+        lab.let_pass(4 * TRY_AGAIN)
+        lab.component("drive")
+        assert lab.running(agent)
+    drive = lab.components["drive"]
+    drive.refusal = Refused("the battery is empty")
+    drive.fail("the battery is empty")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.REFUSED
+    drive.refusal = None
+    lab.let_pass(TRY_AGAIN + 1.0)
+    assert agent.state.phase is Phase.RUNNING
+
+
+def test_a_task_that_changes_for_the_better_takes_in_the_end_what_another_has_let_go_of(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=CHOICE.advertisements)
+    for site, names in CHOICE.sites.items():
+        lab.site(site, *names)
+    for name in CHOICE.advertisements:
+        lab.component(name)
+    first = lab.agent()
+    lab.running(first)
+    second = lab.agent(upgrade=0.5)
+    assert lab.running(second)
+    others = TASK | {"tracker"}
+    assert lab.active() == others | {"second-control", "second-drive"}
+    lab.let_pass(LONGEST_PAUSE)
+    first.stop()
+    assert lab.until(lambda: lab.active() == others, LONGEST_PAUSE + 1.0)
+    assert second.state.phase is Phase.RUNNING
+
+
+def test_a_site_that_never_answers_does_not_put_off_another_chance(lab: Lab) -> None:
+    lab.network.node().announce(lab.keys.site_life("silent", "1"))
+    agent = lab.agent(patient=True)
+    assert lab.running(agent)
+    lab.components["drive"].fail("jammed")
+    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 3 * TRY_AGAIN)
