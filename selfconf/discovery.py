@@ -500,6 +500,11 @@ def _few(complaints: list[str], whose: str) -> list[str]:
     return complaints if more <= 0 else [*complaints[:MOST_COMPLAINTS], f"left out {more} further answers {whose}"]
 
 
+def namesakes(lives: Iterable[str]) -> list[str]:
+    """A sentence for each name that several sites have, by the liveliness keys of all sites."""
+    return _Names(sorted((owner_of(key), life_of(key)) for key in lives)).complaints()
+
+
 def _name_with_life(name: str, life: str) -> str:
     return f"{name} ({life or 'no life given'})"
 

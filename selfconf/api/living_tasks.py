@@ -9,6 +9,7 @@ from itertools import chain, count
 
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.port import Replies
+from selfconf.discovery import namesakes
 from selfconf.errors import NetworkError, PeerError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
@@ -121,7 +122,7 @@ class LivingTasks:
         self.silent: tuple[str, ...] = ()
         """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
         self.complaints: tuple[str, ...] = ()
-        """What was wrong with the answers of configurators, as of the last question."""
+        """What was wrong with the answers of configurators, as of the last question, and which sites have one name."""
         self._holding: list[SilentHolder] = []
 
     def running(self, by_components: bool = False) -> tuple[Status, ...]:
@@ -149,7 +150,7 @@ class LivingTasks:
         rejected += map(_said_of_silent, sorted(living - answered))
         rejected += map(str, self._holding)
         self.silent = tuple(sorted((living - answered).union(one.configurator for one in self._holding)))
-        self.complaints = tuple(rejected)
+        self.complaints = (*rejected, *namesakes(self._bus.living(keys.any_site_life())))
         return tuple(sorted(found, key=lambda status: status.configurator))
 
     def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:

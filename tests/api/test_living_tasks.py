@@ -123,6 +123,15 @@ def test_who_lives_and_does_not_answer_is_named_and_who_speaks_for_another_is_le
     assert [text for text in tasks.asked.complaints if "'c1' lives, but does not answer" in text]
 
 
+def test_sites_of_one_name_are_named_with_their_lives_as_discovery_names_them(tasks: Tasks) -> None:
+    for site, life in (("home", "1"), ("shed", "1"), ("home", "2")):
+        tasks.network.node().announce(KEYS.site_life(site, life))
+    for ask in (tasks.asked.running, tasks.asked.all):
+        ask()
+        assert tasks.asked.complaints == ("2 sites are called home: home (1), home (2)",)
+    assert tasks.asked.silent == ()
+
+
 def test_a_task_is_stopped_by_its_name_or_by_that_of_its_configurator(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1")
     tasks.configurator("c2", "tidy~2")
