@@ -15,6 +15,7 @@ order of the roles, then of the candidates) is added, up to the role's maximum. 
 of its required inputs is matched, and the free parameters still have a value. Adding a component never unfeeds another.
 What was added in a role of an interaction and in the end neither feeds another component nor is fed by one is left out
 of that role, and the rest is done again: it may have taken the place of one that is connected, or be of use elsewhere.
+If another one joins then, what was left out is tried once more, until nothing joins.
 """
 
 from __future__ import annotations
@@ -241,19 +242,29 @@ class Problem:
         The first of the `preferred` candidates come before all others; the components `besides` may not play.
         """
         asked = {candidate.profile.component for role in playing for candidate in role}
+        every, judged = preferred, set[tuple[int, IRI]]()
         while True:
             extended, values = [list(role) for role in playing], self._values_of(playing)
             for candidates in preferred:
                 values = self._extend(extended, values, candidates, besides)
             found = self.configuration(extended, values)
             idle = {(role, component) for role, component in self._idle(found) if component not in asked}
-            if not idle:
+            players = {(role, c.profile.component) for role, some in enumerate(extended) for c in some}
+            if idle:
+                judged |= players
+                # In another role they may be of use.
+                preferred = [
+                    [
+                        [c for c in some if (role, c.profile.component) not in idle]
+                        for role, some in enumerate(candidates)
+                    ]
+                    for candidates in preferred
+                ]
+            elif judged and not players <= judged:
+                # What was connected to none may be connected to what has joined since.
+                playing, preferred, judged = extended, every, set()
+            else:
                 return found
-            # In another role they may be of use.
-            preferred = [
-                [[c for c in some if (role, c.profile.component) not in idle] for role, some in enumerate(candidates)]
-                for candidates in preferred
-            ]
 
     def _idle(self, configuration: Configuration) -> set[tuple[int, IRI]]:
         """Return what neither feeds another component nor is fed by one, with its role, which is in an interaction."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations, product
 
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
@@ -144,14 +144,24 @@ class World:
     ) -> list[list[Candidate]]:
         """With every further candidate that fits, in order, up to the maxima; first those that run in the same role.
 
-        Those of them that are connected to none are left out of that role, and the rest is done again.
+        Those of them that are connected to none are left out of that role, and the rest is done again. If another one
+        joins, they are tried once more.
         """
         played = {} if running is None else {a.role: a.components for a in running.assignments}
         few = [
             [c for c in some if c.profile.component in played.get(role.iri, ())]
             for some, role in zip(self.candidates, self.roles, strict=True)
         ]
-        asked, excluded = {c.profile.component for role in players for c in role}, set[tuple[IRI, IRI]]()
+        asked = {c.profile.component for role in players for c in role}
+        while (grown := self._connected(players, few, asked)) != [list(role) for role in players]:
+            players = grown
+        return grown
+
+    def _connected(
+        self, players: Sequence[Sequence[Candidate]], few: Sequence[Sequence[Candidate]], asked: Collection[IRI]
+    ) -> list[list[Candidate]]:
+        """With further candidates, those left out that are connected to none, unless they are asked for."""
+        excluded = set[tuple[IRI, IRI]]()
         while True:
             grown = [list(role) for role in players]
             for candidates in (few, self.candidates):

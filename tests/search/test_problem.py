@@ -74,6 +74,20 @@ def test_a_further_candidate_joins_only_if_it_feeds_or_is_fed() -> None:
     assert answer == World(given_.task, given_.partition, given_.hierarchy).first()
 
 
+def test_what_was_connected_to_nobody_joins_once_another_has_joined_that_it_feeds() -> None:
+    # The first of the users takes the only place and is of no use, as then the second source is; both are left out.
+    sources = [component("given", outputs="s:S"), component("more", outputs="s:S")]
+    given_ = problem(
+        {"user": [component("idle"), component("user", "s:S")], "source": sources},
+        "source>user",
+        {"user": (0, 1), "source": (1, 2)},
+    )
+    answer = first.search(given_)
+    assert isinstance(answer, Configuration)
+    assert [[one.short for one in role.components] for role in answer.assignments] == [["user"], ["given", "more"]]
+    assert answer == World(given_.task, given_.partition, given_.hierarchy).first()
+
+
 def test_once_all_roles_are_full_no_further_candidate_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     # Each extra that joins is of no use, and leaves its place to the next: only the last one feeds the cap.
     extras = [*(component(f"idle{k:03}", outputs="b:Bump") for k in range(200)), component("useful", outputs="p:Pose")]
