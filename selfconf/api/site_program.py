@@ -23,6 +23,7 @@ from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import described_in, existing
 from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
+from selfconf.bus.endpoints import endpoint_host
 from selfconf.bus.port import Bus
 from selfconf.bus.zenoh_bus import client
 from selfconf.deployment import Keeper, TaskFolder
@@ -166,7 +167,7 @@ def _beyond_loopback(listen: str | None) -> bool:
     """Whether an endpoint can be reached from other hosts."""
     if listen is None:
         return False
-    return is_beyond_loopback(listen.partition("/")[2].rpartition(":")[0].strip("[]"))
+    return is_beyond_loopback(endpoint_host(listen))
 
 
 def is_beyond_loopback(host: str) -> bool:

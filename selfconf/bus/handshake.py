@@ -12,6 +12,7 @@ import socket
 import ssl
 
 from selfconf.bus.credentials import Credentials
+from selfconf.bus.endpoints import endpoint_host, endpoint_port
 from selfconf.model.setting_names import setting
 
 HANDSHAKE = 1.5
@@ -31,13 +32,14 @@ _SAID = {
 
 def why_refused(endpoint: str, credentials: Credentials) -> str:
     """What is wrong between this end and an endpoint such as `tls/127.0.0.1:7447`; empty if nothing was found."""
-    host, _, port = endpoint.partition("/")[2].rpartition(":")
-    host = host.strip("[]")
+    host, port = endpoint_host(endpoint), endpoint_port(endpoint)
+    if port is None:
+        return ""
     context = ssl.create_default_context(cafile=str(credentials.authorities))
     context.load_cert_chain(credentials.certificate, credentials.key)
     try:
         with (
-            contextlib.closing(socket.create_connection((host, int(port)), HANDSHAKE)) as plain,
+            contextlib.closing(socket.create_connection((host, port), HANDSHAKE)) as plain,
             context.wrap_socket(plain, server_hostname=host) as link,
         ):
             link.recv(1)
@@ -47,7 +49,7 @@ def why_refused(endpoint: str, credentials: Credentials) -> str:
         known = (said for alert, said in _SAID.items() if alert in (error.reason or ""))
         said = next(known, "").format(name=credentials.name)
         return f"{endpoint} refuses: {said}" if said else ""
-    except (OSError, ValueError):
+    except (OSError, ValueError, OverflowError):
         return ""  # nothing listens, or it stays silent
     return ""
 

@@ -29,6 +29,7 @@ from typing import Any
 import zenoh
 from zenoh.handlers import Callback
 
+from selfconf.bus.endpoints import endpoint_port
 from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh_session import Security, open_session, with_port
 from selfconf.errors import NetworkError
@@ -59,7 +60,7 @@ class Hub:
     def __init__(self, listen: str, security: Security | None = None) -> None:
         """Port 0 means any free one. Raises NetworkError if the endpoint is taken, or none."""
         self.security = security
-        attempts = 5 if listen.endswith(":0") else 1
+        attempts = 5 if endpoint_port(listen) == 0 else 1
         for attempt in range(1, attempts + 1):
             self.endpoint = with_port(listen)
             try:
@@ -235,9 +236,11 @@ class _Uplink:
 def cut_connections(endpoint: str, *, from_here: bool = False) -> None:
     """End what is left of the connections that others have made to an endpoint of this process.
 
-    `from_here`: those that this process has made to an endpoint of another one.
+    `from_here`: those that this process has made to an endpoint of another one. Nothing is done where it has no port.
     """
-    port = int(endpoint.rpartition(":")[2])
+    port = endpoint_port(endpoint)
+    if port is None:
+        return
     for path in list(DESCRIPTORS.iterdir()) if DESCRIPTORS.is_dir() else ():
         with suppress(OSError):  # it was closed meanwhile, or is not connected any more
             if not path.is_socket():

@@ -21,6 +21,7 @@ from typing import Any
 import zenoh
 
 from selfconf.bus.credentials import Credentials
+from selfconf.bus.endpoints import endpoint_host, endpoint_port, with_other_port
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
@@ -92,17 +93,16 @@ def open_session(
 
 def with_port(endpoint: str) -> str:
     """The endpoint with a free port in place of port 0; Zenoh would not say which one it has taken."""
-    head, _, port = endpoint.rpartition(":")
-    if port != "0":
+    if endpoint_port(endpoint) != 0:
         return endpoint
-    host = head.partition("/")[2].strip("[]")
+    host = endpoint_host(endpoint)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as probe:
         try:
             probe.bind((host, 0))
         except OSError as error:
             raise NetworkError(f"cannot listen on {endpoint}: {error.strerror or error}") from None
-        return f"{head}:{probe.getsockname()[1]}"
+        return with_other_port(endpoint, probe.getsockname()[1])
 
 
 def _has_shared_memory() -> bool:

@@ -81,6 +81,18 @@ def test_nobody_stays_connected_to_a_hub_that_has_broken_inside_and_was_closed(m
         hub.close()
 
 
+@pytest.mark.parametrize("settings", ["#so_rcvbuf=65536", "?prio=1"])
+def test_a_hub_with_settings_of_its_link_listens_on_a_free_port_and_is_closed(settings: str) -> None:
+    hub = Hub(f"{ANYWHERE_ON_LOOPBACK}{settings}")
+    assert hub.endpoint.endswith(settings)
+    assert hub.endpoint != f"{ANYWHERE_ON_LOOPBACK}{settings}"
+    hub.close()
+
+
+def test_a_hub_on_a_local_socket_is_closed(tmp_path: Path) -> None:
+    Hub(f"unixsock-stream/{tmp_path / 'hub'}").close()
+
+
 def test_a_hub_whose_keys_are_gone_stays_as_it_is(tmp_path: Path) -> None:
     hub = Hub(ANYWHERE_ON_LOOPBACK)
     gone = Credentials("site.home", tmp_path / "certificate.pem", tmp_path / "key", tmp_path / "authority", tmp_path)
