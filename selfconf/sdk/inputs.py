@@ -1,11 +1,6 @@
-"""The inputs of a component: which outputs they follow, whether these keep their promises, and what waits to be read.
+"""The inputs of a component: which outputs they follow, when they are unfed, how one output follows another.
 
-*Queues.* What arrives waits in a queue of its own for each output that an input follows, until the component's code
-has time. The queue is bounded: the newest signal counts of an output that promises a rate, and of one that does not as
-many are kept as events may need (`signal_queue`); `sc:depth` of the input says otherwise. What is dropped is counted.
-
-*Silence.* An input that follows an output with a promised rate reports when no signal has come for `PATIENCE` of the
-promised periods, and again as long as none comes.
+Each input has a subscription for each of its outputs (`input_subscription`).
 
 *Blindness.* An input is unfed when the life of the last of its outputs has ended, or that output's component has raised
 FAIL, has fallen silent, or has let go of a task and acts for no other, or another output has taken its place and has
@@ -18,74 +13,32 @@ issued a signal. A new output that issues nothing in time while the old one does
 long as both is so; what becomes of that is for the configurator to say. An output that has nothing to issue, such as a
 doorbell, looks like one that never will: where the old one has issued nothing in that time either, and both
 live, the new one takes its place, and the input has lost nothing.
-
-*Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it.
 """
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import partial
 from typing import Any, Protocol
 
 from selfconf import ros_messages
-from selfconf.bus.port import Bus, Replies, Sample, Undo
-from selfconf.errors import PeerError
+from selfconf.bus.port import Bus
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import CALL_MARK, Profile
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Cause, Fail, Wire
-from selfconf.protocol.stamps import StampReader
+from selfconf.protocol.messages import Apply, Wire
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.component import Signal
-from selfconf.sdk.outputs import SIGNALS_FIRST
-from selfconf.sdk.payloads import read_payload
+from selfconf.sdk.input_subscription import BEGINNING, PATIENCE, InputEvents, InputSubscription
 from selfconf.sdk.signal_queue import SignalQueue
 
-log = logging.getLogger(__name__)
-
-PATIENCE = 4.0
-"""After how many promised periods without a signal an output counts as silent."""
-LEAST_PATIENCE = 0.1
-"""Seconds without a signal that no output is blamed for: less than that is the network's and the scheduler's."""
-BEGINNING = 20.0
-"""Seconds that an output may take to issue its first signal: its component may have to be started by its site."""
-JUST_COME = 0.5
-"""Seconds for which the newest signal of an output that stood by counts when the output becomes an input's own."""
-UNSEEN = 1.0
-"""Seconds until the component of an output has to have shown that it lives, unless the output issues something."""
 HANDOVER = 2.0
 """Seconds in which an output that an input is handed over to has to issue a signal: more where it promises one only in
 `PATIENCE` longer periods, but not more than `BEGINNING`."""
 HANDOVER_PATIENCE = 30.0
 """Seconds for which the caller may wait for an input to be handed over: the longest handover, and what comes of it."""
 HANDOVER_CHECK = 0.01
-"""How often, in seconds, it is looked whether the new one has."""
-LATE = 10_000
-"""By how many signals one that is late can be behind the newest. One that is further behind is not late: the number of
-the newest was none of its source's, and may not mute it."""
-PASSED_OVER = "passed over a signal on %s: %s"
-LAST_SIGNAL = 1.0
-"""Seconds that an output may take to say its last signal; a later one comes by itself."""
-ASK_FOR_LAST = (0.3, 1.0, 3.0)
-"""Seconds after which an output that has issued nothing is asked once more: a question may be there before the output
-has issued anything, and the signal before the subscription."""
-
-
-@immutable
-class InputEvents:
-    """What the inputs of a component report: on the code's thread what arrives, on the bus's thread the rest."""
-
-    deliver: Callable[[str, Signal], None]
-    """A signal has arrived on an input; called on the thread of the component's code."""
-    silent: Callable[[Wire, float], None]
-    """An output that has promised a rate has issued nothing for so many seconds."""
-    unfed: Callable[[str], None]
-    """An input has lost its last source."""
+"""How often, in seconds, it is looked whether the new output has issued one."""
 
 
 class InputFollower(Protocol):
@@ -318,228 +271,3 @@ class Inputs:
 def _signals(inputs: Mapping[str, tuple[Wire, ...]]) -> Iterator[tuple[str, Wire]]:
     """Yield which inputs are to follow which outputs, operations left out."""
     return ((port, wire) for port, wires in inputs.items() if not port.endswith(CALL_MARK) for wire in wires)
-
-
-class InputSubscription:
-    """One input's subscription to one output, with a watch for its end, and for silence where a rate is promised.
-
-    While it is muted, because the output only stands by or the connection is about to end, it passes over what it
-    receives, but for the newest signal: that counts if it is unmuted right after.
-    """
-
-    def __init__(
-        self,
-        bus: Bus,
-        keys: Keys,
-        code: CodeThread,
-        port: str,
-        wire: Wire,
-        queue: SignalQueue,
-        events: InputEvents,
-        lost: Callable[[str], None],
-        read: Callable[[Any, str], Any],
-    ) -> None:
-        self._read_value = read
-        self._bus, self._keys, self._code, self._port, self._wire = bus, keys, code, port, wire
-        self._events, self._report_lost = events, lost
-        self.muted = True
-        self.lost = False
-        """Whether the output can issue nothing any more, as far as is known."""
-        self._life, self._sequence = "", 0
-        """The newest signal that was delivered, by the life of its source and its number in it."""
-        self._over = "", 0
-        """The last signal of a source that has failed since, which ends no blindness: it may be read after FAIL."""
-        self._queue = queue
-        self._stamps = StampReader()
-        self._heard_at = -JUST_COME
-        """When the newest signal came, in seconds of the bus's clock."""
-        self._understood_at = self._heard_at
-        """When the newest signal was read that could be: what cannot be read is no sign that the output issues."""
-        self._complained = False
-        self._lives: set[str] = set()
-        self._ended = False
-        self._deadline: Undo | None = None
-        self._declared = [bus.subscribe(keys.output(wire.component, wire.output), self._received, direct=True)]
-        bus.later(SIGNALS_FIRST, self._watch)
-
-    @property
-    def dropped(self) -> int:
-        """How many signals were dropped because the component's code was too slow."""
-        return self._queue.dropped
-
-    @property
-    def issued(self) -> bool:
-        """Whether the output has issued a signal since it is listened to."""
-        return self._heard_at >= 0.0
-
-    def heard_since(self, moment: float) -> bool:
-        """Whether the output has issued a signal at that moment, in seconds of the bus's clock, or later."""
-        return self._heard_at >= moment
-
-    @property
-    def heard(self) -> bool:
-        """Whether the output has just issued a signal, so that the input that follows it from now on is fed."""
-        return bool(self._queue) and self._bus.now() - self._heard_at < JUST_COME
-
-    def ask_for_last(self) -> None:
-        """Ask the output once more for its last signal."""
-        self._ask_for_last(ASK_FOR_LAST)
-
-    def unmute(self) -> None:
-        """Deliver what is received, from the newest signal on if that has only just come."""
-        if not self.muted:
-            return
-        self._queue.keep(1 if self.heard else 0)
-        self.muted = False
-        self._bus.later(UNSEEN, partial(self._look_for_life, self._bus.now()))
-        self._expect()
-        if self._queue:
-            self._code.signal(self._read)
-
-    def mute(self) -> None:
-        """Pass over what is received."""
-        self.muted = True
-        self._queue.keep(0)
-        if self._deadline is not None:
-            self._deadline()
-            self._deadline = None
-
-    def end(self) -> None:
-        """Follow the output no more."""
-        self.mute()
-        self._ended = True
-        for undo in self._declared:
-            undo()
-        self._declared.clear()
-
-    # What arrives: on whatever thread it does.
-
-    def _received(self, sample: Sample) -> None:
-        self._heard_at = self._bus.now()
-        if self.muted:
-            self._queue.keep(0)
-        grown = self._queue.append(sample)
-        if grown and not self.muted:  # as many reads are due as there are signals
-            self._code.signal(self._read)
-
-    # What the component's code gets, on its thread.
-
-    def _read(self) -> None:
-        """Deliver the oldest signal that waits; none may be left, as the queue keeps the newest only."""
-        lost = self.lost
-        sample = None if self.muted else self._queue.pop()
-        if sample is None:
-            return
-        try:
-            raw, stamp = self._stamps.read(sample.attachment)
-            value = self._read_value(read_payload(sample.payload, raw, stamp.encoding), stamp.encoding.media)
-        except (PeerError, ValueError, RecursionError) as error:
-            log.log(logging.DEBUG if self._complained else logging.WARNING, PASSED_OVER, sample.key, error)
-            self._complained, self._heard_at = True, self._understood_at
-            return
-        if self._complained:
-            self._complained, self._heard_at = False, self._bus.now()
-        self._understood_at = self._heard_at
-        if stamp.component != self._wire.component:
-            return
-        if self.muted or (self.lost and not lost):  # while it was read
-            return
-        if stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE:
-            return  # late, doubled, or a latched signal that was issued again for another input
-        if lost and stamp.life == self._over[0] and stamp.sequence <= self._over[1]:
-            return
-        self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
-        self._events.deliver(
-            self._port, Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
-        )
-
-    # What is noticed of the output, on the bus's thread.
-
-    def _watch(self) -> None:
-        """Ask for the last signal, and follow the life of the component; not before the signals that wait flow."""
-        if self._ended:
-            return
-        self._ask_for_last(ASK_FOR_LAST)
-        self._declared.append(self._bus.watch(self._keys.lives(self._wire.component), self._life_changed))
-        self._declared.append(self._bus.subscribe(self._keys.fail(self._wire.component), self._failed))
-
-    def _ask_for_last(self, again: tuple[float, ...]) -> None:
-        if self._ended or (self.issued and again is not ASK_FOR_LAST):
-            return
-        key = self._keys.output(self._wire.component, self._wire.output)
-        self._bus.ask(key, b"", LAST_SIGNAL, self._latched)
-        if again:
-            self._bus.later(again[0], partial(self._ask_for_last, again[1:]))
-
-    def _latched(self, replies: Replies) -> None:
-        for sample in () if self._ended else replies.samples:
-            if not self._queue:
-                self._received(sample)
-
-    def _life_changed(self, key: str, alive: bool) -> None:
-        if alive:
-            self._lives.add(key)
-            return
-        self._lives.discard(key)
-        if not self._lives:
-            self._bus.later(0.0, partial(self._lose, self._heard_at))
-
-    def _look_for_life(self, began: float) -> None:
-        """An output that promises no rate is lost as well if nothing shows that its component lives, or is in reach."""
-        if not self._ended and not self._lives and self._heard_at < began:
-            self._lose(self._heard_at)
-
-    def _failed(self, sample: Sample) -> None:
-        try:
-            fail = decode(sample.payload, Fail)
-        except PeerError:
-            return
-        if fail.component != self._wire.component or not fail.life or fail.cause is Cause.YIELD:
-            return
-        if fail.cause is Cause.LET_GO and not self.muted:
-            self._look_whether_it_acts(self._heard_at)
-        else:
-            self._over = fail.life, fail.sequence
-            self._lose(self._heard_at)
-
-    def _look_whether_it_acts(self, heard: float) -> None:
-        """The component has let go of a task: it may act for another one, and then it answers with its last signal."""
-
-        def answered(replies: Replies) -> None:
-            if not replies.complete and not self._ended:
-                self._look_whether_it_acts(heard)
-            elif not replies.samples:
-                self._lose(heard)
-
-        self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, answered)
-
-    def _lose(self, heard: float) -> None:
-        """The output is lost, unless it has issued a signal after that time; one that stands by may act again later."""
-        if self.lost or self._heard_at > heard:
-            return
-        self._queue.keep(0)  # before the input hears of it: what comes after that is news, and feeds it
-        if not self.muted:
-            self.lost = True
-            self._report_lost(self._port)
-
-    def _expect(self) -> None:
-        """Expect a signal within the promised time, from now on."""
-        if self._wire.period is None:
-            return
-        if self._deadline is not None:
-            self._deadline()
-        usual = max(PATIENCE * self._wire.period, LEAST_PATIENCE)
-        seconds = usual if self._sequence else max(usual, BEGINNING)
-        began = self._bus.now()
-
-        def look() -> None:
-            allowed = usual if self._heard_at >= began else seconds
-            left = max(self._heard_at, began) + allowed - self._bus.now()
-            if left > 0:
-                self._deadline = self._bus.later(left, look)
-                return
-            self._events.silent(self._wire, allowed)
-            self._lose(self._heard_at)
-            self._expect()
-
-        self._deadline = self._bus.later(usual if self._sequence else min(seconds, usual), look)

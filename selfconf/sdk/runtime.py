@@ -43,7 +43,8 @@ from selfconf.protocol.messages import (
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
-from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
+from selfconf.sdk.input_subscription import InputEvents
+from selfconf.sdk.inputs import InputFollower, Inputs
 from selfconf.sdk.operations import Operations
 from selfconf.sdk.other_lives import OtherLives
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs

@@ -169,7 +169,7 @@ MUTATIONS = {
             "selfconf.sdk.component_code.ComponentCode._start": sets_late,
         }
     ),
-    "the last signal is heard": Mutation({"selfconf.sdk.inputs.InputSubscription._read": nothing}),
+    "the last signal is heard": Mutation({"selfconf.sdk.input_subscription.InputSubscription._read": nothing}),
     "who calls is connected": Mutation(
         {
             "selfconf.sdk.operations.Operations.follow": calls_a_stranger,

@@ -13,7 +13,7 @@ from selfconf.discovery import BETWEEN_DISCOVERIES, IN_A_ROW, MOST_COMPLAINTS, D
 from selfconf.protocol.activation import MOST_HOLDING
 from selfconf.protocol.codec import LARGEST, MOST_ADVERTISED, MOST_WIRES, encode
 from selfconf.protocol.messages import Apply, Cause, Fail, Page, Reserve, Stamp, Wire
-from selfconf.sdk.inputs import LATE
+from selfconf.sdk.input_subscription import LATE
 from selfconf.sdk.payloads import LARGEST_JSON
 from selfconf.sdk.runtime import MOST_PENDING
 from tests.hostile.bounded import bounded

@@ -127,3 +127,8 @@ def release(epoch: int = 1, supervisor: str = US, **claim: Any) -> Release:
 def follow(epoch: int = 1, period: float | None = None, supervisor: str = US, **claim: Any) -> Apply:
     """Be active, and follow the tracker."""
     return apply(epoch, supervisor, {"position": (Wire(TRACKER, "pose", period),)}, **claim)
+
+
+def silence(stage: Stage) -> list[tuple[IRI, str]]:
+    """Whose silence was reported, and in which life."""
+    return [(fail.component, fail.life) for fail in stage.fails if fail.cause is Cause.SILENCE]
