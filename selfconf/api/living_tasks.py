@@ -146,10 +146,11 @@ class LivingTasks:
             else:
                 rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
         answered = {status.configurator for status in found}
-        self._holding = self._holding_beside(living | answered) if by_components else []
-        rejected += map(_said_of_silent, sorted(living - answered))
+        self._holding = self._holding_beside(answered) if by_components else []
+        holding = {one.configurator for one in self._holding}
+        rejected += map(_said_of_silent, sorted(living - answered - holding))
         rejected += map(str, self._holding)
-        self.silent = tuple(sorted((living - answered).union(one.configurator for one in self._holding)))
+        self.silent = tuple(sorted((living - answered) | holding))
         self.complaints = (*rejected, *namesakes(self._bus.living(keys.any_site_life())))
         return tuple(sorted(found, key=lambda status: status.configurator))
 
@@ -212,27 +213,35 @@ class LivingTasks:
         """Take down a task, given by its name or that of its configurator, or all of them; returns their names.
 
         Raises NetworkError if there is none of that name, or if one does not answer or does not end in time, or if a
-        component was turned off and does not obey; of all tasks those are taken down first that answer.
+        component was turned off and does not obey; of all tasks those are taken down first that answer. One that does
+        not answer, suspended perhaps, is an error also where what it held has come to rest: it may go on.
         """
         running = [s for s in self.running(by_components=True) if name in (None, s.configurator, s.name)]
         kept = self.kept(name)
         holding = [one for one in self._holding if one.is_meant(name)]
-        silent = {one for one in self.silent if name in (None, one)}.difference(one.configurator for one in holding)
-        if name is not None:
+        unanswered = {record.task for record in kept}.difference(status.task for status in running)
+        silent = self._silent_beside_holders(None if unanswered else name)
+        if name is not None and not kept:
             _raise_for(map(_said_of_silent, sorted(silent)))
-            if not running and not kept and not holding:
+            if not running and not holding:
                 raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
         self._take_down(running, kept)
         _raise_for([*self._disobedience(running), *self._unheard(silent, holding)])
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
-    def _unheard(self, silent: Set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
+    def _silent_beside_holders(self, name: str | None) -> set[str]:
+        """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
+        return {one for one in self.silent if name in (None, one)}.difference(one.configurator for one in self._holding)
+
+    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
         """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest."""
-        if silent:  # one that was only slow may have ended meanwhile, and a suspended one is no longer seen to live
+        if silent:  # one that is suspended is no longer seen to live after a while
             living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
             yield from map(_said_of_silent, sorted(living & silent))
             holding = [*holding, *(one for one in self._holding_beside(living) if one.configurator in silent)]
+            for gone in sorted(silent.difference(living, (one.configurator for one in holding))):
+                yield f"the configurator {gone!r} did not answer and is not seen any more; if suspended, it will go on"
         for one in holding:
             act_on = self._after_some_time((component, one.task) for component in one.components)
             at_rest = "they have come to rest, and if it was suspended, it takes them again when it goes on"

@@ -234,6 +234,47 @@ def test_nothing_is_said_to_be_taken_down_that_a_silent_configurator_holds(
     assert 0.3 < tasks.network.time - began < 10.0
 
 
+@pytest.mark.parametrize("name", [None, "patrol", "c2"])
+def test_a_configurator_that_lives_and_does_not_answer_is_named_with_the_task_that_it_holds_components_for(
+    tasks: Tasks, name: str | None
+) -> None:
+    tasks.configurator("c2", PATROL.task, DRIVE, answers=False)
+    tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 3, AT_REST)
+    with pytest.raises(
+        NetworkError, match=r"^the configurator 'c2' of 'patrol' holds drive, but does not answer; they h"
+    ):
+        tasks.asked.stop(name)
+    assert tasks.asked.silent == ("c2",)
+
+
+def test_a_configurator_that_has_not_answered_is_an_error_though_all_rests_and_it_is_not_seen_any_more(
+    tasks: Tasks,
+) -> None:
+    """One that is suspended is asked for three seconds, and its life seems to end meanwhile."""
+    tasks.component(DRIVE, AT_REST)
+    suspended = tasks.network.node()
+    suspended.announce(KEYS.configurator_life("c2", "1"))
+    suspended.serve(KEYS.configurator_call("c2", "status"), lambda request: None)
+    suspended.later(1.0, suspended.close)
+    with pytest.raises(NetworkError, match=r"^the configurator 'c2' did not answer and is not seen any more"):
+        tasks.asked.stop()
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_task_that_is_kept_is_not_said_to_be_taken_down_where_its_configurator_may_be_silent(
+    tasks: Tasks, kept: bool
+) -> None:
+    tasks.configurator("c2", PATROL.task, answers=False)
+    tasks.configurator("c3", TIDY.task)
+    tasks.site(PATROL if kept else TIDY)
+    if not kept:
+        assert tasks.asked.stop("tidy") == ("tidy",)
+        return
+    with pytest.raises(NetworkError, match="the configurator 'c2' lives, but does not answer"):
+        tasks.asked.stop("patrol")
+    assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
+
+
 def test_what_another_configurator_holds_is_nothing_to_the_end_of_a_task(tasks: Tasks) -> None:
     tasks.configurator("c1", TIDY.task)
     tasks.component(DRIVE, held_by("c2", PATROL.task))

@@ -93,7 +93,9 @@ def test_no_moment_passes_in_which_a_run_that_is_suspended_acts_and_is_not_named
     run.send(signal.SIGCONT)
     run.act("running")
     run.send(signal.SIGSTOP)
-    assert f"the configurator {name!r}" in command(capsys, "stop", *where).err
+    stopped = command(capsys, "stop", *where)
+    assert stopped.code == 2
+    assert f"the configurator {name!r}" in stopped.err
     assert inhabited.until(lambda: inhabited.active(*EVERYBODY) == set())
     run.send(signal.SIGCONT)
     run.act("running")
