@@ -2,13 +2,13 @@
 
     authority.pem     the certificate of the authority, which every holder has
     authority.key     its key, which makes certificates for any name, so it stays on one machine
-    issued/           the certificates it has issued, by common name and serial
+    issued/           the certificates it has issued, by common name and serial, and into which folder it wrote each
     certificate.pem   the certificate of the holder of this folder, with certificate.key
     own/NAME/         in the folder of an authority: the certificates of programs that are given the folder itself
     components.pem    the authority of one host, with components.key: it issues to the components that its sites start
     components/NAME/  their certificates, each for all components of one process
     admitted/NAME/    certificates that others have shown to the sites of an ecology
-    revoked.pem       what the authority has revoked; a copy of its own
+    revoked.pem       what the authority has revoked: a copy in each folder that it has issued to
 
 Keys have the mode 0600 and folders 0700; a folder that others may read is refused. The authority of a host is believed
 by the hubs of that host alone: what a site issues to its components opens no door anywhere else.
@@ -20,7 +20,7 @@ import fcntl
 import hashlib
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import TypeVar
@@ -117,15 +117,50 @@ class KeysFolder:
         return self._issued(principal, folder, key, hosts, days)
 
     def revoke(self, principal: Principal) -> int:
-        """Revoke all certificates of a name that have not expired; how many. Raises AuthorError if there are none."""
+        """Revoke all certificates of a name that have not expired; how many. Raises AuthorError if there are none.
+
+        The folders of keys that were issued on this host have the list at once, as far as they are where they were.
+        """
         authority, key = self._authority_pair()
         found = [one for one in self.issued() if one.common_name == principal.common_name and not self._expired(one)]
         if not found:
             raise AuthorError(f"there is no certificate of {principal} that has not expired; nothing to revoke")
         before = self.revoked()
         known = [one for one in self.issued() if one.serial in before and not self._expired(one)]
-        _write_file(self.path / "revoked.pem", revocations(authority, key, [*known, *found]))
+        listed = revocations(authority, key, [*known, *found])
+        _write_file(self.path / "revoked.pem", listed)
+        for folder in dict.fromkeys(self._folders().values()):
+            if self._is_of_mine(folder):
+                with suppress(OSError):  # `unaware` names the folder
+                    _write_file(folder / "revoked.pem", listed)
         return len(found)
+
+    def unaware(self) -> list[tuple[str, Path | None]]:
+        """The sites whose folders lack what this authority has revoked, by common name, each with its folder.
+
+        The folder is one that is not where it was issued any more, or that this user may not write; or it is not known.
+        """
+        listed, folders = _content(self.path / "revoked.pem"), self._folders()
+        sites = dict.fromkeys((one.common_name, folders.get(one.serial)) for one in self.issued() if self._is_site(one))
+        return [
+            (name, folder)
+            for name, folder in sites
+            if folder is None or not self._is_of_mine(folder) or _content(folder / "revoked.pem") != listed
+        ]
+
+    def _is_site(self, certificate: Certificate) -> bool:
+        """Whether a certificate is that of a site, which is good until now."""
+        is_site = certificate.common_name.startswith(f"{PrincipalKind.SITE.value}.")
+        return is_site and certificate.serial not in self.revoked() and not self._expired(certificate)
+
+    def _folders(self) -> dict[int, Path]:
+        """Into which folder each certificate was written, by its serial."""
+        found = ((path.stem.rpartition("~")[2], _content(path)) for path in (self.path / "issued").glob("*.folder"))
+        return {int(serial, 16): Path(os.fsdecode(folder)) for serial, folder in found if folder}
+
+    def _is_of_mine(self, folder: Path) -> bool:
+        """Whether a folder is there and has keys of this authority."""
+        return _content(folder / f"{_AUTHORITY}.pem") == _content(self.path / f"{_AUTHORITY}.pem")
 
     def issued(self) -> list[Certificate]:
         """The certificates that this authority has issued, by name and time."""
@@ -248,7 +283,9 @@ class KeysFolder:
         certificate = issue(authority, authority_key, principal, key.public_key(), hosts, days)
         try:
             _made(self.path / "issued")
-            _write_file(self.path / "issued" / f"{certificate.common_name}~{certificate.serial:x}.pem", certificate.pem)
+            noted = self.path / "issued" / f"{certificate.common_name}~{certificate.serial:x}.pem"
+            _write_file(noted, certificate.pem)
+            _write_file(noted.with_name(f"{noted.stem}.folder"), os.fsencode(folder.resolve()))
             _write_holder(folder, authority, certificate, key)
             if (self.path / "revoked.pem").is_file():
                 _write_file(folder / "revoked.pem", _read(self.path / "revoked.pem"))
@@ -388,6 +425,14 @@ def _read(path: Path) -> bytes:
         raise AuthorError(f"there is no {path.name} in {path.parent}; is it a folder of keys?") from None
     except OSError as error:
         raise AuthorError(reason(error)) from None
+
+
+def _content(path: Path) -> bytes:
+    """What a file holds; nothing if it is not there, or cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
 
 
 def _private(path: Path) -> None:

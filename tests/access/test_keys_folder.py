@@ -119,8 +119,30 @@ def test_a_site_admits_whom_its_authority_vouches_for(authority: KeysFolder, tmp
     with pytest.raises(PeerError, match="no certificate"):
         site.admit("lab", b"nonsense")
     authority.revoke(ALICE)
-    (tmp_path / "attic/revoked.pem").write_bytes((authority.path / "revoked.pem").read_bytes())
     assert site.admitted("lab") == {}
+    with pytest.raises(PeerError, match="was revoked"):
+        site.admit("lab", alice.pem)
+
+
+def test_a_site_whose_folder_cannot_be_told_what_is_revoked_is_named(authority: KeysFolder, tmp_path: Path) -> None:
+    authority.credentials((SITE,), "home")
+    for name in ("attic", "cellar", "moved", "replaced"):
+        authority.issue(Principal(SITE, name), tmp_path / name)
+    authority.issue(ALICE, tmp_path / "alice")
+    (tmp_path / "moved").rename(tmp_path / "elsewhere")
+    (tmp_path / "replaced").rename(tmp_path / "before")
+    KeysFolder.init(tmp_path / "replaced")
+    (tmp_path / "cellar/revoked.pem").mkdir()  # it cannot be written, by root either
+    authority.revoke(ALICE)
+    assert not (tmp_path / "replaced/revoked.pem").exists()
+    assert (tmp_path / "attic/revoked.pem").read_bytes() == (authority.path / "revoked.pem").read_bytes()
+    unaware = [(f"site.{name}", tmp_path / name) for name in ("cellar", "moved", "replaced")]
+    assert authority.unaware() == unaware
+    authority.revoke(Principal(SITE, "moved"))
+    assert authority.unaware() == [unaware[0], unaware[2]]
+    for note in (authority.path / "issued").glob("site.cellar*.folder"):
+        note.unlink()
+    assert authority.unaware()[0] == ("site.cellar", None)
 
 
 def test_what_a_host_issues_to_its_components_opens_no_other_door(authority: KeysFolder, tmp_path: Path) -> None:

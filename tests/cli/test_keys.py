@@ -37,7 +37,21 @@ def test_a_holder_is_issued_shown_renewed_and_revoked(
     revoked = run(capsys, "keys", "revoke", "site.attic", *keys)
     assert "revoked 2 certificates of site.attic" in revoked.out
     assert "copy" in revoked.out
+    assert "too" not in revoked.out
     assert "was revoked" in run(capsys, "keys", "show", str(authority)).out
+
+
+def test_what_is_revoked_is_known_in_the_folders_that_were_issued(
+    authority: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    keys = ("--keys", str(authority))
+    for holder, folder in (("site.attic", "attic"), ("site.moved", "moved"), ("conf.carl", "carl")):
+        run(capsys, "keys", "issue", holder, *keys, "--out", str(tmp_path / folder))
+    (tmp_path / "moved").rename(tmp_path / "elsewhere")
+    said = run(capsys, "keys", "revoke", "conf.carl", *keys).out
+    assert f"copy it into the folder of site.moved too, which is not in {tmp_path / 'moved'} any more" in said
+    assert "site.attic" not in said
+    assert (tmp_path / "attic/revoked.pem").is_file()
 
 
 def test_what_is_wrong_with_a_holder_is_shown(
