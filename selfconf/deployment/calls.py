@@ -438,7 +438,8 @@ class Calls:
             answer = said(replies)
             if answer is not None:
                 self._answered(component, call, message, answer)
-                self._outlived(component, message.life, replies)
+                if answer.verdict is Verdict.OTHER_LIFE and replies.complete:
+                    self._outlived(component, message.life, answer)
             elif replies.errors:
                 detail = replies.errors[0]
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
@@ -521,16 +522,14 @@ class Calls:
         newest, epoch = answer.epoch, message.epoch
         self._step(Answered(component, call, epoch, answer.verdict, answer.life, newest, answer.detail, holder))
 
-    def _outlived(self, component: IRI, life: str, replies: Replies) -> None:
-        """Believe that a life has ended if all were asked, and only another one has answered.
+    def _outlived(self, component: IRI, life: str, answer: CallAnswer) -> None:
+        """Believe that a life has ended, as all were asked, and only another one has answered.
 
         The notices of its end, and of the beginning of the other, may have come before, or be lost with a link.
         """
-        answer = self._answer_in(replies, life)
-        if answer is not None and answer.verdict is Verdict.OTHER_LIFE and replies.complete:
-            self.ecology.ended(component_chunk(component), life)
-            if self.ecology.lives_on(component, answer.life):
-                self._step(Appeared({component: answer.life}))
+        self.ecology.ended(component_chunk(component), life)
+        if self.ecology.lives_on(component, answer.life):
+            self._step(Appeared({component: answer.life}))
 
     def _unreachable(self, component: IRI, call: Call, epoch: int, detail: str) -> None:
         self._report(ComponentUnreachable(component, call.value, detail))

@@ -11,6 +11,7 @@ import pytest
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.configurator.state import Phase
+from selfconf.deployment import calls
 from selfconf.deployment.calls import CALL, GONE, SITE_BACK, STARTING, WAKING
 from selfconf.deployment.liveness import SETTLING
 from selfconf.deployment.runner import TaskRunner
@@ -329,6 +330,20 @@ def test_a_component_that_another_task_takes_at_the_same_moment_is_declined_by_t
     winner = first if first.state.phase is Phase.RUNNING else second
     holds = [hold for name in TASK for hold in lab.runtimes[name].activation.holds]
     assert {hold.claim.task for hold in holds} == {winner.identity.task}
+
+
+def test_each_answer_to_a_call_is_read_once(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[bytes] = []
+
+    def reading(payload: bytes, expected: type[CallAnswer]) -> CallAnswer:
+        read.append(payload)
+        return decode(payload, expected)
+
+    monkeypatch.setattr(calls, "decode", reading)
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert len(read) == 2 * len(lab.active())
+    assert len(set(read)) == len(read)
 
 
 def test_every_call_names_the_life_that_is_meant_so_that_no_other_life_obeys_it(lab: Lab) -> None:
