@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
+from functools import cache
 from importlib.util import find_spec
 from typing import Any
 
@@ -37,8 +38,9 @@ LONGEST_CALL = 32_000
 restart ever more rarely, and to keep ever more of what it has learned, with each call anew."""
 
 
+@cache  # to look takes a tenth as long as a small search, and each search and each repair asks
 def solver_available() -> bool:
-    """Return whether the extra `solvers` is installed."""
+    """Return whether the extra `solvers` is installed, as of the first call."""
     return find_spec("pysat") is not None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import signal
 import subprocess
 import sys
@@ -29,6 +30,13 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+def test_whether_the_solver_is_there_is_looked_up_once() -> None:
+    clause_learning.solver_available()
+    looks = clause_learning.solver_available.cache_info().misses
+    assert clause_learning.solver_available() == (importlib.util.find_spec("pysat") is not None)
+    assert clause_learning.solver_available.cache_info().misses == looks
 
 
 INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(), signal.SIGINT)"
