@@ -17,7 +17,7 @@ import socket
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from selfconf.bus.port import Bus, Request, Undo, Urgency
+from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import PeerError, ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
@@ -133,6 +133,8 @@ class ComponentRuntime:
         )
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
+        self._free: Publisher | None = None
+        """What tells tasks that wait for the component that it is free, once one has waited."""
         self._served = bus.serve(keys.call(profile.component), self._call)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
         self._other_lives = OtherLives(bus, keys.lives(profile.component), self.life, self._outlived)
@@ -160,6 +162,9 @@ class ComponentRuntime:
         self.outputs.close()
         self.operations.close()
         self._fail.undeclare()
+        if self._free is not None:
+            self._free.undeclare()
+            self._free = None
         self._when_at_rest(closed)
 
     # What the component does.
@@ -423,9 +428,9 @@ class ComponentRuntime:
             self._offer()
 
     def _tell_waiting(self, task: str) -> None:
-        notice = self.bus.publisher(self.keys.free(self.profile.component), Urgency.EVENT)
-        notice.put(encode(Free(self.profile.component, self.life, task)))
-        notice.undeclare()
+        if self._free is None:
+            self._free = self.bus.publisher(self.keys.free(self.profile.component), Urgency.EVENT)
+        self._free.put(encode(Free(self.profile.component, self.life, task)))
 
     # Being on and off.
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.port import Replies
+from selfconf.bus.port import Publisher, Replies, Urgency
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import OperationalParameter
 from selfconf.model.term import IRI, Literal, Term
@@ -490,6 +490,26 @@ def test_a_component_that_is_free_is_offered_to_those_that_wait_in_order() -> No
     assert stage.call(reserve(1, THEM, task="early~1", beginning=3.0)).verdict is Verdict.DONE
     stage.let_pass(3 * OFFER)
     assert stage.freed == ["high~1", "early~1"]
+
+
+def test_a_component_declares_what_tells_that_it_is_free_once() -> None:
+    stage, declared = Stage(), list[str]()
+    bus, declare = stage.runtime.bus, stage.runtime.bus.publisher
+
+    def publisher(key: str, urgency: Urgency) -> Publisher:
+        declared.append(key)
+        return declare(key, urgency)
+
+    bus.publisher = publisher  # type: ignore[assignment, method-assign]  # it is declared as a component declares it
+    stage.others.announce(THEM)
+    for epoch in (1, 3):
+        stage.call(apply(epoch, US))
+        assert stage.call(reserve(epoch, THEM, task="late~1")).verdict is Verdict.BUSY
+        stage.call(release(epoch + 1, US))
+        stage.let_pass(0.05)
+        stage.call(release(epoch + 1, THEM, task="late~1"))
+    assert stage.freed.count("late~1") == 2
+    assert declared == [KEYS.free(CAP)]
 
 
 def test_a_component_that_nobody_comes_for_is_offered_to_each_once_and_is_free_for_anybody_then() -> None:
