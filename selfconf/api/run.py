@@ -40,6 +40,9 @@ TAKING_DOWN = 15.0
 """How long, in seconds, a configurator may take to turn off everything that it holds."""
 EXPLAINING = 2.0
 """For how many seconds at most a refusal is explained to a task that waits, which may soon come to another one."""
+UNDISTURBED = 0.2
+"""For how many seconds such a task must have had nothing to do before: those that it waits for, and others that have
+begun with it, want the processors too."""
 OF_TASK = "task"
 """The owner of what is done for a task, as long as it lasts."""
 CHECK = 0.5
@@ -261,15 +264,15 @@ class Run:
         if not isinstance(event, TaskWaiting | TaskRefused) or not isinstance(event.refusal, Refusal):
             return event
         refusal, found, over = event.refusal, list[Refusal](), isinstance(event, TaskRefused)
-        composer, seconds = self._composer, self.method.seconds
-        if not over:
-            # With a composer of its own: to be ended in the middle must not spoil the partition of the next search.
-            composer, seconds = self.method.composer(self.task), min(EXPLAINING, seconds or EXPLAINING)
 
         def explain() -> None:
+            composer, seconds = self._composer, self.method.seconds
+            if not over:
+                # With a composer of its own: to be ended in the middle must not spoil the partition of the next search.
+                composer, seconds = self.method.composer(self.task), min(EXPLAINING, seconds or EXPLAINING)
             found.append(self._explain(refusal, composer, seconds))
 
-        if not (self._work.do(explain) if over else self._work.until_more(explain)):
+        if not (self._work.do(explain) if over else self._work.until_more(explain, UNDISTURBED)):
             found = [self._with_places(refusal)]
             if over:
                 self._told = refusal, self._found, found[0]

@@ -67,17 +67,20 @@ class WorkQueue:
             self._until_more()
         self._more.notify()
 
-    def until_more(self, work: Callable[[], None]) -> bool:
+    def until_more(self, work: Callable[[], None], after: float = 0.0) -> bool:
         """Do something that is ended as soon as there is something else to do; whether it has come to its own end.
 
-        Outside of the main thread, where nothing could end it, it is not begun.
+        It is begun once there has been nothing else for `after` seconds. Outside of the main thread, where nothing
+        could end it, it is not begun.
         """
         if threading.current_thread() is not threading.main_thread():
             return False
         try:
             with abandonable() as abandon:
                 with self._more:
-                    if self._works or self._events or self._woken:
+                    if not self._has_more and after > 0:
+                        self._more.wait(after)
+                    if self._has_more:
                         return False
                     self._until_more = abandon
                 work()
@@ -87,10 +90,14 @@ class WorkQueue:
         finally:
             self._until_more = None
 
+    @property
+    def _has_more(self) -> bool:
+        return bool(self._works or self._events or self._woken)
+
     def next(self, seconds: float) -> AnyRunEvent | None:
         """Do all the work there is, and return the next event; None if none has come after that long."""
         with self._more:
-            if not (self._works or self._events or self._woken) and seconds > 0:
+            if not self._has_more and seconds > 0:
                 self._more.wait(seconds)
             self._woken = False
             waiting = len(self._works)

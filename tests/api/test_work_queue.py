@@ -112,6 +112,18 @@ def test_what_is_done_until_there_is_more_comes_to_its_end_where_there_is_nothin
     assert done == ["explained", "searched"]
 
 
+def test_what_is_done_until_there_is_more_may_wait_for_a_time_in_which_there_is_nothing() -> None:
+    queue, done = WorkQueue(), list[str]()
+    queue.abandon()
+    assert queue.next(0.0) is None
+    threading.Timer(0.05, lambda: queue.work(lambda: done.append("searched"))).start()
+    assert not queue.until_more(lambda: done.append("explained"), after=60.0)
+    queue.next(0.0)
+    assert done == ["searched"]
+    assert queue.until_more(lambda: done.append("explained"), after=0.05)
+    assert done == ["searched", "explained"]
+
+
 def test_what_could_not_be_ended_in_another_thread_is_not_begun() -> None:
     queue, done = WorkQueue(), list[object]()
     other = threading.Thread(target=lambda: done.append(queue.until_more(lambda: done.append("explained"))))
