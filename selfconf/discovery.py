@@ -149,7 +149,7 @@ class EcologyView:
         self._selected: set[str] | None = None
         """The chunks of the components whose lives are known; None: of all."""
         self.discovery = Discovery()
-        self.aside: Callable[[Callable[[], None]], None] = lambda work: work()
+        self.aside: Callable[[Callable[[], None]], object] = lambda work: work()
         """Reads what the sites have answered; by default at once, where there is only one thread."""
         self.known: dict[SiteLife, KnownSite] = {}
         """What the sites that live have answered before."""

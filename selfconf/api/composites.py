@@ -28,10 +28,9 @@ from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
 from functools import partial
 
-from selfconf.api.detached import Aside
 from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.composition import DocumentOf, Inside, configurable, why_none
-from selfconf.deployment import Outside, RunRequest, TaskRunner
+from selfconf.deployment import Aside, Outside, RunRequest, TaskRunner, at_once
 from selfconf.discovery import Beliefs
 from selfconf.errors import SelfconfError
 from selfconf.model.configuration import Configuration
@@ -241,7 +240,7 @@ class Composites:
         ecology: str,
         document_of: DocumentOf,
         complain: Callable[[str], None],
-        aside: Aside = lambda work: work(),
+        aside: Aside = at_once,
         believed: Beliefs | None = None,
         hierarchy: Hierarchy = NOTHING_ABOVE,
         unable: Callable[[Mapping[IRI, str]], None] = lambda why: None,

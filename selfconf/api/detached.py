@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from selfconf.api.arguments import checked_priority, checked_upgrade, option
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Policy
-from selfconf.deployment import RunRequest
+from selfconf.deployment import Aside, RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration
@@ -26,9 +26,6 @@ from selfconf.protocol.keys import checked_name, safe_name, task_identity
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import tasks, turtle
 from selfconf.rdf.advertisements import Advertisement
-
-Aside = Callable[[Callable[[], None]], None]
-"""Runs what takes long apart from the bus."""
 
 
 def task_record(

@@ -5,7 +5,9 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
 
 from selfconf.rdf.deadline import Abandoned, abandonable
 
@@ -13,8 +15,9 @@ if TYPE_CHECKING:
     from selfconf.model.run_event import AnyRunEvent
 
 
-class _Work(NamedTuple):
-    """Work that takes long, and its owner."""
+@dataclass(frozen=True, eq=False, slots=True)
+class _Work:
+    """Work that takes long, and its owner; what is done twice is two works."""
 
     do: Callable[[], None]
     owner: str
@@ -25,26 +28,36 @@ class WorkQueue:
 
     def __init__(self) -> None:
         self._works: deque[_Work] = deque()
-        self._under_way: tuple[str, Callable[[], None]] | None = None
-        """The owner of the work that is being done, and what ends it."""
+        self._under_way: tuple[_Work, Callable[[], None]] | None = None
+        """The work that is being done, and what ends it."""
         self._until_more: Callable[[], None] | None = None
         """What ends that which is done only until there is something else."""
         self._events: deque[AnyRunEvent] = deque()
         self._more = threading.Condition()
         self._woken = False
 
-    def work(self, work: Callable[[], None], owner: str = "") -> None:
-        """Have something done that takes long, for an owner where there are several."""
+    def work(self, work: Callable[[], None], owner: str = "") -> Callable[[], None]:
+        """Have something done that takes long, for an owner where there are several; calling the result abandons it."""
+        one = _Work(work, owner)
         with self._more:
-            self._works.append(_Work(work, owner))
+            self._works.append(one)
             self._notify()
+        return partial(self._abandon, one)
+
+    def _abandon(self, one: _Work) -> None:
+        """End and forget one work, if it is not over."""
+        with self._more:
+            if one in self._works:
+                self._works.remove(one)
+            elif self._under_way is not None and self._under_way[0] is one:
+                self._under_way[1]()
 
     def abandon(self, owner: str = "") -> None:
         """End and forget what is done for an owner, or for all if none is named; `next` returns soon."""
         with self._more:
             for work in [work for work in self._works if owner in ("", work.owner)]:
                 self._works.remove(work)
-            if self._under_way is not None and owner in ("", self._under_way[0]):
+            if self._under_way is not None and owner in ("", self._under_way[0].owner):
                 self._under_way[1]()
             self._woken = True
             self._notify()
@@ -120,7 +133,7 @@ class WorkQueue:
                     if not self._works:
                         return False
                     work = self._works.popleft()
-                    self._under_way = work.owner, abandon
+                    self._under_way = work, abandon
                 work.do()
             return True
         except Abandoned:

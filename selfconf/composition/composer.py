@@ -98,13 +98,14 @@ class Composer:
     def gathered(self, ecology: Mapping[IRI, Advertisement]) -> AdvertisementIndex:
         """The ecology by kinds, partitioned; done again only if it has changed, which an `Ecology` never does."""
         if self._given is None or (self._given is not ecology and self._given != ecology):
+            self._given = None  # until all is known: it may be ended at any moment, or refuse a shape
             self._ecology = AdvertisementIndex.of(ecology)
-            self._given = ecology if self._ecology is ecology else dict(ecology)
             self._partition = self.partitioner.partition(self._ecology)
             if self.outside is not None:
                 self._partition = with_outside_candidate(
                     self._partition, self._task, self.outside, self.hierarchy, self._unfed
                 )
+            self._given = ecology if self._ecology is ecology else dict(ecology)
         return self._ecology
 
     def recruitable(self, ecology: Mapping[IRI, Advertisement]) -> set[IRI]:

@@ -1,8 +1,9 @@
 """The configurator as a program around the machine: it runs effects on a bus and feeds it with events.
 
 A `RunRequest` says which task to run, and how, and what is `Outside` of it if it is the inside of a composite; a
-`TaskRunner` runs it. Inside, `calls` makes the calls to components,
-`liveness` decides when a component is believed to be dead, and `record` answers questions about what is deployed.
+`TaskRunner` runs it; what takes long is done `Aside`, by default `at_once`. Inside, `calls` makes the calls to
+components, `liveness` decides when a component is believed to be dead, and `record` answers questions about what is
+deployed.
 A `Keeper` runs the tasks that live in the sites, which keep their records in a `TaskFolder`. Each is loaded when it is
 first used: a site without tasks, and a command that only looks on, start sooner.
 """
@@ -13,19 +14,31 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from selfconf.deployment.holders import holders_in
     from selfconf.deployment.keeper import Keeper
-    from selfconf.deployment.run_request import Outside, RunRequest, TaskIdentity
+    from selfconf.deployment.run_request import Aside, Outside, RunRequest, TaskIdentity, at_once
     from selfconf.deployment.runner import TaskRunner
     from selfconf.deployment.task_folder import TaskFolder
 
-__all__ = ["Keeper", "Outside", "RunRequest", "TaskFolder", "TaskIdentity", "TaskRunner", "holders_in"]
+__all__ = [
+    "Aside",
+    "Keeper",
+    "Outside",
+    "RunRequest",
+    "TaskFolder",
+    "TaskIdentity",
+    "TaskRunner",
+    "at_once",
+    "holders_in",
+]
 
 _HOME = {
+    "Aside": "run_request",
     "Keeper": "keeper",
     "Outside": "run_request",
     "RunRequest": "run_request",
     "TaskFolder": "task_folder",
     "TaskIdentity": "run_request",
     "TaskRunner": "runner",
+    "at_once": "run_request",
     "holders_in": "holders",
 }
 """Where each name is defined. It is loaded when it is first used."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import KW_ONLY
 
+from selfconf.bus.port import Undo
 from selfconf.configurator import Policy
 from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
@@ -24,6 +25,16 @@ from selfconf.rdf.advertisements import Advertisement
 
 ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
+
+Aside = Callable[[Callable[[], None]], Undo]
+"""Runs what takes long apart from the bus; calling the result ends it and forgets it, where that can be."""
+
+
+def at_once(work: Callable[[], None]) -> Undo:
+    """Run what takes long where it stands: then there is nothing left to end."""
+    work()
+    return lambda: None
+
 
 EventListener = Callable[[AnyRunEvent], None]
 """Receives an event of a run."""
@@ -71,7 +82,7 @@ class RunRequest:
     """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
     passed_over: Callable[[Configuration], Mapping[IRI, Sequence[IRI]]] = lambda configuration: {}
     """For each role of a configuration, the candidates that came before the chosen ones."""
-    aside: Callable[[Callable[[], None]], None] = lambda work: work()
+    aside: Aside = at_once
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
     abandon: Callable[[], None] = lambda: None
     """Called once when the task has ended: what still runs aside for it may end, as no caller waits for it."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.configurator import (
     DEPLOYING,
     Accepted,
@@ -137,6 +137,8 @@ class TaskRunner:
         self._unreported: list[AnyRunEvent] = []
         self._asked = 0
         """How often the ecology was asked."""
+        self._outdated: Undo = lambda: None
+        """Abandons the search that was begun last."""
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
         self._messages = ComponentMessages(self.ecology, task, self._now, self._step, self._calls)
@@ -426,7 +428,8 @@ class TaskRunner:
             composed = Composed(effect.attempt, outcome, frozenset(usable))
             self.bus.wake_up(lambda: self._composed(composed, seconds, not_judged))
 
-        self.request.aside(work)
+        self._outdated()  # the answer of an earlier search is not looked at any more
+        self._outdated = self.request.aside(work)
 
     def _give_up(self, trouble: SelfconfError) -> None:
         self.trouble = trouble

@@ -63,6 +63,29 @@ def test_what_is_abandoned_ends_while_it_is_done(owner: str) -> None:
     assert done[-1] == "again"
 
 
+def test_one_work_is_abandoned_while_it_is_done_or_before_and_no_other_of_its_owner() -> None:
+    queue, begun, done = WorkQueue(), threading.Event(), list[str]()
+    first = queue.work(lambda: _forever(begun), "patrol")
+    second = queue.work(lambda: done.append("searched"), "patrol")
+    queue.work(lambda: done.append("prepared"), "patrol")
+
+    def give_up() -> None:
+        begun.wait()
+        second()
+        first()
+
+    other = threading.Thread(target=give_up)
+    other.start()
+    assert queue.next(0.0) is None
+    other.join()
+    assert done == ["prepared"]
+    first()
+    second()  # both are over
+    queue.work(lambda: done.append("again"), "patrol")
+    queue.next(0.0)
+    assert done == ["prepared", "again"]
+
+
 def test_what_is_done_for_another_goes_on() -> None:
     queue, done = WorkQueue(), list[str]()
 

@@ -20,6 +20,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement
+from selfconf.rdf.deadline import Abandoned
 from selfconf.rdf.tasks import templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
@@ -205,6 +206,21 @@ def test_the_partition_is_made_again_only_when_the_ecology_has_changed() -> None
     assert [
         len(candidates) for candidates in composer.partition({**given, **ecology(locator("odometry"))}).candidates
     ] == [2, 1]
+
+
+def test_a_partition_that_was_ended_in_the_middle_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    composer, before = Composer(task(PLAIN)), ecology(locator("gps"), controller("cap"))
+    after = {**before, **ecology(locator("odometry"))}
+    composer.partition(before)
+
+    def ended(_: object) -> None:
+        raise Abandoned
+
+    with monkeypatch.context() as patch:
+        patch.setattr(composer.partitioner, "partition", ended)
+        with pytest.raises(Abandoned):
+            composer.partition(after)
+    assert composer.partition(after) == Composer(task(PLAIN)).partition(after)
 
 
 def test_components_that_were_passed_over_are_those_before_the_last_choice() -> None:

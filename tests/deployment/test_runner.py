@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from selfconf.bus.port import Replies
-from selfconf.configurator.events import Failed
+from selfconf.bus.port import Replies, Undo
+from selfconf.configurator.events import Appeared, Failed, Improvable
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.liveness import AUDIT
 from selfconf.deployment.retries import TRY_AGAIN
@@ -441,6 +443,33 @@ def test_a_search_that_breaks_ends_the_task_which_says_so(lab: Lab) -> None:
     assert lab.until(lambda: bool(lab.ended))
     assert "soon is no number" in str(agent.trouble)
     assert lab.active() == set()
+
+
+def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> None:
+    searches, abandoned = list[Callable[[], None]](), list[Callable[[], None]]()
+
+    def aside(work: Callable[[], None]) -> Undo:
+        if work.__qualname__.startswith("TaskRunner._compose."):
+            searches.append(work)
+        else:
+            work()
+        return partial(abandoned.append, work)
+
+    agent = lab.agent(aside=aside)
+    assert lab.until(lambda: len(searches) == 1)
+    searches[0]()
+    assert lab.running(agent)
+    agent._step(Improvable())
+    assert lab.until(lambda: len(searches) == 2)
+    agent._step(Appeared({}))  # no reason to begin anew: what appears all the time must not keep a task from its answer
+    lab.let_pass(1.0)
+    assert abandoned == searches[:1]  # which is over
+    lab.components["tracker"].fail("Astrid has left the picture")
+    assert lab.until(lambda: len(searches) == 3)
+    assert abandoned == searches[:2]
+    searches[2]()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
 
 
 def test_a_configurator_that_has_ended_asks_nobody_any_more(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
