@@ -136,7 +136,7 @@ def outcome(received: bytes, question: StandingQuestion) -> tuple[str, bytes]:
     """The media type of an answer and the answer, by all that has come on its socket.
 
     Raises QueryError for what is no query, QueryTimeoutError where a limit was reached, NotAcceptableError where no
-    media type fits, and ProgrammerError where the process has broken.
+    media type fits or can write the answer, and ProgrammerError where the process has broken.
     """
     head, _, body = received[:-1].partition(b"\n")
     ending = received[-1:]
@@ -145,7 +145,7 @@ def outcome(received: bytes, question: StandingQuestion) -> tuple[str, bytes]:
     if ending == endings.REFUSED:
         raise QueryError(body.decode())
     if ending == endings.NO_TYPE:
-        raise NotAcceptableError("the answer can be had in none of the media types that Accept names")
+        raise NotAcceptableError(body.decode() or "the answer can be had in none of the media types that Accept names")
     if ending == endings.NO_TIME:
         raise QueryTimeoutError(f"the query takes more than {question.seconds:g} s; ask for less")
     if ending == endings.NO_MEMORY:

@@ -27,7 +27,8 @@ from typing import Any
 
 import pyoxigraph as ox
 
-from selfconf.errors import QueryError
+from selfconf.errors import NotAcceptableError, QueryError
+from selfconf.query.xml_answers import XML_TYPES, xml_answer
 from selfconf.rdf.sparql import Dataset, QueryAnswer
 
 RESULT_TYPES = {
@@ -191,31 +192,47 @@ def _answer_and_exit(dataset: Dataset, question: Mapping[str, Any]) -> None:
 
 
 def _write(dataset: Dataset, question: Mapping[str, Any], line: Any) -> int:
+    """Write the answer in the first media type that is wanted, fits its kind and can write it; how the copy exits."""
     try:
-        found = dataset.query(
-            question["text"],
-            default_graphs=question["default_graphs"],
-            named_graphs=question["named_graphs"],
-            base=question["base"],
-        )
+        found = _asked(dataset, question)
     except QueryError as error:
-        line.write(b"{}\n" + str(error).encode(errors="backslashreplace"))
+        line.write(b"{}\n" + _encoded(error))
         return _EXIT[REFUSED]
-    media = _media(found, question)
-    line.write(json.dumps({"media": media}).encode() + b"\n")
-    if not media:
-        return _EXIT[NO_TYPE]
-    if isinstance(found, ox.QueryTriples):
-        found.serialize(line, format=TRIPLE_TYPES[media])
-    else:
-        found.serialize(line, format=RESULT_TYPES[media])
-    return 0
-
-
-def _media(found: QueryAnswer, question: Mapping[str, Any]) -> str:
-    """The first media type that is wanted and fits the kind of answer; empty where there is none."""
     fitting: Mapping[str, object] = TRIPLE_TYPES if isinstance(found, ox.QueryTriples) else RESULT_TYPES
-    return next((media for media in question["media"] if media in fitting), "")
+    why_not = b""
+    for media in (media for media in question["media"] if media in fitting):
+        if why_not:
+            found = _asked(dataset, question)  # it was read for the media type before
+        head = json.dumps({"media": media}).encode() + b"\n"
+        if media in XML_TYPES:
+            try:
+                line.write(head + xml_answer(found))
+            except NotAcceptableError as error:
+                why_not = why_not or _encoded(error)
+                continue
+        elif isinstance(found, ox.QueryTriples):
+            line.write(head)
+            found.serialize(line, format=TRIPLE_TYPES[media])
+        else:
+            line.write(head)
+            found.serialize(line, format=RESULT_TYPES[media])
+        return 0
+    line.write(b"{}\n" + why_not)
+    return _EXIT[NO_TYPE]
+
+
+def _asked(dataset: Dataset, question: Mapping[str, Any]) -> QueryAnswer:
+    """What the dataset answers to a question. Raises QueryError."""
+    return dataset.query(
+        question["text"],
+        default_graphs=question["default_graphs"],
+        named_graphs=question["named_graphs"],
+        base=question["base"],
+    )
+
+
+def _encoded(error: QueryError) -> bytes:
+    return str(error).encode(errors="backslashreplace")
 
 
 def main(control: int) -> int:

@@ -49,6 +49,18 @@ def test_each_kind_of_query_is_answered_in_the_media_type_that_is_wanted_most(st
         standing.ask(StandingQuestion("SELECT * { ?s ?p ?o }", [TURTLE]))
 
 
+def test_what_a_media_type_cannot_write_comes_in_the_next_or_is_named(standing: StandingDataset) -> None:
+    for query, xml, other in (
+        (r'SELECT ("\u0001" AS ?y) {}', "application/sparql-results+xml", JSON),
+        ('CONSTRUCT { <urn:s> <http://x/1> "v" } {}', "application/rdf+xml", TURTLE),
+    ):
+        media, body = standing.ask(StandingQuestion(query, [xml, other]))
+        assert media == other
+        assert b"http://x/1" in body or rb"\u0001" in body
+        with pytest.raises(NotAcceptableError, match=r"'\\x01'|<http://x/1>"):
+            standing.ask(StandingQuestion(query, [xml]))
+
+
 def test_the_dataset_is_all_graphs_or_those_that_are_named(standing: StandingDataset) -> None:
     everything = "SELECT * { ?s ?p ?o }"
     assert rows(standing, everything) == 3
