@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 
 import selfconf as sc
-from selfconf import LivingEcology, Refusal, discovery, join, template
+from selfconf import LivingEcology, Refusal, join, template
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
+from selfconf.discovery import ecology_view
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
@@ -161,11 +162,11 @@ def living(house: Home) -> Iterator[LivingEcology]:
         yield living
 
 
-@pytest.mark.parametrize("many", [0, discovery.MANY_LIVES], ids=["large", "small"])
+@pytest.mark.parametrize("many", [0, ecology_view.MANY_LIVES], ids=["large", "small"])
 def test_what_is_advertised_is_found_and_whether_it_lives(
     living: LivingEcology, monkeypatch: pytest.MonkeyPatch, many: int
 ) -> None:
-    monkeypatch.setattr(discovery, "MANY_LIVES", many)
+    monkeypatch.setattr(ecology_view, "MANY_LIVES", many)
     assert len(living.components) == len(ADVERTISEMENTS)
     assert living.sites == ("home",)
     assert living.state(iri("person-tracker")) == "alive"

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from selfconf import discovery
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.events import Appeared, Event
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import liveness
 from selfconf.deployment.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, MOST_REOPENINGS, SETTLING
-from selfconf.discovery import DISCOVERY_ATTEMPTS
+from selfconf.discovery import ecology_view
+from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Page
@@ -28,7 +28,7 @@ from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
 def followed(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whether a configurator follows all lives, or, as in a large ecology, those that it has selected."""
     if request.param == "selected lives":
-        monkeypatch.setattr(discovery, "MANY_LIVES", 0)
+        monkeypatch.setattr(ecology_view, "MANY_LIVES", 0)
 
 
 def test_a_component_that_crashes_is_replaced(lab: Lab) -> None:
@@ -244,7 +244,7 @@ def test_many_that_end_at_once_are_asked_about_once(lab: Lab, monkeypatch: pytes
 def test_lives_that_nobody_waits_for_are_fed_together_when_a_lost_link_is_back(
     lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(discovery, "MANY_LIVES", 0)
+    monkeypatch.setattr(ecology_view, "MANY_LIVES", 0)
     lamps = lab.network.node()
     undos = [lamps.announce(lab.keys.life(iri(f"lamp{number}"), "1")) for number in range(50)]
     agent = lab.agent()

@@ -23,13 +23,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 from unittest import mock
 
-from selfconf import discovery
 from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
 from selfconf.deployment.retries import LONGEST_PAUSE
+from selfconf.discovery import ecology_view
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import Activation
@@ -190,7 +190,7 @@ class History:
         """Play the script, then let nothing go wrong any more; what breaks in a program is an invariant too."""
         try:
             with (
-                mock.patch.object(discovery, "MANY_LIVES", 0 if self.script.large else discovery.MANY_LIVES),
+                mock.patch.object(ecology_view, "MANY_LIVES", 0 if self.script.large else ecology_view.MANY_LIVES),
                 # All components are in this process: what memory it takes is news to nobody.
                 mock.patch.object(component_runtime, "resident_memory", nothing),
             ):

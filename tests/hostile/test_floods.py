@@ -9,7 +9,9 @@ import pytest
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Request, Urgency
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
-from selfconf.discovery import BETWEEN_DISCOVERIES, IN_A_ROW, MOST_COMPLAINTS, Discovery, EcologyView
+from selfconf.discovery import Discovery, EcologyView
+from selfconf.discovery.ecology_view import BETWEEN_DISCOVERIES, IN_A_ROW
+from selfconf.discovery.inquiry import MOST_COMPLAINTS
 from selfconf.protocol.activation import MOST_HOLDING
 from selfconf.protocol.codec import LARGEST, MOST_ADVERTISED, MOST_WIRES, encode
 from selfconf.protocol.messages import Apply, Cause, Fail, Page, Reserve, Stamp, Wire

@@ -13,7 +13,7 @@ import pytest
 
 from selfconf import entailment, library, partition, read, template
 from selfconf.api.validation import LARGEST_FILE
-from selfconf.discovery import LARGEST_ADVERTISEMENT
+from selfconf.discovery.inquiry import LARGEST_ADVERTISEMENT
 from selfconf.errors import AuthorError, QueryError
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Report

@@ -2,75 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from selfconf import discovery
-from selfconf.bus.memory import Faults, Network
+from selfconf.bus.memory import Faults
 from selfconf.bus.memory_questions import MemoryRequest
 from selfconf.bus.port import Request
-from selfconf.discovery import DISCOVERY, LARGEST_ADVERTISEMENT, Discovery, EcologyView
+from selfconf.discovery import Discovery
+from selfconf.discovery.inquiry import DISCOVERY, LARGEST_ADVERTISEMENT
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
-from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Page, Release
 from selfconf.rdf.vocabulary import RDFS
 from selfconf.site import Shelf, Site
+from tests.discovery.field import KEYS, TRACKER, Field
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
-
-KEYS = Keys("lab")
-TRACKER = iri("person-tracker")
-
-
-class Field:
-    """A network with an observer, and as many sites as a test likes."""
-
-    def __init__(self, folder: Path, faults: Faults | None = None) -> None:
-        self.network, self.folder = Network(0, faults), folder
-        self.ecology = EcologyView(self.network.node(), "lab")
-
-    def site(self, name: str, *names: str) -> Site:
-        """An honest site."""
-        complaints: list[str] = []
-        return Site(
-            self.network.node(),
-            "lab",
-            name,
-            Shelf([write_advertisements(self.folder / name, *names)], complaints.append),
-        )
-
-    def stranger(self, name: str, answer: Callable[[Request], None]) -> None:
-        """A site that answers as it likes."""
-        node = self.network.node()
-        node.announce(KEYS.site_life(name, "1"))
-
-        def serve(request: Request) -> None:
-            answer(request)
-            request.finish()
-
-        node.serve(KEYS.advertisements(name), serve)
-
-    def lie(self, name: str, component: IRI, turtle: str | bytes) -> None:
-        """A site that serves one advertisement, said to be of a component."""
-        payload = turtle if isinstance(turtle, bytes) else (PREFIXES + turtle).encode()
-        page = encode(Page(0, 1, 1, component, "somewhere.ttl"))
-        self.stranger(name, lambda request: request.reply(KEYS.advertisement(name, component), payload, page))
-
-    def discover(self) -> Discovery:
-        """Ask all sites."""
-        found: list[Discovery] = []
-        self.ecology.discover(found.append)
-        assert self.network.run(lambda: bool(found), 10 * DISCOVERY)
-        return found[0]
-
-
-@pytest.fixture
-def field(tmp_path: Path) -> Field:
-    """A perfect network."""
-    return Field(tmp_path)
 
 
 def test_everything_that_lives_is_found_at_its_site(field: Field) -> None:
@@ -103,37 +51,6 @@ def test_a_site_without_advertisements_has_answered(field: Field) -> None:
     Site(field.network.node(), "lab", "empty", Shelf([field.folder / "empty"], print))
     discovery = field.discover()
     assert (discovery.sites, discovery.missing, discovery.found) == (("empty",), (), {})
-
-
-def test_the_lives_of_components_are_known_after_a_discovery(field: Field) -> None:
-    node = field.network.node()
-    node.announce(KEYS.life(TRACKER, "abc"))
-    field.discover()
-    assert field.ecology.life(TRACKER) == "abc"
-    assert field.ecology.life(iri("astrid-drive")) is None
-
-
-def test_another_ecology_is_not_found(field: Field) -> None:
-    write_advertisements(field.folder / "other", "tracker")
-    Site(field.network.node(), "other", "other", Shelf([field.folder / "other"], print))
-    assert field.discover() == Discovery()
-
-
-# Sites of one name, and sites that were asked before.
-
-
-def test_two_sites_of_one_name_are_both_read_and_both_named(field: Field) -> None:
-    field.site("home", "tracker")
-    (field.folder / "other").mkdir()
-    shelf = Shelf([write_advertisements(field.folder / "other", "drive")], print)
-    other = Site(field.network.node(), "lab", "home", shelf, life="other")
-    discovery = field.discover()
-    assert {component.short for component in discovery.found} == {"person-tracker", "astrid-drive"}
-    assert len(discovery.sites) == 2
-    assert f"home ({other.life})" in discovery.sites
-    assert {discovery.name_of_site(found) for found in discovery.found.values()} == set(discovery.sites)
-    assert discovery.missing == ()
-    assert any("2 sites are called home" in complaint for complaint in discovery.complaints)
 
 
 def test_a_site_is_not_read_again_as_long_as_its_advertisements_are_the_same(
@@ -411,103 +328,3 @@ def test_a_note_of_beliefs_that_cannot_be_read_is_told_and_believes_nobody(field
     found = field.discover()
     assert TRACKER not in found.found
     assert "believed.json: is no object of components" in found.complaints
-
-
-@pytest.mark.parametrize("many", [0, 1_000], ids=["in parts", "all together"])
-def test_each_life_is_told_once_however_it_is_followed(
-    field: Field, monkeypatch: pytest.MonkeyPatch, many: int
-) -> None:
-    monkeypatch.setattr(discovery, "MANY_LIVES", many)
-    lamps = field.network.node()
-    undos = [lamps.announce(KEYS.life(iri(f"lamp{number}"), "1")) for number in range(100)]
-    field.discover()
-    told: list[tuple[str, bool]] = []
-    field.ecology.follow(lambda key, alive: told.append((key, alive)), lambda key, alive: None)
-    assert field.network.run(lambda: len(told) >= len(undos), 1.0)
-    undos.append(lamps.announce(KEYS.life(iri("lamp100"), "1")))
-    undos[0]()
-    assert field.network.run(lambda: len(told) >= len(undos) + 1, 1.0)
-    begun = sorted(KEYS.life(iri(f"lamp{number}"), "1") for number in range(101))
-    assert sorted(key for key, alive in told if alive) == begun
-    assert [key for key, alive in told if not alive] == [KEYS.life(iri("lamp0"), "1")]
-    field.ecology.unfollow()
-    undos[1]()
-    field.network.run(lambda: False, 1.0)
-    assert len(told) == 102
-
-
-def selecting(field: Field, monkeypatch: pytest.MonkeyPatch, many: int = 0) -> list[tuple[str, bool]]:
-    """Have the observer of a field select lives, discover and follow; what it is told of lives from then on."""
-    monkeypatch.setattr(discovery, "MANY_LIVES", many)
-    field.ecology = EcologyView(field.network.node(), "lab", selects=True)
-    field.site("living-room", "tracker")
-    field.discover()
-    told: list[tuple[str, bool]] = []
-    field.ecology.follow(lambda key, alive: told.append((key, alive)), lambda key, alive: None)
-    field.network.run(lambda: False, 0.1)
-    return told
-
-
-def test_in_a_large_ecology_only_selected_lives_are_known_and_of_the_others_only_news(
-    field: Field, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    lamps, tracker = field.network.node(), field.network.node()
-    undo = lamps.announce(KEYS.life(iri("lamp1"), "1"))
-    tracker.announce(KEYS.life(TRACKER, "7"))
-    told = selecting(field, monkeypatch)
-    assert (field.ecology.lives, told) == ({}, [])
-    answers: list[object] = []
-    field.ecology.select([TRACKER, iri("nobody")], answers.append)
-    field.network.run(lambda: False, 0.1)
-    assert answers == [[KEYS.life(TRACKER, "7")]]
-    assert (field.ecology.life(TRACKER), field.ecology.life(iri("nobody"))) == ("7", None)
-    assert told == [(KEYS.life(TRACKER, "7"), True)]
-    field.ecology.select([TRACKER], answers.append)
-    assert answers[1:] == [()]
-    lamps.announce(KEYS.life(iri("lamp2"), "1"))
-    undo()
-    tracker.close()
-    field.network.node().announce(KEYS.life(iri("nobody"), "8"))
-    field.network.run(lambda: False, 0.1)
-    news = [
-        (KEYS.life(iri("lamp2"), "1"), True),
-        (KEYS.life(TRACKER, "7"), False),
-        (KEYS.life(iri("nobody"), "8"), True),
-    ]
-    assert told[1:] == news
-
-
-def test_lives_that_are_selected_twice_at_once_are_called_once_and_told_once(
-    field: Field, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    field.network.node().announce(KEYS.life(TRACKER, "7"))
-    told = selecting(field, monkeypatch)
-    answers: list[object] = []
-    for _ in range(2):
-        field.ecology.select([TRACKER], answers.append)
-    field.network.run(lambda: False, 0.1)
-    assert answers == [[KEYS.life(TRACKER, "7")], []]
-    assert told == [(KEYS.life(TRACKER, "7"), True)]
-
-
-def test_in_a_small_ecology_all_lives_are_known_to_who_selects(field: Field, monkeypatch: pytest.MonkeyPatch) -> None:
-    field.network.node().announce(KEYS.life(TRACKER, "7"))
-    told = selecting(field, monkeypatch, many=1)
-    assert (field.ecology.life(TRACKER), told) == ("7", [(KEYS.life(TRACKER, "7"), True)])
-    answers: list[object] = []
-    field.ecology.select([TRACKER, iri("nobody")], answers.append)
-    assert answers == [()]
-
-
-def test_a_view_that_is_left_follows_nothing_that_is_selected_late(
-    field: Field, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    tracker = field.network.node()
-    tracker.announce(KEYS.life(TRACKER, "7"))
-    told = selecting(field, monkeypatch)
-    field.ecology.select([TRACKER], lambda keys: None)
-    field.ecology.unfollow()
-    field.network.run(lambda: False, 0.1)
-    tracker.close()
-    field.network.run(lambda: False, 0.1)
-    assert told == []
