@@ -2,17 +2,28 @@
 
 A session of its own, so that Ctrl-C on the terminal of the site reaches the site alone, which ends its processes in its
 own time. What a process leaves behind when it ends (a shell's child, say) is ended with it: it might act on.
+
+What has left the session (`setsid`, a daemon) is found by a variable that it has inherited, where the system shows the
+environments of processes as Linux does: its parent may have ended long ago. A program that was started with an
+environment of its own making, or for another user, is not found.
 """
 
 from __future__ import annotations
 
 import os
+import secrets
 import signal
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from selfconf.termination import stopped
+
+GROUP_VARIABLE = "SELFCONF_PROCESS_GROUP"
+"""The variable that each process of a group inherits: a text that no other group has."""
+_PROCESSES = Path("/proc")
+"""Where Linux shows the processes."""
 
 
 class ProcessGroup:
@@ -20,10 +31,11 @@ class ProcessGroup:
 
     def __init__(self, words: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
         """Start it. Raises OSError or ValueError for a command that cannot be started."""
+        self._mark = secrets.token_hex(8)
         self._process = subprocess.Popen(
             list(words),
             cwd=folder,
-            env=environment,
+            env={**environment, GROUP_VARIABLE: self._mark},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -70,13 +82,30 @@ class ProcessGroup:
         return True
 
     def _signalled(self, number: int) -> bool:
-        """Send a signal to all of the group; return whether there was a process to receive it.
+        """Send a signal to all of the group, and to what has left it; return whether a process has received it.
 
         The number of a group belongs to no other group as long as the program has not been waited for, or one of the
         group is left.
         """
-        try:
-            os.killpg(self.number, number)
-        except (ProcessLookupError, PermissionError):
-            return False
-        return True
+        reached = _reached(os.killpg, self.number, number)
+        for process in self._outside():
+            reached = _reached(os.kill, process, number) or reached
+        return reached
+
+    def _outside(self) -> Iterator[int]:
+        """The processes that this one has started, or those in turn, and that have left its group."""
+        mark = f"{GROUP_VARIABLE}={self._mark}".encode()
+        for environment in _PROCESSES.glob("[0-9]*/environ"):
+            process = int(environment.parent.name)
+            with suppress(OSError):  # it has ended, or it is another user's
+                if mark in environment.read_bytes().split(b"\0") and os.getpgid(process) != self.number:
+                    yield process
+
+
+def _reached(send: Callable[[int, int], None], receiver: int, number: int) -> bool:
+    """Send a signal; return whether it could be sent."""
+    try:
+        send(receiver, number)
+    except (ProcessLookupError, PermissionError):
+        return False
+    return True

@@ -68,6 +68,31 @@ def test_a_program_that_leaves_something_behind_is_not_gone(groups: list[Process
     assert until(lambda: not alive(child))
 
 
+@pytest.mark.parametrize("then", ["signal.pause()", "os._exit(0)"], ids=["its parent lives", "its parent has ended"])
+def test_what_has_left_the_session_is_ended_too(groups: list[ProcessGroup], tmp_path: Path, then: str) -> None:
+    left = CHILD.replace("pause()'])", "pause()'], start_new_session=True)")
+    group = started(groups, tmp_path, left + then)
+    assert until(lambda: (tmp_path / "child").exists() and (tmp_path / "child").read_text() != "")
+    child = int((tmp_path / "child").read_text())
+    assert os.getsid(child) == child != group.number
+    if then != "signal.pause()":
+        assert group.wait(10)
+        assert alive(child)
+    assert not group.gone()
+    group.terminate()
+    assert group.wait(10)
+    assert until(lambda: not alive(child))
+    assert until(group.gone)
+
+
+def test_what_another_program_has_started_is_left_alone(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    group, other = (started(groups, tmp_path, "import signal; signal.pause()") for _ in range(2))
+    group.kill()
+    assert group.wait(10)
+    assert until(group.gone)
+    assert other.code() is None
+
+
 def test_a_program_that_is_stopped_is_frozen_until_it_goes_on(groups: list[ProcessGroup], tmp_path: Path) -> None:
     group = started(groups, tmp_path, "import signal; signal.pause()")
     assert not group.frozen()
