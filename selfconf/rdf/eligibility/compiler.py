@@ -23,7 +23,7 @@ from itertools import chain
 from typing import TypeGuard
 
 from selfconf.errors import TemplateError
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.eligibility.role_tests import (
     ClassTest,
     CompiledRole,
@@ -37,7 +37,7 @@ from selfconf.rdf.eligibility.role_tests import (
 from selfconf.rdf.permitted_fields import SHAPE_ANNOTATIONS, STRUCTURE
 from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
 from selfconf.rdf.tasks import ROLE_STRUCTURE, mentions, substituted
-from selfconf.rdf.turtle import Document, Triple
+from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 TARGETS = frozenset((SH.targetClass, SH.targetNode, SH.targetSubjectsOf, SH.targetObjectsOf, SH.target))
@@ -82,7 +82,7 @@ def compile_role(
 def _settled(document: Document, role: IRI, free: frozenset[IRI]) -> frozenset[Term]:
     """The property shapes of a role that tests say all of, with free parameters that stand nowhere else in its shape.
 
-    None where a constraint looks at the other property shapes of the role: `sh:closed`, or of shapes that are disjoint.
+    None of shapes that are disjoint, which look at the other property shapes of the role.
     """
     settled = {
         shape: parameters
@@ -91,8 +91,6 @@ def _settled(document: Document, role: IRI, free: frozenset[IRI]) -> frozenset[T
         and document.value(shape, SH.qualifiedValueShape) is None
         and _compiled_in_full(document, shape, free)
     }
-    if document.value(role, SH.closed) is not None:
-        settled.clear()
     while settled:
         elsewhere = mentions(_without(document, role, settled), role, free)
         shared = [shape for shape, parameters in settled.items() if parameters & elsewhere]
@@ -112,9 +110,16 @@ def _compiled_in_full(document: Document, shape: Term, free: frozenset[IRI]) -> 
 
 
 def _without(document: Document, role: IRI, shapes: Container[Term]) -> Document:
-    """A template in which a role lacks some of its property shapes."""
-    said = [one for one in document.about(role) if one[0] != SH.property or one[1] not in shapes]
-    return replace(document, statements={**document.statements, role: said})
+    """A template in which a role lacks some of its property shapes, but for their paths, which `sh:closed` asks for."""
+    said, paths = list[tuple[IRI, Term]](), dict[Node, list[tuple[IRI, Term]]]()
+    for predicate, value in document.about(role):
+        if predicate == SH.property and value in shapes:
+            node = BlankNode(f"_:path{len(paths)}")
+            paths[node] = [(SH.path, path) for path in document.values(value, SH.path)]
+            said.append((predicate, node))
+        else:
+            said.append((predicate, value))
+    return replace(document, statements=document.statements | paths | {role: said})
 
 
 def left_to_judge(document: Document, role: CompiledRole) -> Document:

@@ -24,6 +24,8 @@ from tests.effort import examples
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 CLASSES = ("rob:MotorDrive", "rob:Encoder", ":Other")
+CLOSED = " ; sh:closed true"
+IGNORED = "<http://www.w3.org/1999/02/22-rdf-syntax-ns#type>"
 PATHS = ("rob:support", "rob:place", "rdfs:label")
 VALUES = (":Astrid", ":Pippi", '"x"', '"xyz"', '"x"@en', "1", '"01"^^xsd:integer', "2.5", "true")
 PARAMETER = iri("par")
@@ -318,12 +320,26 @@ def test_a_bound_parameter_stands_for_a_shape(value: str, eligible: bool) -> Non
 
 
 @settings(max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
-@given(components(), roles(free=True), st.sampled_from(VALUES), st.sampled_from(VALUES), st.sampled_from(("1", "2")))
+@given(
+    components(),
+    roles(free=True),
+    st.sampled_from(VALUES),
+    st.sampled_from(VALUES),
+    st.sampled_from(("1", "2")),
+    st.sampled_from(
+        (
+            "",
+            CLOSED,
+            f"{CLOSED} ; sh:ignoredProperties ( {IGNORED} rdfs:label rob:support )",
+            f"{CLOSED} ; sh:ignoredProperties ( {IGNORED} )",
+        )
+    ),
+)
 def test_free_parameters_of_their_own_may_stand_beside_what_pyshacl_judges(
-    texts: list[str], role: str, value: str, other: str, most: str
+    texts: list[str], role: str, value: str, other: str, most: str, closed: str
 ) -> None:
     judged = f"[ sh:path [ sh:zeroOrOnePath rdfs:label ] ; sh:maxCount {most} ]"
-    rest = f"sh:property [ sh:path rob:place ; sh:in ( :other ) ] , {judged}"
+    rest = f"sh:property [ sh:path rob:place ; sh:in ( :other ) ] , {judged}{closed}"
     text = (
         ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :par , :other . :par a sc:Parameter ; sc:name 'par' ."
         f" :other a sc:Parameter ; sc:name 'other' . :r {role} ; {rest} ."
@@ -351,9 +367,9 @@ def test_free_parameters_of_their_own_may_stand_beside_what_pyshacl_judges(
         ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path :at ; sh:in ( :q ) ]", set()),
         ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path ( :at :near ) ; sh:in ( :q ) ]", {"q"}),
         ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path ( :at :near ) ; sh:in ( :p ) ]", {"p"}),
-        ("sh:property [ sh:path :on ; sh:in ( :p ) ] ; sh:closed true", {"p"}),
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ] ; sh:closed true", set()),
         ("sh:property [ sh:path :on ; sh:in ( :p ) ; sh:hasValue :q ] , [ sh:path ( :at :b ) ; sh:in ( :p ) ]", None),
-        ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path :at ; sh:in ( :q ) ] ; sh:closed true", None),
+        ("sh:property [ sh:path :on ; sh:in ( :p ) ] , [ sh:path :at ; sh:in ( :q ) ] ; sh:closed true", set()),
     ],
 )
 def test_a_parameter_is_tried_value_by_value_only_where_pyshacl_judges_it(
