@@ -131,27 +131,15 @@ class LivingTasks:
         A configurator that is suspended is not seen to live any more before the components that it holds are at rest:
         `by_components`, these are asked as well by which configurator each of them is held.
         """
-        found: list[Status] = []
-        rejected: list[str] = []
-        keys = self._keys
-        living = {owner_of(key) for key in self._bus.living(keys.any_configurator_life())}
-        for sample in self._bus.ask(keys.configurator_call("*", "status")).samples:
-            try:
-                status = decode(sample.payload, Status)
-            except PeerError as error:
-                rejected.append(f"left out an answer: {error}")
-                continue
-            if sample.key == keys.configurator_call(status.configurator, "status"):
-                found.append(status)
-            else:
-                rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
+        living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
+        found, rejected = _statuses(self._bus.ask(self._keys.configurator_call("*", "status")), self._keys)
         answered = {status.configurator for status in found}
         self._holding = self._holding_beside(answered) if by_components else []
         holding = {one.configurator for one in self._holding}
         rejected += map(_said_of_silent, sorted(living - answered - holding))
         rejected += map(str, self._holding)
         self.silent = tuple(sorted((living - answered) | holding))
-        self.complaints = (*rejected, *namesakes(self._bus.living(keys.any_site_life())))
+        self.complaints = (*rejected, *namesakes(self._bus.living(self._keys.any_site_life())))
         return tuple(sorted(found, key=lambda status: status.configurator))
 
     def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:
@@ -165,15 +153,8 @@ class LivingTasks:
 
     def kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""
-        newest: dict[str, TaskRecord] = {}
-        for sample in self._bus.ask(self._keys.kept_tasks()).samples:
-            try:
-                record = decode(sample.payload, TaskRecord)
-            except PeerError:
-                continue
-            if record.supersedes(newest.get(record.task)):
-                newest[record.task] = record
-        return [r for r in newest.values() if not r.ended and name in (None, task_name(r.task))]
+        records = _records(self._bus.ask(self._keys.kept_tasks()))
+        return [record for record in records if name in (None, task_name(record.task))]
 
     def all(self) -> tuple[LivingTask, ...]:
         """The tasks that run and those that live in the sites, sorted by name."""
@@ -190,7 +171,10 @@ class LivingTasks:
         No task of the ecology has it, and none of this machine begins under it in the same moment. Raises NetworkError
         if that cannot be.
         """
-        taken = {task.name for task in self.all()}
+        questions = [(self._keys.configurator_call("*", "status"), b""), (self._keys.kept_tasks(), b"")]
+        running, kept = self._bus.ask_each(questions)
+        taken = {status.name for status in _statuses(running, self._keys)[0]}
+        taken |= {task_name(record.task) for record in _records(kept)}
         further = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2)) if numbered else ()
         for name in chain([wanted], further):
             claimed = None if name in taken else claim(self._keys.ecology, name)
@@ -318,6 +302,34 @@ class LivingTasks:
             if names and self._bus.now() > deadline:
                 raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")
             self._bus.pause(0.02)
+
+
+def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
+    """What configurators have answered, each on its own key, and what is wrong with the answers that are left out."""
+    found: list[Status] = []
+    rejected: list[str] = []
+    for sample in replies.samples:
+        try:
+            status = decode(sample.payload, Status)
+        except PeerError as error:
+            rejected.append(f"left out an answer: {error}")
+            continue
+        if sample.key == keys.configurator_call(status.configurator, "status"):
+            found.append(status)
+        else:
+            rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
+    return found, rejected
+
+
+def _records(replies: Replies) -> list[TaskRecord]:
+    """The tasks that sites say they keep and that have not ended, each by its newest record."""
+    newest: dict[str, TaskRecord] = {}
+    for sample in replies.samples:
+        with suppress(PeerError):
+            record = decode(sample.payload, TaskRecord)
+            if record.supersedes(newest.get(record.task)):
+                newest[record.task] = record
+    return [record for record in newest.values() if not record.ended]
 
 
 def _states(replies: Replies, keys: Keys) -> list[CallAnswer]:

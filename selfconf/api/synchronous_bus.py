@@ -55,8 +55,9 @@ class SynchronousBus:
 
         return self.wait(begin)
 
-    def ask_each(self, questions: Sequence[tuple[str, bytes]], seconds: float = ROLL_CALL) -> list[Replies]:
+    def ask_each(self, questions: Sequence[tuple[str, bytes]], seconds: float | None = None) -> list[Replies]:
         """Return the answers to several questions, each a key and a payload, that are asked all at once; in order."""
+        patience = self._seconds if seconds is None else seconds
         found: dict[int, Replies] = {}
 
         def begin(done: Callable[[list[Replies]], None]) -> None:
@@ -66,7 +67,7 @@ class SynchronousBus:
                     done([found[place] for place in range(len(questions))])
 
             for index, (key, payload) in enumerate(questions):
-                self._bus.ask(key, payload, seconds, partial(answered, index))
+                self._bus.ask(key, payload, patience, partial(answered, index))
 
         return self.wait(begin) if questions else []
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from selfconf.api.living_tasks import LivingTask, LivingTasks
-from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.bus.memory import Network
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Request
@@ -330,3 +330,13 @@ def test_a_task_that_no_site_can_keep_is_refused_and_called_off(tasks: Tasks) ->
     tasks.site(keeps=False)
     with pytest.raises(NetworkError, match="the disk is full"):
         tasks.asked.detach(PATROL)
+
+
+def test_a_name_is_claimed_as_soon_as_each_has_had_the_time_of_one_question(tasks: Tasks) -> None:
+    tasks.configurator("c1", "watch~3")
+    for key in (KEYS.configurator_call("c2", "status"), KEYS.kept_tasks()):
+        tasks.network.node().serve(key, lambda request: None)
+    began = tasks.network.time
+    with tasks.asked.claim("watch", numbered=True) as claimed:
+        assert claimed.name == "watch-2"
+    assert tasks.network.time - began < 1.5 * ROLL_CALL
