@@ -1,4 +1,4 @@
-"""What the terms of a Thing Description stand for: the part of JSON-LD 1.1 that its `@type` and `unit` need.
+"""What the terms of a Thing Description stand for, and of what type or language their values are, by JSON-LD 1.1.
 
 A term is expanded by the contexts in the document itself and by the W3C's, which ships with selfconf. Other contexts
 are on the web and are not fetched, so terms of theirs stay unknown; nothing is guessed from a prefix that looks known.
@@ -40,6 +40,8 @@ class TermMeanings:
         """What the document itself gives names to."""
         self.language: str | None = None
         self._defined: dict[str, str] = {}
+        self._coercions: dict[str, dict[str, Any]] = {}
+        """What the document defines of a term besides its IRI, such as the type of its values."""
         self._vocabulary: str | None = None
         for each in context if isinstance(context, list) else [context]:
             self._add(each)
@@ -48,22 +50,30 @@ class TermMeanings:
         if isinstance(context, str):
             if context.rstrip("/#") in W3C_CONTEXTS:
                 self._defined.update(_w3c())
+                self._coercions = {term: each for term, each in self._coercions.items() if term not in _w3c()}
             else:
                 self.remote.append(context)
         elif isinstance(context, dict):
             for term, meaning in context.items():
-                if isinstance(meaning, dict):
-                    meaning = meaning.get("@id")
-                if not isinstance(meaning, str):
-                    continue
-                if term == "@vocab":
+                if term == "@vocab" and isinstance(meaning, str):
                     self._vocabulary = meaning
                 elif term == "@language":
-                    self.language = meaning
+                    self.language = meaning if isinstance(meaning, str) else None
                 elif not term.startswith("@"):
-                    self._defined[term] = meaning
-                    if absolute(meaning) and meaning.endswith(("#", "/", ":", "_")):
-                        self.prefixes[term] = meaning
+                    self._define(term, meaning)
+
+    def _define(self, term: str, meaning: Any) -> None:
+        """Take the definition of a term by a context of the document, in place of any before."""
+        self._coercions[term] = meaning if isinstance(meaning, dict) else {}
+        iri = self._coercions[term].get("@id") if isinstance(meaning, dict) else meaning
+        if isinstance(iri, str):
+            self._defined[term] = iri
+            if absolute(iri) and iri.endswith(("#", "/", ":", "_")):
+                self.prefixes[term] = iri
+
+    def coerced(self, term: str, keyword: str, otherwise: Any = None) -> Any:
+        """What the definition of a term says by a keyword, such as `@type`, of its values."""
+        return self._coercions.get(term, {}).get(keyword, otherwise)
 
     def expanded(self, term: str, depth: int = 0) -> IRI | None:
         """The IRI that a term stands for, or None if that is not known here."""
@@ -76,6 +86,11 @@ class TermMeanings:
             base = self.expanded(prefix, depth + 1) if depth < len(self._defined) + 2 else None
             return None if base is None else absolute(base + local)
         return absolute(term) if prefix.lower() in _SCHEMES else None
+
+    def reference(self, text: str) -> IRI | None:
+        """The IRI of an `@id`, which may have a prefix and is no term; None for one that is not absolute."""
+        prefix, _, local = text.partition(":")
+        return self.expanded(text) if prefix in self._defined and not local.startswith("//") else absolute(text)
 
     def family(self, term: str) -> str:
         """What terms such as an unknown one are called together."""

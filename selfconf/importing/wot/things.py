@@ -6,7 +6,6 @@ with what `tm:ref` takes from the same document. The two differ in their `@type`
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 from itertools import groupby
@@ -20,10 +19,11 @@ from selfconf.importing.sources import SourceDocument
 from selfconf.importing.wot.affordances import AffordanceReader
 from selfconf.importing.wot.contexts import TermMeanings, spoken
 from selfconf.importing.wot.json_text import parse_json
+from selfconf.importing.wot.json_values import terms_of
 from selfconf.importing.wot.thing_models import ModelReferences
 from selfconf.model.immutable import immutable
-from selfconf.model.term import IRI, STRING, Literal, Term
-from selfconf.rdf.vocabulary import RDFS, SC, TYPE, XSD
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.vocabulary import RDFS, SC, TYPE
 
 THING = IRI("https://www.w3.org/2019/wot/td#Thing")
 AFFORDANCES = ("properties", "events", "actions")
@@ -149,7 +149,7 @@ class _ThingReader:
         return (spoken(words, self.meanings.language),) if isinstance(words, str) and words else ()
 
     def _properties(self) -> Iterator[tuple[IRI, Term]]:
-        """What the thing says in terms of other vocabularies, as far as it is a plain value or an IRI."""
+        """What the thing says in terms of other vocabularies, as far as it is a literal or an IRI."""
         for member, value in self.thing.items():
             if member in _KNOWN or member in _UNUSED or member.startswith("@"):
                 continue
@@ -160,26 +160,8 @@ class _ThingReader:
             if predicate is None:
                 self.ledger.leave_out(self.meanings.family(member), self.meanings.unknown(), self.source)
                 continue
-            for each in value if isinstance(value, list) else [value]:
-                term = _plain(each)
-                if term is None:
-                    self.ledger.leave_out(
-                        "nested values of other vocabularies", "only plain values are kept", self.source
-                    )
+            for term in terms_of(member, value, self.meanings):
+                if isinstance(term, tuple):
+                    self.ledger.leave_out(*term, self.source)
                 else:
                     yield predicate, term
-
-
-def _plain(value: Any) -> Term | None:
-    """A JSON value as a term: a string, number or truth value, or an object that is only an `@id`."""
-    if isinstance(value, bool):
-        return Literal(str(value).lower(), XSD.boolean)
-    if isinstance(value, int):
-        return Literal(str(value), XSD.integer)
-    if isinstance(value, float):
-        return Literal(repr(value), XSD.double) if math.isfinite(value) else None
-    if isinstance(value, str):
-        return Literal(value, STRING)
-    if isinstance(value, dict) and set(value) == {"@id"} and isinstance(value["@id"], str):
-        return absolute(value["@id"])
-    return None

@@ -104,6 +104,21 @@ def test_values_of_other_vocabularies_are_kept_where_they_are_plain(workshop: Wo
     }  # fmt: skip
 
 
+def test_values_have_the_types_that_the_context_of_the_document_gives_them(workshop: Workshop) -> None:
+    context = {
+        "ex": "http://ex/", "xsd": "http://www.w3.org/2001/XMLSchema#",
+        "rob": "https://w3id.org/selfconf/robotics#", "onRobot": {"@id": "rob:support", "@type": "@id"},
+        "built": {"@id": "ex:built", "@type": "xsd:date"}, "nom": {"@id": "ex:nom", "@language": "fr"},
+    }  # fmt: skip
+    members = {"onRobot": "urn:robots:astrid", "built": "2020-01-01", "nom": "lampe"}
+    text = json.dumps({"@context": [CONTEXT[0], context], "id": "urn:c", "title": "C", **members})
+    report = workshop.imported("wot", {"lamp.json": text})
+    assert left_out(report) == {}
+    written = only(workshop, report)
+    for stated in ("rob:support <urn:robots:astrid>", 'ex:built "2020-01-01"^^xsd:date', 'ex:nom "lampe"@fr'):
+        assert stated in written
+
+
 def test_a_name_that_occurs_twice_is_named(workshop: Workshop) -> None:
     report = workshop.imported("wot", {"lamp.json": '{ "title": "A", "properties": { "x": {}, "x": {} } }'})
     assert left_out(report) == {"earlier values of 'x'": 1}
