@@ -36,6 +36,7 @@ from selfconf.model.term import IRI
 from selfconf.search import explain
 from selfconf.search.budget import Budget
 from selfconf.search.engines import CandidateSearch, ClauseSolver, least_of_clauses, solver_available
+from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, assigned, pruned, reduced
 from selfconf.search.strategies import solution
@@ -96,7 +97,7 @@ def nearest(problem: Problem, running: Configuration, steps: int | None = None) 
             budget = Budget(steps)
             found = search.by_clauses(budget)
         if found is None or not budget.steps:
-            found = search.nearest_of(found, problem.solved(playing, running), search.incumbent)
+            found = search.nearest_of(found, solved(problem, playing, running), search.incumbent)
     return Reconfiguration(found, *preserved(found, running), proved=bool(budget.steps))
 
 
@@ -175,7 +176,7 @@ class _NearestSearch:
             return None
         alone = Problem(problem.task, replace(problem.partition, candidates=left), problem.hierarchy)
         found = CandidateSearch(alone, Budget(DEPTH_FIRST_STEPS)).first()
-        return None if found is None else problem.solved(found, self.running)
+        return None if found is None else solved(problem, found, self.running)
 
     def with_fewest_losses(self, budget: Budget) -> Configuration | None:
         """Return the best configuration with the fewest losses, one at least; None if the budget ends before."""
@@ -189,7 +190,7 @@ class _NearestSearch:
         """Return the best configuration with this number of losses, or None if none is met within the budget."""
         best: tuple[Score, Configuration] | None = None
         for playing in _LossBoundedSearch(self.problem, self.eligible, losses, budget).solutions():
-            configuration = self.problem.solved(playing, self.running)
+            configuration = solved(self.problem, playing, self.running)
             budget.spend(self.extension)
             score = self.meet(configuration)
             # The bound of the search assumes that a role can be filled up again by the extension. Where it cannot, the
@@ -224,7 +225,7 @@ class _NearestSearch:
                 chosen, proved = clauses.chosen(), False
             if not proved:
                 budget.steps = 0
-            return self.problem.solved(assigned(self.problem, chosen), self.running)
+            return solved(self.problem, assigned(self.problem, chosen), self.running)
 
     def _maximised(
         self, clauses: ClauseSolver, plays: dict[tuple[int, int], int], keeping: list[int], budget: Budget

@@ -21,6 +21,7 @@ from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines import CandidateSearch, FoundedSolver, least_of_clauses, solver_available
+from selfconf.search.extension import solved, with_further_players
 from selfconf.search.fewest_recruits import fewest
 from selfconf.search.problem import Problem
 from selfconf.search.recruit_choice import RecruitChoice
@@ -53,7 +54,7 @@ def recruited(
     if not choice.possible:
         return None
     chosen, proved = fewest(choice, Budget(steps))
-    return problem.with_further_players(choice.configuration(chosen), running), proved
+    return with_further_players(problem, choice.configuration(chosen), running), proved
 
 
 def first_recruited(
@@ -70,7 +71,7 @@ def first_recruited(
         return Undecided(steps)
     if playing is None:
         return None
-    found = recruited(problem, problem.solved(playing), running, steps)
+    found = recruited(problem, solved(problem, playing), running, steps)
     assert found is not None
     return found[0]
 
@@ -127,7 +128,7 @@ def _by_enumeration(
     relevant = _relevant_roles(problem)
     search.matters = max((place for place, role in enumerate(search.slots) if role in relevant), default=-1)
     for playing in search.solutions():
-        if RecruitChoice(problem, problem.solved(playing), ()).possible:
+        if RecruitChoice(problem, solved(problem, playing), ()).possible:
             return playing
     return None if budget.steps else Undecided(0)
 

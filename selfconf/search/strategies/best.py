@@ -32,6 +32,7 @@ from selfconf.search import explain
 from selfconf.search.budget import Budget
 from selfconf.search.cost_table import LEADING_LEVELS, CostTable
 from selfconf.search.engines import ClauseSolver, ReducedSearch, least_of_clauses, minimise, solver_available
+from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.recruit_refusal import refusal_of_recruits
 from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, in_order, pruned, reduced
@@ -93,7 +94,7 @@ def _best_players(given: LazyReduction, steps: int, running: Configuration | Non
     # these is what the cheapest candidates cost.
     tight = least[:LEADING_LEVELS] == spent[:LEADING_LEVELS]
     bounds = least if tight else costs.levels_of(0, len(part.slots))
-    configuration = problem.solved(playing, running)
+    configuration = solved(problem, playing, running)
     return Optimum(
         configuration, spent[LEADING_LEVELS:], bounds[LEADING_LEVELS:], tuple(missing), proved=spent == least
     )

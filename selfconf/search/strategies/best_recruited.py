@@ -31,6 +31,7 @@ from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.cost_table import LEADING_LEVELS, NO_ROLE, CostTable, recruit_cost
 from selfconf.search.engines import FoundedSolver, least_of_clauses, minimise
+from selfconf.search.extension import solved, with_further_players
 from selfconf.search.fewest_recruits import fewest_of
 from selfconf.search.problem import Problem
 from selfconf.search.recruit_choice import RecruitChoice, players_of
@@ -75,7 +76,7 @@ def best_with_recruits(
         found = search.run(Budget(steps))
     if not isinstance(found, _Chosen):
         return Undecided(steps) if found is None else None
-    choice = RecruitChoice(problem, problem.solved(found.players), kept, found.recruits)
+    choice = RecruitChoice(problem, solved(problem, found.players), kept, found.recruits)
     brought = [number for number in found.recruits if number in choice.needs]
     spent = costs.levels(found.players, brought)
     least = spent if search.proved else costs.levels_of(search.bound, len(part.slots))
@@ -83,7 +84,7 @@ def best_with_recruits(
     tight = least[:LEADING_LEVELS] == spent[:LEADING_LEVELS]
     bounds = least if tight else costs.levels_of(_lowest(costs), len(part.slots))
     return Optimum(
-        problem.with_further_players(choice.configuration(brought), running),
+        with_further_players(problem, choice.configuration(brought), running),
         spent[LEADING_LEVELS:],
         bounds[LEADING_LEVELS:],
         tuple(_missing(problem, found.players, [problem.supply.recruits[n].profile for n in brought])),

@@ -48,6 +48,7 @@ from selfconf.search.engines import (
     solver_available,
     unmatchable,
 )
+from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, pruned, reduced
 
@@ -72,7 +73,7 @@ def answers(problem: Problem, steps: int | None = None) -> Iterator[Configuratio
     given = LazyReduction(problem)
     playing = solution(given, Budget(steps))
     if isinstance(playing, list):
-        yield problem.solved(playing)
+        yield solved(problem, playing)
     elif isinstance(playing, Undecided):
         yield Undecided(playing.steps if steps is None else steps, unaided=not solver_available())
     else:

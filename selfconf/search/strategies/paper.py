@@ -28,6 +28,7 @@ from collections.abc import Iterator
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
+from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 
 Partial = tuple[int | None, ...]
@@ -48,7 +49,7 @@ def algorithm_1(problem: Problem, steps: int | None = None) -> Configuration | U
         partial = next(iter(queue))
         del queue[partial]
         if None not in partial:
-            return problem.solved(_playing(problem, slots, partial))
+            return solved(problem, _playing(problem, slots, partial))
         for expansion in expand(problem, slots, partial):
             queue.setdefault(expansion)
     return None

@@ -18,6 +18,7 @@ from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search import explain
 from selfconf.search.engines import clause_learning
+from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
 from tests.effort import NIGHTLY
@@ -122,7 +123,7 @@ def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Proble
         nearest = min(solutions, key=lambda players: (newcomers(players), *_total(world, players)))
         assert answer.proved
         assert (answer.unknown, *answer.cost) == _total(world, nearest)
-        assert answer.configuration == left.solved(nearest, running)
+        assert answer.configuration == solved(left, nearest, running)
 
 
 @given(priced_problems())
