@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.desk import Desk
 from tests.cli.diagnosed import write_diagnosed
 from tests.cli.processes import Home
 
@@ -34,3 +35,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The current folder, with a file that conforms, two with a problem each, and one that is not Turtle."""
     monkeypatch.chdir(tmp_path)
     return write_diagnosed(tmp_path)
+
+
+@pytest.fixture
+def desk(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Desk:
+    """The paper's files."""
+    return Desk(tmp_path, capsys)
