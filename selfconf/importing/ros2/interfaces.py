@@ -81,6 +81,11 @@ class NodeInterface:
         said = dict(self.qualities).get("depth", "")
         return int(said) if said.isdecimal() and len(said) < 8 and 1 <= int(said) <= MOST_DEPTH else None
 
+    def unknown_qualities(self) -> tuple[str, ...]:
+        """The names of what its quality of service says and `depth` and `properties` do not."""
+        no_depth = self.depth() is None
+        return tuple(name for name, _ in self.qualities if name not in _QUALITIES and (name != "depth" or no_depth))
+
     def properties(self) -> tuple[tuple[IRI, Term], ...]:
         """Its quality of service as statements about a port."""
         said = dict(self.qualities)

@@ -2,7 +2,8 @@
 
 It looks like YAML and is none: a list may be words on lines of their own, `-[a, b]` is an item, `type:"x"` has its
 colon without a space, and an item may go on in a line that begins left of its text. So it is read by what its grammar
-(Xtext, with synthetic tokens for indentation) and the models that are about have in common.
+(Xtext, with synthetic tokens for indentation) and the models that are about have in common. A flow mapping of YAML,
+`scan: {type: "x", qos: {depth: 5}}`, is read as what could stand below its name.
 """
 
 from __future__ import annotations
@@ -18,6 +19,10 @@ _LINE = re.compile(
     r"""(?P<dash>-(?!>))?\s*(?P<key>"[^"]*"|'[^']*'|[^\s:\[\]"'#,-][^\s:\[\]"'#,]*)\s*:(?!:)\s*(?P<value>.*)"""
 )
 _WORD = re.compile(r""""[^"]*"|'[^']*'|[^\s\[\]{},"':]+(?:::?[^\s\[\]{},"':]+)*""")
+_FLOW_BEGIN = re.compile(r":\s*\{")
+_FLOW_KEY = re.compile(r"""\s*(?P<key>"[^"]*"|'[^']*'|[^\s:\[\]{}"'#,]+)\s*:(?!:)\s*""")
+_FLOW_VALUE = re.compile(r"""(?P<value>"[^"]*"|'[^']*'|\[[^\[\]{}]*\]|[^\[\]{},"']*)""")
+_FLOW_END = re.compile(r"\s*(?P<mark>[,}])\s*")
 _QUOTED_OR_COMMENT = re.compile(r""""[^"]*"|'[^']*'|(?P<comment>\#.*)|(?P<open>["'])""")
 DEEPEST_MODEL = 50
 """How deep entries may be nested; models need eight levels."""
@@ -76,19 +81,56 @@ def _entries(source: SourceDocument) -> Iterator[ModelEntry]:
         text = line.strip()
         if not text or text == "---":
             continue
-        while text.count("[") > text.count("]"):
+        while unclosed := _unclosed(text):
             following = next(lines, None)
             if following is None:
-                raise _mistake(source, number, column, "a list in brackets has no end")
+                raise _mistake(source, number, column, f"{unclosed} has no end")
             text = f"{text} {_without_comment(following[1], source, following[0]).strip()}"
         found = _LINE.fullmatch(text)
         if found is not None:
-            yield ModelEntry(unquoted(found["key"]), found["value"].strip(), number, column + 1)
+            entry = ModelEntry(unquoted(found["key"]), found["value"].strip(), number, column + 1)
+            if entry.text.startswith("{") and _read_flow(entry, entry.text, 1, 1) == len(entry.text):
+                entry.text = ""
+            else:
+                entry.below.clear()
+            yield entry
         elif _WORD.fullmatch(text.lstrip("- ")) or re.fullmatch(r"-\s*\[.*\]", text):
             yield ModelEntry("", text.removeprefix("-").strip(), number, column + 1)
         else:
             message = "a line is `name:`, `name: value`, `- name: value`, `- [a, b]` or a name"
             raise _mistake(source, number, column, f"{message}, not {text[:40]!r}")
+
+
+def _unclosed(text: str) -> str:
+    """What goes on in the next line, in words; empty if nothing does."""
+    if text.count("[") > text.count("]"):
+        return "a list in brackets"
+    goes_on = _FLOW_BEGIN.search(text) is not None and text.count("{") > text.count("}")
+    return "a mapping in braces" if goes_on else ""
+
+
+def _read_flow(entry: ModelEntry, text: str, place: int, depth: int) -> int:
+    """Put the members of a flow mapping below an entry; where it ends, or -1 where this is none.
+
+    `place` is that behind its brace.
+    """
+    if text[place:].lstrip().startswith("}"):
+        return place + text[place:].index("}") + 1
+    while (key := _FLOW_KEY.match(text, place)) is not None and depth < DEEPEST_MODEL:
+        member = ModelEntry(unquoted(key["key"]), "", entry.line, entry.column)
+        entry.below.append(member)
+        place = key.end()
+        if text.startswith("{", place):
+            place = _read_flow(member, text, place + 1, depth + 1)
+        elif (value := _FLOW_VALUE.match(text, place)) is not None:
+            member.text, place = value["value"].strip(), value.end()
+        end = _FLOW_END.match(text, place) if place >= 0 else None
+        if end is None:
+            break
+        place = end.end()
+        if end["mark"] == "}":
+            return place
+    return -1
 
 
 def _without_comment(line: str, source: SourceDocument, number: int) -> str:

@@ -52,6 +52,32 @@ def test_a_list_may_take_several_lines() -> None:
     assert entry.words() == ["a", "b c", "d"]
 
 
+def test_a_flow_mapping_is_what_could_stand_below_its_name() -> None:
+    text = """
+pubs:
+  scan: { type: "a/b" , "qos": {depth: 5, list: [1, 2], x: 'a, b'},
+          empty: {}, url: http://x }
+  none: {}
+  - odd: {a, b}
+  broken: {a: {b: c} d: e}
+"""
+    assert outline(parsed(text)) == [
+        ["pubs", "", [
+            ["scan", "", [
+                ["type", '"a/b"', []],
+                ["qos", "", [["depth", "5", []], ["list", "[1, 2]", []], ["x", "'a, b'", []]]],
+                ["empty", "", []],
+                ["url", "http://x", []],
+            ]],
+            ["none", "", []],
+            ["odd", "{a, b}", []],
+            ["broken", "{a: {b: c} d: e}", []],
+        ]],
+    ]  # fmt: skip
+    deep = parsed(f"x: {'{a: ' * 200}1{'}' * 200}")
+    assert (deep[0].text[:4], deep[0].below) == ("{a: ", [])
+
+
 def test_a_hash_in_quotes_is_no_comment_and_quotes_are_no_part_of_a_value() -> None:
     (entry,) = parsed('a:\n  b: "x # y"\n')
     assert entry.value("b") == "x # y"
@@ -63,6 +89,7 @@ def test_a_hash_in_quotes_is_no_comment_and_quotes_are_no_part_of_a_value() -> N
     ("text", "words"),
     [
         ("a:\n  b: [1,\n", "x.ros2:2:3: a list in brackets has no end"),
+        ("a:\n  b: {c: 1,\n", "x.ros2:2:3: a mapping in braces has no end"),
         ('a:\n  b: "x\n', "x.ros2:2:6: a quotation has no end"),
         ("a:\n  b c d\n", "x.ros2:2:3: a line is `name:`"),
         ("\n".join(f"{' ' * each}a:" for each in range(100)), "nested more than 50 levels deep"),

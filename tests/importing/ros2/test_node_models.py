@@ -20,7 +20,12 @@ demo:
           type: "sensor_msgs/msg/LaserScan"
           qos:
             depth: 5
+            deadline: 10
+            lease_duration: 2s
           frame: base
+        odd: word
+      subscribers:
+        flow: {type: "std_msgs/msg/String", qos: {depth: many, reliability: best_effort}}
       actionclients:
         go:
           type: 'nav2_msgs/action/NavigateToPose'
@@ -29,6 +34,10 @@ demo:
         rate:
           type: Double
           default: 1.2
+          value: 1.5
+          qos:
+            profile: parameter_qos
+          unit: Hz
       odd: 1
 empty:
   dependencies: [ a, b ]
@@ -45,7 +54,19 @@ def test_a_node_has_the_interfaces_of_its_blocks_and_the_rest_is_named() -> None
         "lidar",
         "lidar_node",
         (
-            NodeInterface(InterfaceKind.PUBLISHER, "scan", "sensor_msgs/msg/LaserScan", (("depth", "5"),)),
+            NodeInterface(
+                InterfaceKind.PUBLISHER,
+                "scan",
+                "sensor_msgs/msg/LaserScan",
+                (("depth", "5"), ("deadline", "10"), ("lease_duration", "2s")),
+            ),
+            NodeInterface(InterfaceKind.PUBLISHER, "odd"),
+            NodeInterface(
+                InterfaceKind.SUBSCRIBER,
+                "flow",
+                "std_msgs/msg/String",
+                (("depth", "many"), ("reliability", "best_effort")),
+            ),
             NodeInterface(InterfaceKind.ACTION_CLIENT, "go", "nav2_msgs/action/NavigateToPose"),
         ),
         (("rate", "Double"),),
@@ -54,6 +75,14 @@ def test_a_node_has_the_interfaces_of_its_blocks_and_the_rest_is_named() -> None
         "entries 'fromGitRepo' of packages",
         "entries 'dependencies' of packages",
         "entries 'frame' of interfaces",
+        "values of interfaces",
+        "the quality of service 'deadline'",
+        "the quality of service 'lease_duration'",
+        "the quality of service 'depth'",
+        "defaults of parameters",
+        "values of parameters",
+        "quality of service of parameters",
+        "entries 'unit' of parameters",
         "entries 'odd' of nodes",
         "namespaces of interfaces",
         "packages without artifacts",
