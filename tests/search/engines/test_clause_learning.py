@@ -34,9 +34,17 @@ def interruptible() -> Iterator[None]:
 
 def test_whether_the_solver_is_there_is_looked_up_once() -> None:
     clause_learning.solver_available()
-    looks = clause_learning.solver_available.cache_info().misses
+    looks = clause_learning._finds_solver.cache_info().misses
     assert clause_learning.solver_available() == (importlib.util.find_spec("pysat") is not None)
-    assert clause_learning.solver_available.cache_info().misses == looks
+    assert clause_learning._finds_solver.cache_info().misses == looks
+
+
+def test_without_a_solver_there_is_none_whatever_was_found_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = clause_learning.solver_available()
+    with monkeypatch.context() as patch:
+        patch.setattr(clause_learning, "find_spec", lambda name: None)
+        assert not clause_learning.solver_available()
+    assert clause_learning.solver_available() == before
 
 
 INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(), signal.SIGINT)"
