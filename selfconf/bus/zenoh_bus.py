@@ -31,6 +31,7 @@ from zenoh.handlers import Callback, FifoChannel
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
+from selfconf.bus.reader_threads import ReaderThreads
 from selfconf.bus.zenoh_relay import Hub, Relay
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
 from selfconf.errors import NetworkError
@@ -251,7 +252,7 @@ class ZenohBus(Loop):
         self._relay: Relay | None = None
         self._declared: set[Any] = set()
         self._direct: set[_DirectReceiver] = set()
-        self._readers: set[threading.Thread] = set()
+        self._readers = ReaderThreads()
         """The threads that read channels; none may be left when Python ends, or it ends with a crash."""
         self._open = True
         self._turns = 0
@@ -441,12 +442,9 @@ class ZenohBus(Loop):
         def read() -> None:
             while some := _received(channel):
                 take(some)
-            self._readers.discard(threading.current_thread())
             end()
 
-        reader = threading.Thread(target=read, daemon=True, name="bulk")
-        self._readers.add(reader)
-        reader.start()
+        self._readers.begin(read)
 
     def close(self) -> None:
         """Leave the network."""
@@ -458,8 +456,7 @@ class ZenohBus(Loop):
             self._direct.clear()
             self._declared.clear()
             self._session.close()
-            for reader in list(self._readers):
-                reader.join(_LAST_WORDS)
+            self._readers.end(_LAST_WORDS)
             if self._relay is not None:
                 self._relay.close()
 
