@@ -1,13 +1,15 @@
 """Where roles and components are described: file and line, looked up only for what a refusal or a complaint names.
 
-Reading for speed forgets lines. So the files of the few that are named are read again, with positions
-(`selfconf.rdf.positions`), if they are files of this machine and not too long for that.
+Reading for speed forgets lines. So the files of the few that are named are read again, if they are files of this
+machine and not too long for that: first for the lines of their subjects alone (`selfconf.rdf.subject_lines`), and by
+the parser that knows every place (`selfconf.rdf.positions`) where that does not tell.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -29,8 +31,35 @@ MOST_REREAD = 20
 """Of how many files that something was left out of the lines are looked up; of the others the names have to do."""
 Fact = TypeVar("Fact", bound="Reason | Relaxation | NearMiss")
 
-FilesRead = dict[str, "Positions | None"]
-"""The positions in each file that was read again, if it could be."""
+
+class _FileReadAgain:
+    """The lines of a Turtle file in which named nodes are described."""
+
+    def __init__(self, path: Path, source: str) -> None:
+        """Raises OSError or UnicodeDecodeError."""
+        from selfconf.rdf.subject_lines import subject_lines  # needed by refusals and complaints alone
+
+        self._text, self._source, self._base = path.read_text("utf-8"), source, path.resolve().as_uri()
+        self._subjects = subject_lines(self._text)
+
+    def line_of(self, named: IRI | BlankNode) -> int | None:
+        """The line in which a node is first described, or else first spoken of."""
+        if named in self._subjects:
+            return self._subjects[named]
+        return None if self._positions is None else self._positions.line_of(named)
+
+    @cached_property
+    def _positions(self) -> Positions | None:
+        from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # loads rdflib, seldom needed here
+
+        try:
+            return parse_with_positions(self._text, self._source, self._base)[1]
+        except (NotTurtleError, RecursionError):
+            return None
+
+
+FilesRead = dict[str, _FileReadAgain | None]
+"""Each file that was read again, if it could be."""
 
 
 class Places:
@@ -75,7 +104,7 @@ def with_lines(left_out: Iterable[LeftOut]) -> Iterator[LeftOut]:
 def _with_line(named: IRI | BlankNode, place: Place, read: FilesRead) -> Place:
     """A place with the line of what is named, if it has one and its file can be read again."""
     if place.source not in read:
-        read[place.source] = _positions(place.source)
+        read[place.source] = _read_again(place.source)
     found = read[place.source]
     line = None if found is None else found.line_of(named)
     return place if line is None else Place(place.source, line)
@@ -88,13 +117,9 @@ def _spoken_of(fact: Reason | Relaxation | NearMiss) -> IRI:
     return fact.component if isinstance(fact, InputUnfed | NearMiss) else fact.role
 
 
-def _positions(source: str) -> Positions | None:
-    from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # loads rdflib, which answers do not need
-
+def _read_again(source: str) -> _FileReadAgain | None:
     path = Path(source)
     try:
-        if path.stat().st_size > LARGEST_REREAD:
-            return None
-        return parse_with_positions(path.read_text("utf-8"), source, path.resolve().as_uri())[1]
-    except (OSError, UnicodeDecodeError, NotTurtleError, RecursionError):
+        return None if path.stat().st_size > LARGEST_REREAD else _FileReadAgain(path, source)
+    except (OSError, UnicodeDecodeError):
         return None

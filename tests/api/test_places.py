@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from rdflib import Graph
 
 import selfconf as sc
 from selfconf.api.places import LARGEST_REREAD, MOST_REREAD, Places, with_lines
@@ -13,6 +14,7 @@ from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Template
 from selfconf.model.term import IRI
+from selfconf.rdf import positions
 from tests.cli.command import Outcome, run
 from tests.lab import PREFIXES
 
@@ -23,6 +25,9 @@ def test_roles_and_components_have_file_and_line_and_others_have_no_place(clock:
     assert str(places.of(sc.IRI(f"{home}screen"))) == "examples/clock/tell-the-time.ttl:15"
     assert str(places.of(sc.IRI(f"{home}display"))) == "examples/clock/display.ttl:5"
     assert places.of(sc.IRI(f"{home}kitchen")) is None
+
+
+PARSE = positions.parse_with_positions
 
 
 TIME = ":time a sc:Template ; sc:roles ( :source :sink ) .\n:source a sc:Role ; sh:class :Clok ; sc:feeds :sink .\n"
@@ -61,6 +66,25 @@ def test_what_was_left_out_has_a_line_where_its_file_can_be_read(tmp_path: Path)
     found = [str(one.place) for one in with_lines(some)]
     assert found[:MOST_REREAD] == [expected.replace(names[0], name) for name in names[:-1]]
     assert found[MOST_REREAD:] == [str(tmp_path / names[-1]), "elsewhere.ttl"]
+
+
+def test_only_what_is_named_by_a_relative_iri_is_read_by_the_parser_with_positions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes long, and rdflib has to be loaded for it."""
+    parsed: list[str] = []
+
+    def parse(text: str, source: str, base: str) -> tuple[Graph, positions.Positions]:
+        parsed.append(Path(source).name)
+        return PARSE(text, source, base)
+
+    monkeypatch.setattr(positions, "parse_with_positions", parse)
+    absolute, relative = tmp_path / "absolute.ttl", tmp_path / "relative.ttl"
+    absolute.write_text(PREFIXES + "\n:x a sc:Component .")
+    relative.write_text(PREFIXES + "\n\n<#x> a sc:Component .")
+    some = [*read(tmp_path).left_out]
+    assert {str(one.place) for one in with_lines(some)} == {line(absolute, ":x a"), line(relative, "<#x> a")}
+    assert parsed == ["relative.ttl"]
 
 
 def configure(capsys: pytest.CaptureFixture[str], home: Path, *arguments: str) -> Outcome:
