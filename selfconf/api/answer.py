@@ -45,6 +45,9 @@ from selfconf.render import (
     refusal_text,
 )
 
+EXPLAINING = 2.0
+"""For how many seconds at most a refusal is explained to a task that waits, which may soon come to another one."""
+
 
 @immutable
 class Method:
@@ -77,6 +80,10 @@ class Method:
         """The composer of a task, which has to be complete."""
         hierarchy = hierarchy_of(self.reasoning, self.ontologies)
         return Composer(task.document, hierarchy, self.strategy, self.steps)
+
+    def explaining(self) -> TimeLimit:
+        """The time in which a refusal is explained to a task that waits."""
+        return TimeLimit(min(EXPLAINING, self.seconds or EXPLAINING))
 
     def wider(self) -> Hierarchy | None:
         """The hierarchy of the mode `subclass`, for explanations, where the method sees none; else None."""

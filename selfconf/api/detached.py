@@ -5,12 +5,12 @@ from __future__ import annotations
 import secrets
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from selfconf import files
-from selfconf.api.answer import Method
+from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.arguments import checked_priority, checked_upgrade, option
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
@@ -20,7 +20,7 @@ from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
-from selfconf.model.refusal import Outcome
+from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, safe_name, task_identity
 from selfconf.protocol.messages import TaskRecord
@@ -98,14 +98,34 @@ def _upgrade(options: Mapping[str, Any]) -> float | None:
     return value
 
 
-def request_of(record: TaskRecord, aside: Aside, believed: Beliefs | None = None) -> RunRequest:
-    """The request by which a site runs a task that it keeps. Raises SelfconfError for what cannot be read."""
+def request_of(
+    record: TaskRecord,
+    aside: Aside,
+    believed: Beliefs | None = None,
+    at_leisure: Callable[[Callable[[], None]], None] = lambda work: None,
+) -> RunRequest:
+    """The request by which a site runs a task that it keeps. Raises SelfconfError for what cannot be read.
+
+    `at_leisure` does what nothing waits for: it finds out what else a refusal can tell.
+    """
     task, method, composer = recorded_task(record)
     options = record.options
+    able: Mapping[IRI, Advertisement] = {}
 
     def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+        nonlocal able
         answer = composed(composer, found, lost, running, TimeLimit(method.seconds))
+        if isinstance(answer, Refusal):
+            able = {component: one for component, one in found.items() if component not in lost}
         return answer.configuration if isinstance(answer, Optimum) else answer
+
+    def explain(refusal: Refusal, found: Callable[[Refusal], None]) -> None:
+        ecology = able
+
+        def find() -> None:  # with a composer of its own: the partition of the next search must not be spoilt
+            found(refusal_with_places(method.composer(task), ecology, refusal, method, method.explaining()))
+
+        at_leisure(find)
 
     return RunRequest(
         task=task.document.task,
@@ -120,5 +140,6 @@ def request_of(record: TaskRecord, aside: Aside, believed: Beliefs | None = None
         upgrade=_upgrade(options),
         believed=believed,
         aside=aside,
+        explain=explain,
         record=record,
     )

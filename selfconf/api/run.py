@@ -16,7 +16,7 @@ from selfconf.api.membership import beliefs, check_may_run, configurator_name, m
 from selfconf.api.places import Places
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
-from selfconf.api.work_queue import WorkQueue
+from selfconf.api.work_queue import UNDISTURBED, WorkQueue
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import ZenohBus
 from selfconf.composition import Composer, TimeLimit, composed
@@ -38,11 +38,6 @@ TASKS_CALL = 0.5
 """Seconds that the other tasks may take to say their names, where none was given: one that hangs holds up no other."""
 TAKING_DOWN = 15.0
 """How long, in seconds, a configurator may take to turn off everything that it holds."""
-EXPLAINING = 2.0
-"""For how many seconds at most a refusal is explained to a task that waits, which may soon come to another one."""
-UNDISTURBED = 0.2
-"""For how many seconds such a task must have had nothing to do before: those that it waits for, and others that have
-begun with it, want the processors too."""
 OF_TASK = "task"
 """The owner of what is done for a task, as long as it lasts."""
 CHECK = 0.5
@@ -232,13 +227,13 @@ class Run:
         """The refusal by which the task has ended, with all that can be found out now that nothing runs any more."""
         if not isinstance(self._refusal, Refusal):
             return self._refusal
-        explained = self._explain(self._refusal, self._composer, self.method.seconds)
+        explained = self._explain(self._refusal, self._composer, TimeLimit(self.method.seconds))
         return answered(explained, self.task.document)
 
-    def _explain(self, refusal: Refusal, composer: Composer, seconds: float | None) -> Refusal:
+    def _explain(self, refusal: Refusal, composer: Composer, limit: TimeLimit) -> Refusal:
         """A refusal with all that the time allows to find out; one that waits comes to the same again and again."""
         if self._told is None or self._told[:2] != (refusal, self._found):
-            limit, described = TimeLimit(seconds), self._described()
+            described = self._described()
             explained = refusal_with_places(composer, self._found, refusal, self.method, limit, described)
             self._told = refusal, self._found, explained
         return self._told[2]
@@ -266,16 +261,18 @@ class Run:
         refusal, found, over = event.refusal, list[Refusal](), isinstance(event, TaskRefused)
 
         def explain() -> None:
-            composer, seconds = self._composer, self.method.seconds
+            composer, limit = self._composer, TimeLimit(self.method.seconds)
             if not over:
                 # With a composer of its own: to be ended in the middle must not spoil the partition of the next search.
-                composer, seconds = self.method.composer(self.task), min(EXPLAINING, seconds or EXPLAINING)
-            found.append(self._explain(refusal, composer, seconds))
+                composer, limit = self.method.composer(self.task), self.method.explaining()
+            found.append(self._explain(refusal, composer, limit))
 
         if not (self._work.do(explain) if over else self._work.until_more(explain, UNDISTURBED)):
             found = [self._with_places(refusal)]
             if over:
                 self._told = refusal, self._found, found[0]
+        elif isinstance(event, TaskWaiting):
+            self._in_ecology().runner.explained(event, found[0])
         return replace(event, refusal=found[0])
 
     def _with_places(self, refusal: Refusal) -> Refusal:

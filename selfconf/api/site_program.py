@@ -233,7 +233,8 @@ def _request_of(work: WorkQueue, believed: Beliefs | None, record: TaskRecord) -
     """The request to run a task that the site keeps; what reads it is loaded with the first one."""
     from selfconf.api.detached import request_of
 
-    request = request_of(record, partial(work.work, owner=record.task), believed)
+    at_leisure = partial(work.at_leisure, owner=record.task)
+    request = request_of(record, partial(work.work, owner=record.task), believed, at_leisure)
     return replace(request, abandon=partial(work.abandon, record.task))
 
 

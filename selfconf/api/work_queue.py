@@ -14,6 +14,10 @@ from selfconf.rdf.deadline import Abandoned, abandonable
 if TYPE_CHECKING:
     from selfconf.model.run_event import AnyRunEvent
 
+UNDISTURBED = 0.2
+"""For how many seconds there must have been nothing else before something begins that nothing waits for: other programs
+that have begun at the same time want the processors too."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Work:
@@ -32,6 +36,8 @@ class WorkQueue:
         """The work that is being done, and what ends it."""
         self._until_more: Callable[[], None] | None = None
         """What ends that which is done only until there is something else."""
+        self._leisurely: dict[str, Callable[[], None]] = {}
+        """What is to be done when there is nothing else, one thing for each owner."""
         self._events: deque[AnyRunEvent] = deque()
         self._more = threading.Condition()
         self._woken = False
@@ -43,6 +49,16 @@ class WorkQueue:
             self._works.append(one)
             self._notify()
         return partial(self._abandon, one)
+
+    def at_leisure(self, work: Callable[[], None], owner: str) -> None:
+        """Have `next` do something when there has been nothing else for a while, in place of what that was before.
+
+        What comes in the middle of it is done first, and then this anew. Outside of the main thread, where nothing
+        could end it, it is forgotten.
+        """
+        with self._more:
+            self._leisurely[owner] = work
+            self._notify()
 
     def _abandon(self, one: _Work) -> None:
         """End and forget one work, if it is not over."""
@@ -57,6 +73,8 @@ class WorkQueue:
         with self._more:
             for work in [work for work in self._works if owner in ("", work.owner)]:
                 self._works.remove(work)
+            for one in [one for one in self._leisurely if owner in ("", one)]:
+                del self._leisurely[one]
             if self._under_way is not None and owner in ("", self._under_way[0].owner):
                 self._under_way[1]()
             self._woken = True
@@ -110,14 +128,29 @@ class WorkQueue:
     def next(self, seconds: float) -> AnyRunEvent | None:
         """Do all the work there is, and return the next event; None if none has come after that long."""
         with self._more:
-            if not self._has_more and seconds > 0:
+            if not self._has_more and not self._leisurely and seconds > 0:
                 self._more.wait(seconds)
             self._woken = False
             waiting = len(self._works)
         for _ in range(waiting):
             self._do_first()  # one at a time: where one breaks, the others wait for the next call
+        self._do_at_leisure()
         with self._more:
             return self._events.popleft() if self._events else None
+
+    def _do_at_leisure(self) -> None:
+        """Do the first thing that waits for a time in which there is nothing else, if this is one."""
+        with self._more:
+            owner, work = next(iter(self._leisurely.items()), ("", None))
+        if work is None:
+            return
+        over = True
+        try:
+            over = self.until_more(work, UNDISTURBED) or threading.current_thread() is not threading.main_thread()
+        finally:
+            with self._more:
+                if over and self._leisurely.get(owner) is work:
+                    del self._leisurely[owner]
 
     def do(self, work: Callable[[], None]) -> bool:
         """Do something now; whether it has come to its own end, and was not abandoned."""

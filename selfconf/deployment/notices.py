@@ -37,6 +37,7 @@ class RunNotices:
 
     def close(self) -> None:
         """Tell nothing any more."""
+        self._latest.clear()
         self._served()
         self._publisher.undeclare()
         self._last_words.undeclare()
@@ -48,6 +49,14 @@ class RunNotices:
         if self._heard:
             ends = isinstance(event, TaskStopped | TaskRefused)
             (self._last_words if ends else self._publisher).put(self._notice(self._sequence, event))
+
+    def amend(self, event: RunEvent, amended: RunEvent) -> None:
+        """Tell one of the latest events once more, by its number and with more facts; an older one is forgotten."""
+        for place, (sequence, told) in enumerate(self._latest):
+            if told is event:
+                self._latest[place] = sequence, amended
+                if self._heard:
+                    self._publisher.put(self._notice(sequence, amended))
 
     def _matched(self, heard: bool) -> None:
         self._heard = heard

@@ -86,6 +86,9 @@ class RunRequest:
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
     abandon: Callable[[], None] = lambda: None
     """Called once when the task has ended: what still runs aside for it may end, as no caller waits for it."""
+    explain: Callable[[Refusal, Callable[[Refusal], None]], None] = lambda refusal, found: None
+    """Receives each refusal for which the task waits, and may hand it back with more facts for observers, from any
+    thread."""
     record: TaskRecord | None = None
     """The task as sites keep it, the answer to a program that asks which one it is; None: there is none."""
     report: EventListener = lambda event: None

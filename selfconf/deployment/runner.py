@@ -295,11 +295,17 @@ class TaskRunner:
             self.bus.later(AT_LEISURE, self._report_all)
         self._unreported.append(replace(event, time=self.clock()))
 
+    def explained(self, event: TaskWaiting, refusal: Refusal) -> None:
+        """Tell observers what else was found out about an event that was reported; may be called from any thread."""
+        self.bus.wake_up(lambda: self._notices.amend(event, replace(event, refusal=refusal)))
+
     def _report_all(self) -> None:
         unreported, self._unreported = self._unreported, []
         for event in unreported:
             self._notices.put(event)
             self.request.report(event)
+            if isinstance(event, TaskWaiting) and isinstance(event.refusal, Refusal):
+                self.request.explain(event.refusal, partial(self.explained, event))
 
     # Effects.
 

@@ -1,8 +1,8 @@
 """`/mend`: near misses and relaxations of a task without a configuration, found for the clients that look at it.
 
-The configurator of a task that waits has to listen, and tells why there is no configuration and no more; one that has
-been refused has ended. What nearly fits and which change would help takes a search, which is made in a process of its
-own that has not long.
+The configurator of a task that waits has to listen, and tells what else it finds out only when nothing else is to be
+done; one that has been refused has ended. What nearly fits and which change would help takes a search, which is made
+for the client that asks in a process of its own that has not long.
 """
 
 from __future__ import annotations

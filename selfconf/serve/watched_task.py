@@ -35,6 +35,8 @@ class WatchedTask:
         self.deployed = 0
         """The epoch of the newest configuration that it has told."""
         self.refusal: Body | None = None
+        self._waits_since = 0
+        """The number of the event that has told of the refusal for which it waits; 0 if it does not."""
         self.lost: dict[str, Body] = {}
         self.ended = ""
         self._identity = ""
@@ -54,6 +56,8 @@ class WatchedTask:
     def hear(self, notice: Notice) -> Body | None:
         """Note an event; return it as the page shows it, or None if it is known or not worth a line."""
         if notice.sequence <= self.sequence:
+            if notice.sequence == self._waits_since:  # it comes once more when its refusal is explained
+                self.refusal = checked_event(notice.event).get("refusal") or self.refusal
             return None
         self.sequence, self._identity = notice.sequence, notice.task or self._identity
         event = checked_event(notice.event)
@@ -62,11 +66,12 @@ class WatchedTask:
             why = {fact: event.get(fact) for fact in ("cause", "detail", "time")}
             self.lost[str(event.get("component"))] = why
         if act == "running":
-            self.refusal = None
+            self.refusal, self._waits_since = None, 0
             if event["epoch"] != self.deployed:  # the notice of what is deployed says more
                 self.configuration = event["configuration"] or self.configuration
         if act in ("waiting", "refused"):
             self.configuration, self.refusal = None, event["refusal"]
+            self._waits_since = notice.sequence if act == "waiting" else 0
         self.ended = ENDED.get(act, self.ended)
         if act not in TOLD:
             return None

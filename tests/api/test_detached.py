@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,24 @@ def test_a_site_composes_what_the_library_composes() -> None:
     assert isinstance(wanted, Configuration)
     assert (outcome.assignments, outcome.connections) == (wanted.assignments, wanted.connections)
     assert (request.patient, request.priority, request.upgrade) == (True, 2, 5.0)
+
+
+def test_a_site_explains_a_refusal_as_the_library_does() -> None:
+    home, later, found = sc.read(ROOT / "examples" / "clock"), list[Callable[[], None]](), list[sc.Refusal]()
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":cellar")
+    kept = decode(encode(task_record(task, Method.of(), Policy.REPAIR)), TaskRecord)
+    request = request_of(kept, lambda work: lambda: None, at_leisure=later.append)
+    plain = request.compose(home.advertisements(), frozenset(), None)
+    wanted = sc.configure(task, home)
+    assert isinstance(plain, sc.Refusal)
+    assert isinstance(wanted, sc.Refusal)
+    request.explain(plain, found.append)
+    assert found == []
+    (find,) = later
+    find()
+    assert (found[0].near_misses, found[0].repairs, found[0].hint) == (wanted.near_misses, wanted.repairs, wanted.hint)
+    assert found[0].repairs
+    assert not plain.repairs
 
 
 def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> None:

@@ -147,6 +147,53 @@ def test_what_is_done_until_there_is_more_may_wait_for_a_time_in_which_there_is_
     assert done == ["searched", "explained"]
 
 
+def test_what_is_done_at_leisure_is_done_anew_when_something_has_come_in_the_middle() -> None:
+    queue, begun, done = WorkQueue(), threading.Event(), list[str]()
+
+    def explain() -> None:
+        done.append("begun")
+        if not begun.is_set():
+            _forever(begun)
+        done.append("explained")
+
+    def interrupt() -> None:
+        begun.wait()
+        queue.work(lambda: done.append("searched"))
+
+    queue.at_leisure(explain, "patrol")
+    other = threading.Thread(target=interrupt)
+    other.start()
+    queue.next(60.0)
+    other.join()
+    queue.next(60.0)
+    assert done == ["begun", "searched", "begun", "explained"]
+    assert queue.next(0.0) is None
+    assert len(done) == 4
+
+
+def test_what_is_done_at_leisure_is_the_newest_of_each_owner_that_has_not_ended() -> None:
+    queue, done = WorkQueue(), list[str]()
+    for owner, what in (("patrol", "first"), ("tidy", "tidied"), ("patrol", "second"), ("watch", "watched")):
+        queue.at_leisure(lambda what=what: done.append(what), owner)  # type: ignore[misc]  # a default binds it
+    queue.abandon("watch")
+    for _ in range(4):
+        queue.next(0.0)
+    assert done == ["second", "tidied"]
+    queue.at_leisure(lambda: done.append("third"), "patrol")
+    queue.abandon()
+    queue.next(0.0)
+    queue.next(0.0)
+    assert done == ["second", "tidied"]
+
+
+def test_what_breaks_at_leisure_is_not_done_again() -> None:
+    queue = WorkQueue()
+    queue.at_leisure(lambda: {}["nothing"], "patrol")
+    with pytest.raises(KeyError):
+        queue.next(60.0)
+    assert queue.next(0.0) is None
+
+
 def test_what_could_not_be_ended_in_another_thread_is_not_begun() -> None:
     queue, done = WorkQueue(), list[object]()
     other = threading.Thread(target=lambda: done.append(queue.until_more(lambda: done.append("explained"))))

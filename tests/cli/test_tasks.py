@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from selfconf.protocol.codec import decode
+from selfconf.protocol.messages import Notice
 from tests.cli.command import run
 from tests.cli.processes import Home
 
@@ -40,6 +43,28 @@ def test_a_task_that_runs_is_listed_by_its_name_and_stopped_by_it(
     assert run(capsys, "stop", "midnight", *where).is_one_sentence("no task or configurator 'midnight' answers")
     assert run(capsys, "stop", "noon", *where).code == 0
     assert program.ended() == 0
+
+
+@pytest.mark.parametrize("how", ["--detach", "--wait"])
+def test_observers_learn_what_would_mend_a_task_that_waits_whatever_runs_it(
+    house: Home, capsys: pytest.CaptureFixture[str], how: str
+) -> None:
+    house.site("kitchen", CLOCK)
+    where = house.arguments()
+    program = house.selfconf("run", TEMPLATE, how, "--bind", "room=:cellar", "--format", "json", *where)
+    assert program.act("detached" if how == "--detach" else "waiting")
+
+    def told() -> list[dict[str, Any]]:
+        """The refusals that the configurator of the task tells observers."""
+        notices = (decode(sample.payload, Notice) for sample in house.ask(house.keys.notices()).samples)
+        return [notice.event["refusal"] for notice in notices if notice.event["act"] == "waiting"]
+
+    assert house.until(lambda: any(refusal["repairs"] for refusal in told()))
+    (refusal,) = told()
+    outcome = run(capsys, "configure", TEMPLATE, "--bind", "room=:cellar", "--format", "json", *where)
+    for facts, fact in (("repairs", "message"), ("near_misses", "component")):
+        assert [one[fact] for one in refusal[facts]] == [one[fact] for one in outcome.body[facts]]
+    assert run(capsys, "stop", *where).code == 0
 
 
 def test_two_runs_of_one_template_have_names_of_their_own(house: Home, capsys: pytest.CaptureFixture[str]) -> None:

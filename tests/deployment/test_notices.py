@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.deployment.notices import LATEST, RunNotices
 from selfconf.model.configuration import Configuration, ParameterSetting
-from selfconf.model.run_event import AnswerRejected, TaskRunning, TaskStopped
+from selfconf.model.refusal import Refusal
+from selfconf.model.run_event import AnswerRejected, TaskRunning, TaskStopped, TaskWaiting
 from selfconf.model.term import Literal
 from selfconf.protocol.codec import LARGEST, decode
 from selfconf.protocol.keys import Keys
@@ -85,6 +87,49 @@ def test_nothing_is_written_while_nobody_listens(lab: Lab) -> None:
     told.put(AnswerRejected("unheard again"))
     lab.let_pass(0.1)
     assert [decode(sample.payload, Notice).event["detail"] for sample in written] == ["heard"]
+
+
+def test_an_event_that_is_explained_is_told_once_more_by_its_number(lab: Lab) -> None:
+    heard: list[Notice] = []
+    lab.network.node().subscribe(lab.keys.notices(), lambda sample: heard.append(decode(sample.payload, Notice)))
+    told = RunNotices(lab.network.node(), lab.keys, "c1", "tidy~c1")
+    lab.let_pass(0.1)
+    waits, twin = TaskWaiting(Refusal(iri("navigate"), ())), TaskWaiting(Refusal(iri("navigate"), ()))
+    for event in (waits, AnswerRejected("after it")):
+        told.put(event)
+    told.amend(twin, TaskStopped())
+    told.amend(waits, replace(waits, refusal=Refusal(iri("navigate"), (), hint="try another")))
+    lab.let_pass(0.1)
+    assert [(notice.sequence, notice.event["act"]) for notice in heard] == [
+        (1, "waiting"),
+        (2, "complaint"),
+        (1, "waiting"),
+    ]
+    explained = [{"code": "reasoning", "message": "try another"}]
+    assert [notice.event["refusal"]["repairs"] for notice in heard[::2]] == [[], explained]
+    kept = latest(lab, lab.keys.notices("c1"))
+    assert [notice.event["act"] for notice in kept] == ["waiting", "complaint"]
+    assert kept[0].event["refusal"]["repairs"] == explained
+    told.close()
+    told.amend(waits, waits)  # the explanation comes too late
+
+
+def test_a_run_that_waits_hands_its_refusal_out_to_be_explained(lab: Lab) -> None:
+    asked: list[Refusal] = []
+
+    def explain(refusal: Refusal, found: Callable[[Refusal], None]) -> None:
+        asked.append(refusal)
+        found(replace(refusal, hint="try another"))
+
+    lab.crash("drive")
+    agent = lab.agent(patient=True, explain=explain)
+    assert lab.until(lambda: bool(asked), 10.0)
+    lab.let_pass(0.1)
+    (waits,) = [
+        notice.event for notice in latest(lab, lab.keys.notices(agent.name)) if notice.event["act"] == "waiting"
+    ]
+    assert waits["refusal"]["repairs"] == [{"code": "reasoning", "message": "try another"}]
+    assert asked[0].hint is None
 
 
 def test_an_event_that_is_too_large_is_told_in_a_sentence(lab: Lab) -> None:

@@ -34,6 +34,23 @@ def test_a_component_that_is_lost_no_more_is_forgotten() -> None:
     assert task.lost == {"urn:b": {"cause": "fail", "detail": "", "time": None}}
 
 
+def test_the_refusal_of_a_task_that_waits_is_explained_by_a_notice_that_comes_once_more() -> None:
+    task = WatchedTask("c1")
+    mend = {"code": "reasoning", "message": "try another"}
+    plain, explained = ({"template": "urn:t", "reasons": [], "repairs": repairs} for repairs in ([], [mend]))
+    assert task.hear(notice(4, act="waiting", refusal=plain)) is not None
+    assert task.hear(notice(5, act="composed", outcome="refused")) is not None
+    assert task.hear(notice(4, act="waiting", refusal=explained)) is None
+    assert len((task.refusal or {})["repairs"]) == 1
+    assert task.sequence == 5
+    task.hear(notice(3, act="waiting", refusal=plain))
+    task.hear(notice(4, act=["odd"]))
+    assert len((task.refusal or {})["repairs"]) == 1
+    task.hear(notice(6, act="running", configuration={"roles": []}))
+    task.hear(notice(4, act="waiting", refusal=explained))
+    assert task.refusal is None
+
+
 def test_a_task_that_is_over_holds_nothing() -> None:
     task = WatchedTask("c1")
     task.take_status(Status("c1", "running", iri("t"), 7, 0.0, components=(iri("a"),), task="tidy~c1"))

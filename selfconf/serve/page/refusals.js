@@ -9,7 +9,7 @@ export class ExplainedRefusals {
   /** The refusal of a task with all that is known of it; asks the server once for each refusal. */
   refusal(id, task, live) {
     const body = task?.refusal;
-    if (!body || !live) return body;
+    if (!body || !live || body.repairs?.length) return body;  // with repairs, its configurator has found out the rest
     const about = JSON.stringify([id, body, Object.keys(task.lost)]);
     if (about !== this.#asked) {
       this.#asked = about;
