@@ -8,7 +8,7 @@ out (`Exclusion`). `kept_out_by_ports` finds those that only the ports keep out 
 """
 
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
-from selfconf.rdf.eligibility.compiler import bound_shape
+from selfconf.rdf.eligibility.compiled_roles import bound_shape
 from selfconf.rdf.eligibility.nearly_eligible import Exclusion, exclusions, near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.remote import ANY_COMPONENT, TYPES, prefaced, statements, wanted

@@ -22,7 +22,7 @@ from selfconf.model.profile import Input, Output, Ports, Profile, shared_ports
 from selfconf.model.template import Template
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import shape_text
-from selfconf.rdf.eligibility.compiler import compile_role
+from selfconf.rdf.eligibility.compiled_roles import compile_role
 from selfconf.rdf.eligibility.node_paths import WalkedStatements
 from selfconf.rdf.shacl import PAIRS, misfit
 from selfconf.rdf.turtle import Document, Node, Triple, parse

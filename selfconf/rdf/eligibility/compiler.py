@@ -1,6 +1,6 @@
-"""Roles as tests: the common subset of SHACL compiled, the rest left to pySHACL.
+"""Shapes as tests: the common subset of SHACL compiled, the rest left to pySHACL.
 
-`compile_role` turns the shape of a role into tests that look at a profile and need no graph. What it compiles:
+A `ShapeCompiler` turns a shape into tests that look at a profile and need no graph. What it compiles:
 
 * `sh:class`, `sh:in` and `sh:hasValue` on the node (SHACL 4.1.1, 4.8.2, 4.8.3);
 * property shapes over one predicate with `sh:in`, `sh:hasValue`, `sh:minCount`, `sh:maxCount` (4.8, 4.2), and what
@@ -9,163 +9,32 @@
 * `sh:and`, `sh:or`, `sh:xone`, `sh:not` and `sh:node` over shapes of that kind (4.6, 4.7.1);
 * a parameter inside `sh:in` or `sh:hasValue`, as the set of values that a component allows it.
 
-A shape that says more is *incomplete* here: its tests are still necessary, so they are the prefilter, and pySHACL
-judges the survivors by the whole shape, but for property shapes that are compiled and have free parameters to
-themselves: those need not be judged for each value. That both ways give one partition is a property test. Left out on
+A shape that says more is *incomplete* here: its tests are still necessary, so they are the prefilter. Left out on
 purpose: `sh:class` on the values of a property, which depends on what other advertisements say.
 """
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import chain
 from typing import TypeGuard
 
-from selfconf.errors import TemplateError
-from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.eligibility.role_tests import (
-    ClassTest,
-    CompiledRole,
-    Count,
-    ParameterTest,
-    PropertyTest,
-    QualifiedCount,
-    RoleTest,
-    SelfTest,
-)
+from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.eligibility.role_tests import ClassTest, Count, PropertyTest, QualifiedCount, RoleTest, SelfTest
 from selfconf.rdf.permitted_fields import SHAPE_ANNOTATIONS, STRUCTURE
 from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
-from selfconf.rdf.tasks import ROLE_STRUCTURE, mentions, substituted
-from selfconf.rdf.turtle import Document, Node, Triple
+from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 TARGETS = frozenset((SH.targetClass, SH.targetNode, SH.targetSubjectsOf, SH.targetObjectsOf, SH.target))
-_SILENT = SHAPE_ANNOTATIONS | TARGETS | {SH.severity, SH.deactivated, TYPE, SH.path}
-_SHAPES_OF_A_LIST = frozenset((SH["and"], SH["or"], SH.xone))
-_SHAPES = frozenset((SH["not"], SH.node, SH.property))
-_LOGIC = _SHAPES_OF_A_LIST | {SH["not"], SH.node}
-_OWN_STATEMENTS = frozenset((SH["class"], SH.closed, SH.ignoredProperties))
-"""What looks at the statements about the node it is asked about."""
-_OWN_VALUES = frozenset(
-    SH[name]
-    for name in (
-        "in", "hasValue", "nodeKind", "datatype", "pattern", "flags", "minLength", "maxLength", "languageIn",
-        "uniqueLang", "minCount", "maxCount", "minInclusive", "maxInclusive", "minExclusive", "maxExclusive", "equals",
-        "disjoint", "lessThan", "lessThanOrEquals",
-    )
-)  # fmt: skip
-"""What looks at values alone, or compares the values of two properties of the node that has them."""
+"""What says to which nodes a shape applies; a role says itself to which."""
+SILENT = SHAPE_ANNOTATIONS | TARGETS | {SH.severity, SH.deactivated, TYPE, SH.path}
+"""What is said of a shape and is no constraint."""
+SHAPES_OF_A_LIST = frozenset((SH["and"], SH["or"], SH.xone))
+"""The constraints whose value is a list of shapes."""
+_LOGIC = SHAPES_OF_A_LIST | {SH["not"], SH.node}
 _QUALIFIED = frozenset(SH[f"qualified{name}"] for name in ("ValueShape", "MinCount", "MaxCount", "ValueShapesDisjoint"))
 """How many values conform to a shape."""
-
-
-def compile_role(
-    document: Document,
-    role: IRI,
-    settings: tuple[IRI, ...],
-    free: frozenset[IRI],
-) -> CompiledRole:
-    """Compile the shape of a role, in which parameters stand that are `free`; `settings` are the types that it sets.
-
-    Raises TemplateError for shapes within shapes without end, or nearly so.
-    """
-    compiler = _Compiler(document, free)
-    try:
-        tests = (*compiler.shape(role), *map(ParameterTest, settings))
-        settled = _settled(document, role, free) if compiler.rest and free else frozenset[Term]()
-        return CompiledRole(role, tests, not compiler.rest, local(document, role), settled)
-    except RecursionError:
-        raise TemplateError(f"the shape of the role {role!r} nests too deeply", file=document.source) from None
-
-
-def _settled(document: Document, role: IRI, free: frozenset[IRI]) -> frozenset[Term]:
-    """The property shapes of a role that tests say all of, with free parameters that stand nowhere else in its shape.
-
-    None of shapes that are disjoint, which look at the other property shapes of the role.
-    """
-    settled = {
-        shape: parameters
-        for shape in document.values(role, SH.property)
-        if (parameters := mentions(document, shape, free))
-        and document.value(shape, SH.qualifiedValueShape) is None
-        and _compiled_in_full(document, shape, free)
-    }
-    while settled:
-        elsewhere = mentions(_without(document, role, settled), role, free)
-        shared = [shape for shape, parameters in settled.items() if parameters & elsewhere]
-        if not shared:
-            break
-        for shape in shared:
-            del settled[shape]
-    return frozenset(settled)
-
-
-def _compiled_in_full(document: Document, shape: Term, free: frozenset[IRI]) -> bool:
-    """Whether tests say all that a shape says."""
-    compiler = _Compiler(document, free)
-    for _ in compiler.shape(shape):
-        pass
-    return not compiler.rest
-
-
-def _without(document: Document, role: IRI, shapes: Container[Term]) -> Document:
-    """A template in which a role lacks some of its property shapes, but for their paths, which `sh:closed` asks for."""
-    said, paths = list[tuple[IRI, Term]](), dict[Node, list[tuple[IRI, Term]]]()
-    for predicate, value in document.about(role):
-        if predicate == SH.property and value in shapes:
-            node = BlankNode(f"_:path{len(paths)}")
-            paths[node] = [(SH.path, path) for path in document.values(value, SH.path)]
-            said.append((predicate, node))
-        else:
-            said.append((predicate, value))
-    return replace(document, statements=document.statements | paths | {role: said})
-
-
-def left_to_judge(document: Document, role: CompiledRole) -> Document:
-    """A template in which the shape of a role says what pySHACL has to be asked, if it has to."""
-    return _without(document, role.iri, role.settled) if role.settled else document
-
-
-def bound_shape(document: Document, values: Mapping[IRI, Term]) -> list[Triple]:
-    """The triples of a template for pySHACL: parameters replaced, roles typed as node shapes without targets."""
-    triples: list[Triple] = []
-    roles = set(document.instances(SC.Role))
-    for subject, predicate, value in substituted(document, values).triples():
-        if subject in roles and (predicate in TARGETS or (predicate in ROLE_STRUCTURE and predicate != TYPE)):
-            continue
-        triples.append((subject, predicate, value))
-    triples.extend((role, TYPE, SH.NodeShape) for role in roles)
-    return triples
-
-
-_INNER = _SHAPES | _SHAPES_OF_A_LIST
-
-
-def _constraining(document: Document, predicates: Iterable[IRI]) -> set[IRI]:
-    """Those of some predicates that constrain: SHACL's, and those of the document's own constraint components."""
-    own = component_parameters(document)
-    return {predicate for predicate in predicates if predicate in SH or predicate in own}
-
-
-def local(document: Document, shape: Term, at_value: bool = False, above: frozenset[Term] = frozenset()) -> bool:
-    """Whether a shape looks at nothing but statements about the node it is asked about."""
-    if shape in above:
-        return True
-    paths = document.values(shape, SH.path)
-    if paths and (at_value or not all(isinstance(path, IRI) for path in paths)):
-        return False
-    at_value = at_value or bool(paths)
-    said = document.about(shape)
-    inner = chain.from_iterable(
-        document.items(value) if predicate in _SHAPES_OF_A_LIST else [value]
-        for predicate, value in said
-        if predicate in _INNER
-    )
-    known = _INNER | _SILENT | _OWN_VALUES | (frozenset() if at_value else _OWN_STATEMENTS)
-    return _constraining(document, (predicate for predicate, _ in said)) <= known and all(
-        local(document, one, at_value, above | {shape}) for one in inner
-    )
 
 
 @dataclass(slots=True)
@@ -198,7 +67,7 @@ class _PropertyParts:
         return True
 
 
-class _Compiler:
+class ShapeCompiler:
     """Compiles one shape; `rest` is raised as soon as something is met that only pySHACL can judge."""
 
     def __init__(self, document: Document, free: frozenset[IRI]) -> None:
@@ -236,12 +105,12 @@ class _Compiler:
             yield from self._property(value)
         elif predicate in _LOGIC:
             yield from self._logic(predicate, value)
-        elif predicate in self.own or (predicate in SH and predicate not in _SILENT):
+        elif predicate in self.own or (predicate in SH and predicate not in SILENT):
             self.rest = True
 
     def _logic(self, predicate: IRI, raw: Term) -> Iterator[RoleTest]:
         """A constraint over other shapes: how many of them the component conforms to."""
-        shapes = self.document.items(raw) if predicate in _SHAPES_OF_A_LIST else [raw]
+        shapes = self.document.items(raw) if predicate in SHAPES_OF_A_LIST else [raw]
         wrong = predicate == SH.node and self.document.value(raw, SH.path) is not None
         if not shapes or wrong or any(map(self._mentions, shapes)):
             self.rest = True
@@ -337,7 +206,7 @@ class _Compiler:
             parts.compared.append(PairTest(predicate, value))
         elif predicate in self.own:
             self.rest = True
-        elif predicate in SH and predicate not in _SILENT and not parts.takes(predicate, value):
+        elif predicate in SH and predicate not in SILENT and not parts.takes(predicate, value):
             if self._mentions(value):
                 self.rest = True
             else:

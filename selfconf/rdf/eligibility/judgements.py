@@ -16,7 +16,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
-from selfconf.rdf.eligibility.compiler import bound_shape, left_to_judge
+from selfconf.rdf.eligibility.compiled_roles import bound_shape, left_to_judge
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, TYPE

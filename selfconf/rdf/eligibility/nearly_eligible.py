@@ -17,7 +17,7 @@ from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex, TypeSet
-from selfconf.rdf.eligibility.compiler import left_to_judge
+from selfconf.rdf.eligibility.compiled_roles import left_to_judge
 from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partitioner, Tested
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
 

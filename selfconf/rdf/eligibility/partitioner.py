@@ -39,12 +39,11 @@ from selfconf.rdf.eligibility.advertisement_index import (
     ClassClosure,
     TypeSet,
 )
-from selfconf.rdf.eligibility.compiler import compile_role, left_to_judge
+from selfconf.rdf.eligibility.compiled_roles import compile_role, left_to_judge, suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.free_values import contradictory, mentions_of, stated_on_paths
 from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
-from selfconf.rdf.eligibility.suppliers import suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
 from selfconf.rdf.turtle import Document
