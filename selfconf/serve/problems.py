@@ -12,6 +12,7 @@ PROBLEM = "application/problem+json"
 
 
 def problem(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:
-    """A response that says what is wrong."""
+    """A response that says what is wrong; 406 is one to what the client accepts, as caches have to know."""
+    varies = {"Vary": "Accept"} if status == HTTPStatus.NOT_ACCEPTABLE else {}
     body = {"type": "about:blank", "title": HTTPStatus(status).phrase, "status": status, "detail": detail}
-    return Response(json.dumps(body, ensure_ascii=False), status, dict(headers or {}), PROBLEM)
+    return Response(json.dumps(body, ensure_ascii=False), status, {**varies, **(headers or {})}, PROBLEM)
