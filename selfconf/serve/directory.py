@@ -17,9 +17,8 @@ from selfconf.serve.board import THING_EVENTS, Board
 from selfconf.serve.event_stream import EVENT_STREAM
 from selfconf.serve.negotiation import acceptable
 from selfconf.serve.problems import problem
-from selfconf.serve.things import TD, directory_description, thing_description
+from selfconf.serve.things import DISCOVERY_CONTEXT, TD, directory_description, thing_description
 
-DISCOVERY_CONTEXT = "https://w3c.github.io/wot-discovery/context/discovery-context.jsonld"
 JSON_LD_MEDIA = "application/ld+json"
 
 
@@ -40,18 +39,19 @@ class Directory:
         """`/things`: all descriptions, or a page of them, as an array or a collection."""
         try:
             offset = _whole(request.query_params.get("offset", "0"), 0)
-            limit = _whole(request.query_params.get("limit", "1000000000"), 1)
+            said = request.query_params.get("limit")
+            limit = None if said is None else _whole(said, 1)
         except ValueError:
             return problem(400, "offset takes a whole number, limit one above zero")
         form = request.query_params.get("format", "array")
         if form not in ("array", "collection"):
             return problem(400, f"the format is array or collection, not {form!r}")
         components = sorted(self._board.advertised)
-        members = [self._thing(component) for component in components[offset : offset + limit]]
-        more = {} if form == "array" else {"format": form}
-        here = f"/things?{urlencode({'offset': offset, 'limit': limit, **more})}"
-        after = f"/things?{urlencode({'offset': offset + limit, 'limit': limit, **more})}"
-        follows = offset + limit < len(components)
+        end = len(components) if limit is None else offset + limit
+        members = [self._thing(component) for component in components[offset:end]]
+        more = {"limit": limit, "format": None if form == "array" else form}
+        here, after = _page(offset=offset or None, **more), _page(offset=end, **more)
+        follows = end < len(components)
         tag = f'"{hashlib.blake2s(repr(components).encode(), digest_size=8).hexdigest()}"'
         links = [f'<{after}>; rel="next"'] if follows else []
         links.append(f'</things>; rel="canonical"; etag={tag}')
@@ -96,6 +96,12 @@ def event_stream(board: Board, kinds: tuple[str, ...], last: str, worded: Any = 
     """A stream of the events of some kinds, from the one after the last that the client has heard."""
     lines = board.stream.lines(kinds, last, worded)
     return StreamingResponse(lines, media_type=EVENT_STREAM, headers={"Cache-Control": "no-store"})
+
+
+def _page(**parameters: int | str | None) -> str:
+    """The address of a page of the list, with those parameters that are given."""
+    given = urlencode({name: value for name, value in parameters.items() if value is not None})
+    return f"/things?{given}" if given else "/things"
 
 
 def _whole(text: str, least: int) -> int:

@@ -17,6 +17,8 @@ from selfconf.serve.component_bodies import KNOWN_NAMES, label_of
 
 TD_CONTEXTS = ["https://www.w3.org/2019/wot/td/v1", "https://www.w3.org/2022/wot/td/v1.1"]
 """Those of both versions, in this order: so TD 1.1 (section 5.3.1.1) wants it where consumers may know 1.0 alone."""
+DISCOVERY_CONTEXT = "https://www.w3.org/2022/wot/discovery"
+"""That of directories and of their collections (W3C WoT Discovery)."""
 TD = "application/td+json"
 """The media type of one Thing Description."""
 _SECURITY = {"securityDefinitions": {"nosec_sc": {"scheme": "nosec"}}, "security": ["nosec_sc"]}
@@ -95,7 +97,7 @@ def directory_description(base: str) -> dict[str, Any]:
 
     query = {"query": {"title": "A valid SPARQL 1.1 query", "type": "string"}}
     return {
-        "@context": [*TD_CONTEXTS, "https://www.w3.org/2022/wot/discovery"],
+        "@context": [*TD_CONTEXTS, DISCOVERY_CONTEXT],
         "@type": "ThingDirectory",
         "title": "Components of a selfconf ecology",
         "id": "urn:selfconf:directory",

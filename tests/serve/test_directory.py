@@ -42,7 +42,16 @@ def test_things_are_listed_page_by_page(app: ASGIApp) -> None:
 def test_a_collection_says_how_many_there_are_and_what_is_next(app: ASGIApp) -> None:
     answer = ask(app, "/things?format=collection&limit=2").json
     assert (answer["total"], len(answer["members"])) == (len(ADVERTISEMENTS), 2)
-    assert ask(app, answer["next"]).json["@type"] == "ThingCollection"
+    assert answer["@context"] == "https://www.w3.org/2022/wot/discovery"
+    assert answer["@id"] == "/things?limit=2&format=collection"
+    following = ask(app, answer["next"]).json
+    assert (following["@type"], following["@id"]) == ("ThingCollection", answer["next"])
+
+
+def test_a_collection_of_all_things_names_no_limit(app: ASGIApp) -> None:
+    answer = ask(app, "/things?format=collection").json
+    assert (answer["@id"], len(answer["members"])) == ("/things?format=collection", len(ADVERTISEMENTS))
+    assert "next" not in answer
 
 
 @pytest.mark.parametrize("parameters", ["limit=0", "limit=x", "offset=-1", "format=table"])
@@ -56,7 +65,8 @@ def test_one_thing_is_found_by_its_iri_as_description_or_as_turtle(app: ASGIApp)
     assert (answer.status, answer.media, answer.json["id"]) == (200, "application/td+json", iri("person-tracker"))
     answer = ask(app, TRACKER, accept="text/turtle")
     assert b"rob:PositionSensor" in answer.body
-    assert ask(app, TRACKER, accept="image/png").status == 406
+    refused = ask(app, TRACKER, accept="image/png")
+    assert (refused.status, refused.headers["vary"]) == (406, "Accept")
     assert ask(app, "/things/urn:nothing").status == 404
 
 
