@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import mimetypes
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Awaitable, Callable, Collection, Mapping
 from importlib.resources import files
 
 from starlette.applications import Starlette
@@ -78,10 +78,19 @@ def application(
         return Response(metrics.text(board.gauges(linked())), media_type=PROMETHEUS)
 
     async def health(_: Request) -> Response:
-        if linked() and board.ready:
-            return Response('{"status": "ok"}', media_type="application/json")
-        return problem(503, "the ecology cannot be heard")
+        return Response('{"status": "ok"}', media_type="application/json")
 
+    def once_heard(respond: Callable[[Request], Awaitable[Response]]) -> Callable[[Request], Awaitable[Response]]:
+        """Have a route answer only while the ecology can be heard: what is known of it then is not what there is."""
+
+        async def answer(request: Request) -> Response:
+            if linked() and board.ready:
+                return await respond(request)
+            return problem(503, "the ecology cannot be heard; ask again in a while", {"Retry-After": "1"})
+
+        return answer
+
+    search = once_heard(sparql.respond)
     routes = [
         Route("/", file),
         Route("/page/{name}", file),
@@ -90,14 +99,14 @@ def application(
         Route("/look", onlookers.respond),
         Route("/fit", fits.respond),
         Route("/mend", explained.respond),
-        *(Route(path, sparql.respond, methods=SPARQL_METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
+        *(Route(path, search, methods=SPARQL_METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
         Route("/.well-known/wot", directory.itself),
-        Route("/things", directory.things),
-        Route("/things/{id:path}", directory.thing),
+        Route("/things", once_heard(directory.things)),
+        Route("/things/{id:path}", once_heard(directory.thing)),
         Route("/events", directory.events),
         Route("/events/{kind}", directory.events),
         Route("/metrics", counted),
-        Route("/healthz", health),
+        Route("/healthz", once_heard(health)),
     ]
     refusals = {HTTPException: _refused, ClientDisconnect: _client_gone}
     return Guard(Starlette(routes=routes, exception_handlers=refusals), hosts, Origins(origins))

@@ -100,6 +100,7 @@ def test_a_failure_is_seen_in_the_page_and_by_sparql_and_servers_come_and_go_unn
     assert running.end(signal.SIGINT) == 0
     _, later = serve(ecology, "--history", "history")
     ended = quote("SELECT ?c { ?c a sc:Configuration ; prov:invalidatedAtTime ?ended }")
+    assert ecology.until(lambda: later.get("/healthz")[0] == 200)
     assert ecology.until(lambda: component_rows(later.get(f"/sparql?query={ended}")[1]) == 1)
 
 

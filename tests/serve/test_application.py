@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.serve.board import Board
+from selfconf.serve.metrics import Metrics
 from tests.serve.asgi import ask, served
 
 
@@ -47,6 +48,17 @@ def test_a_method_that_is_not_known_is_answered_with_those_that_are(board: Board
 def test_health_is_whether_the_ecology_is_heard(board: Board) -> None:
     assert ask(served(board), "/healthz").status == 200
     assert ask(served(board, linked=False), "/healthz").status == 503
+
+
+@pytest.mark.parametrize(
+    "path", ["/things", "/things/urn:x", "/sparql?query=ASK%7B%7D", "/search/sparql?query=ASK%7B%7D"]
+)
+def test_what_lives_is_not_answered_while_the_ecology_is_not_heard(board: Board, path: str) -> None:
+    for app in (served(board, linked=False), served(Board("lab", Metrics()))):
+        answer = ask(app, path)
+        assert (answer.status, answer.media) == (503, "application/problem+json")
+        assert answer.json["detail"] == "the ecology cannot be heard; ask again in a while"
+    assert ask(served(board, linked=False), "/.well-known/wot").status == 200
 
 
 def test_the_state_and_the_metrics_are_served(board: Board) -> None:
