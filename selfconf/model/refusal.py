@@ -134,6 +134,21 @@ def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str,
 
 
 @immutable
+class MisnamedPort:
+    """A port that an interaction names and no candidate of a role has, with the name that was probably meant."""
+
+    role: IRI
+    kind: str
+    """Which port it is: `output` or `input`."""
+    named: str
+    meant: str
+
+    def __str__(self) -> str:
+        said = f'no candidate of {self.role.short} has the {self.kind} "{self.named}" that an interaction names'
+        return f'{said} (did you mean "{self.meant}"?)'
+
+
+@immutable
 class InputUnfed:
     """Every candidate of a role that matters has an input that no candidate of the roles feeding it can feed."""
 
@@ -152,6 +167,8 @@ class InputUnfed:
     """Whether the role recruits, so that components outside of the roles could have fed it."""
     nearest: NearMiss | None = field(default=None, kw_only=True, compare=False)
     """The component that comes nearest to being recruited for it, if there is one."""
+    misnamed: MisnamedPort | None = field(default=None, kw_only=True)
+    """A port of the interactions that feed the role which has another name than they say, if there is one."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the role or component that it speaks of is described, if that is known."""
 
@@ -166,6 +183,8 @@ class InputUnfed:
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
         if self.nearest is not None:
             lack += f"; the nearest is {self.nearest.component.short}, which {self.nearest.obstacle}"
+        if self.misnamed is not None:
+            lack += f"; {self.misnamed}"
         verdict = "needs cannot be called" if called else "cannot be fed"
         return "; so ".join([f"{name} {verdict}: {lack}", *map(str, self.consequences)])
 

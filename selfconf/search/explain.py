@@ -48,6 +48,7 @@ from selfconf.search.engines import (
     smallest_core,
     solver_available,
 )
+from selfconf.search.misnamed_ports import misnamed_port
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import (
     Constraint,
@@ -379,6 +380,7 @@ class _Wording:
             tuple(consequences),
             cause.optional,
             cause.recruits,
+            misnamed=misnamed_port(self.problem, cause.role),
         )
 
     def _too_few_distinct(self) -> TooFewDistinct:
