@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from selfconf.bus.port import Bus, Undo, Urgency
+from selfconf.bus.port import Bus, Urgency
 from selfconf.configurator import (
     DEPLOYING,
     Accepted,
@@ -25,7 +25,6 @@ from selfconf.configurator import (
     Composed,
     Decline,
     Discover,
-    Discovered,
     Effect,
     Event,
     Failed,
@@ -48,28 +47,22 @@ from selfconf.configurator import (
 )
 from selfconf.deployment.calls import Calls
 from selfconf.deployment.component_messages import ComponentMessages
-from selfconf.deployment.holders import ask_holders
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import Retries
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
-from selfconf.discovery import Discovery, EcologyView
+from selfconf.deployment.task_discovery import TaskDiscovery
+from selfconf.deployment.task_search import TaskSearch
+from selfconf.discovery import EcologyView
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration, Wants
-from selfconf.model.holder import Holder
 from selfconf.model.immutable import FrozenMapping
-from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import (
-    AnswerRejected,
     AnyRunEvent,
-    ComponentLeftOut,
     ComponentLost,
-    EcologyAsked,
-    EcologyDiscovered,
     FailWatched,
-    SearchEnded,
     TaskRefused,
     TaskRunning,
     TaskStopped,
@@ -128,17 +121,16 @@ class TaskRunner:
             request.outside,
         )
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
+        self._discovery = TaskDiscovery(self.ecology, self.name, self._liveness, self._now, self._step, self._report)
+        self._search = TaskSearch(
+            self.ecology, request, self._liveness, self._now, self._step, self._report, self._give_up
+        )
         self._retries = Retries(self.ecology, self._now, self._step, self._calls, request.upgrade)
         self._record = DeploymentRecord(bus, self.keys, self.name, self.identity, request, self.status, self.stop)
         self._notices = RunNotices(bus, self.keys, self.name, task)
-        self._left_out: set[IRI] = set()
         self._events: deque[Event] = deque()
         self._stepping = False
         self._unreported: list[AnyRunEvent] = []
-        self._asked = 0
-        """How often the ecology was asked."""
-        self._outdated: Undo = lambda: None
-        """Abandons the search that was begun last."""
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
         self._messages = ComponentMessages(self.ecology, task, self._now, self._step, self._calls)
@@ -312,9 +304,9 @@ class TaskRunner:
     def _do(self, effect: Effect) -> None:
         match effect:
             case Discover():
-                self._discover()
+                self._discovery.begin()
             case Compose():
-                self._compose(effect)
+                self._search.begin(effect)
             case Watch():
                 self._report(FailWatched(effect.component))
                 self._messages.watch(effect.component)
@@ -359,106 +351,9 @@ class TaskRunner:
             self.request.abandon()
             self.request.ended(effect.refusal)
 
-    def _discover(self) -> None:
-        """Ask the sites what they advertise, and meanwhile the other tasks what they hold.
-
-        One question counts at a time: where an earlier one is not answered yet, its answer is older than this question.
-        """
-        self._report(EcologyAsked())
-        self._asked += 1
-        number = self._asked
-        found: list[Discovery] = []
-        held: list[Mapping[IRI, Holder]] = []
-
-        def both() -> None:
-            if found and held and number == self._asked:
-                self._discovered(found[0], held[0])
-
-        def discovered(discovery: Discovery) -> None:
-            found.append(discovery)
-            both()
-
-        def answered(holders: Mapping[IRI, Holder]) -> None:
-            held.append(holders)
-            both()
-
-        ask_holders(self.bus, self.keys, self.name, answered)
-        self.ecology.discover(discovered)
-
-    def _discovered(self, discovery: Discovery, holders: Mapping[IRI, Holder]) -> None:
-        if self.state.ended:
-            return
-        self.ecology.discovery = discovery
-        self._liveness.discovered(discovery)
-        for complaint in discovery.complaints:
-            self._report(AnswerRejected(complaint))
-        self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
-        number = self._asked
-        shared = {component: holder for component, holder in holders.items() if self._shareable(component)}
-        held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared)
-
-        def known() -> None:
-            if number == self._asked:
-                self._step(held)
-
-        self._liveness.select(self.state.held, known)
-
-    def _shareable(self, component: IRI) -> bool:
-        found = self.ecology.discovery.found.get(component)
-        return found is not None and found.advertisement.profile.is_shareable
-
-    def _compose(self, effect: Compose) -> None:
-        """Search elsewhere, so that a search keeps this configurator from nothing."""
-        found = {component: f.advertisement for component, f in self.ecology.discovery.found.items()}
-        taken, refused = self.state.taken.keys(), self.state.refusal if self.state.despite else None
-
-        def work() -> None:
-            began = time.monotonic()
-            try:
-                outcome = self.request.compose(found, effect.lost, effect.running)
-                not_judged = dict(self.request.not_judged())
-                refusal = outcome if isinstance(outcome, Refusal) else refused
-                usable = self.request.usable(taken, refusal) if isinstance(refusal, Refusal) else {}
-            except SelfconfError as error:
-                trouble = error
-                self.bus.wake_up(lambda: self._give_up(trouble))
-                return
-            except Exception as error:  # nothing may wait for ever for a search that broke
-                log.exception("the search broke")
-                broken = ProgrammerError(f"the search broke: {type(error).__name__}: {error}")
-                self.bus.wake_up(lambda: self._give_up(broken))
-                return
-            if isinstance(outcome, Refusal):
-                outcome = outcome.told_of_held(usable)
-            seconds = time.monotonic() - began
-            composed = Composed(effect.attempt, outcome, frozenset(usable))
-            self.bus.wake_up(lambda: self._composed(composed, seconds, not_judged))
-
-        self._outdated()  # the answer of an earlier search is not looked at any more
-        self._outdated = self.request.aside(work)
-
     def _give_up(self, trouble: SelfconfError) -> None:
         self.trouble = trouble
         self._step(Stopped())
-
-    def _composed(self, composed: Composed, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
-        for component in sorted(not_judged.keys() - self._left_out):
-            self._report(ComponentLeftOut(component, not_judged[component].reason))
-        self._left_out |= not_judged.keys()
-        outcome = composed.outcome
-        if isinstance(outcome, Refusal):
-            outcome = replace(outcome, missing_sites=self.ecology.discovery.missing)
-            composed = replace(composed, outcome=outcome)
-        current = composed.attempt == self.state.attempt
-        counts = current and not self.state.despite and self.state.phase is Phase.COMPOSING
-        if isinstance(outcome, Configuration):
-            goes_on = bool(self.state.contested(outcome))
-        else:
-            goes_on = self.state.searches_again
-        if counts and not goes_on:
-            self._report(SearchEnded(outcome, seconds))
-        wanted = outcome.components if isinstance(outcome, Configuration) else ()
-        self._liveness.select(wanted, lambda: self._step(composed))
 
     def status(self) -> Status:
         """What is deployed, by which configurator, since when."""
@@ -484,7 +379,7 @@ class TaskRunner:
     def _wants(self, component: IRI) -> Wants:
         """What is wanted of a component that this task holds, for those that would share it."""
         target, held = self.state.target, self.state.held[component]
-        if not self._shareable(component):
+        if not self._discovery.shareable(component):
             return Wants()
         if target is not None and component in target.components:
             return target.wants(component)

@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import pytest
 
-from selfconf.bus.port import Replies, Undo
-from selfconf.configurator.events import Appeared, Failed, Improvable
+from selfconf.bus.port import Replies
+from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.liveness import AUDIT
 from selfconf.deployment.retries import TRY_AGAIN
-from selfconf.deployment.runner import TaskRunner
-from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Outcome, Refusal, TooFewEligible
+from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Release, Verdict
-from selfconf.rdf import conformance as shacl
 from selfconf.render.run_events import event_body
 from selfconf.sdk.supervision import GRACE
-from tests.deployment.tasks import TASK
-from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
+from tests.deployment.tasks import DRIVEN, TASK, contended
+from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
 
 
 def released(recorder: Recorder) -> bool:
@@ -278,26 +272,6 @@ def test_patience_recovers_when_a_lost_component_lives_again(lab: Lab) -> None:
     assert lab.active() == set()
 
 
-SPARE = {
-    name: f":{name} a sc:Component, :Drive ; sc:preference {preference} ; sc:shareable false ."
-    for name, preference in (("left", 2), ("right", 1))
-}
-"""Two components that are eligible for one role, and that no tasks share."""
-DRIVEN = PREFIXES + ":go a sc:Template ; sc:roles ( :drive ) . :drive a sc:Role ; sh:class :Drive ."
-
-
-def contended(folder: Path) -> tuple[Lab, list[TaskRunner]]:
-    """An ecology in which two components could play the role of a task, and the tasks that hold one each."""
-    lab, agents = Lab(folder, advertised=SPARE), list[TaskRunner]()
-    lab.site("shared", *SPARE)
-    for name in SPARE:
-        lab.component(name)
-    for name in SPARE:
-        agents.append(lab.agent(DRIVEN, (), name=f"holds-{name}"))
-        assert lab.running(agents[-1])
-    return lab, agents
-
-
 def test_who_has_waited_longer_gets_whichever_candidate_is_free_first(tmp_path: Path) -> None:
     lab, holding = contended(tmp_path)
     early = lab.agent(DRIVEN, (), patient=True, name="early")
@@ -311,22 +285,6 @@ def test_who_has_waited_longer_gets_whichever_candidate_is_free_first(tmp_path: 
     early.stop()
     lab.let_pass(TRY_AGAIN / 20)
     assert set(late.state.held) == {iri("right")}
-
-
-@pytest.mark.parametrize(("patient", "act"), [(False, "refused"), (True, "waiting")])
-def test_a_refusal_says_of_all_that_is_held_by_whom_and_since_when(tmp_path: Path, patient: bool, act: str) -> None:
-    lab, holding = contended(tmp_path)
-    lab.agent(DRIVEN, (), patient=patient, name="third")
-    lab.let_pass(1.0)
-    (event,) = lab.acts(act)
-    assert [str(reason) for reason in event.refusal.reasons] == [
-        "no component that is free is eligible for the role drive"
-    ]
-    held = {component: (holder.name, holder.beginning) for component, holder in event.refusal.held}
-    assert held == {
-        iri(name): (f"holds-{name}", one.identity.beginning) for name, one in zip(SPARE, holding, strict=True)
-    }
-    assert [one["task"] for one in event_body(event)["refusal"]["held"]] == ["holds-left", "holds-right"]
 
 
 SHARED = {
@@ -410,16 +368,6 @@ def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
     assert "drive" in lab.active()
 
 
-def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shacl, "SHAPE_SECONDS", 0.001)  # over before any component is looked at
-    pairs = " . ".join(f"$this ?p{number} ?o{number}" for number in range(9))
-    broken = NAVIGATE + f':drive sh:sparql [ sh:select "SELECT $this {{ {pairs} FILTER ( ?o1 > 2 ) }}" ] .\n'
-    agent = lab.agent(broken)
-    assert lab.until(lambda: bool(lab.ended))
-    assert isinstance(agent.trouble, TemplateError)
-    assert lab.active() == set()
-
-
 def test_what_it_does_is_reported_in_the_order_of_the_four_acts(lab: Lab) -> None:
     lab.running(lab.agent())
     lab.let_pass(0.1)
@@ -432,44 +380,6 @@ def test_what_it_does_is_reported_in_the_order_of_the_four_acts(lab: Lab) -> Non
     connected = {(str(a.source), str(a.output)) for a in lab.acts("connecting")}
     assert (str(iri("person-tracker")), "pose") in connected
     assert all(event_body(event) for event in lab.events)
-
-
-def test_a_search_that_breaks_ends_the_task_which_says_so(lab: Lab) -> None:
-    def broken(*_: object) -> Outcome:
-        raise TypeError("soon is no number")
-
-    agent = lab.agent(patient=True)
-    agent.request = replace(agent.request, compose=broken)
-    assert lab.until(lambda: bool(lab.ended))
-    assert "soon is no number" in str(agent.trouble)
-    assert lab.active() == set()
-
-
-def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> None:
-    searches, abandoned = list[Callable[[], None]](), list[Callable[[], None]]()
-
-    def aside(work: Callable[[], None]) -> Undo:
-        if work.__qualname__.startswith("TaskRunner._compose."):
-            searches.append(work)
-        else:
-            work()
-        return partial(abandoned.append, work)
-
-    agent = lab.agent(aside=aside)
-    assert lab.until(lambda: len(searches) == 1)
-    searches[0]()
-    assert lab.running(agent)
-    agent._step(Improvable())
-    assert lab.until(lambda: len(searches) == 2)
-    agent._step(Appeared({}))  # no reason to begin anew: what appears all the time must not keep a task from its answer
-    lab.let_pass(1.0)
-    assert abandoned == searches[:1]  # which is over
-    lab.components["tracker"].fail("Astrid has left the picture")
-    assert lab.until(lambda: len(searches) == 3)
-    assert abandoned == searches[:2]
-    searches[2]()
-    assert lab.running(agent)
-    assert lab.active() == TASK | {"odometry"}
 
 
 def test_a_configurator_that_has_ended_asks_nobody_any_more(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,81 @@
+"""Acts 1 and 2 of a running task: what the sites advertise, and what the other tasks hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from selfconf.configurator import Discovered, Event, State
+from selfconf.deployment.holders import ask_holders
+from selfconf.deployment.liveness import Liveness
+from selfconf.deployment.run_request import EventListener
+from selfconf.discovery import Discovery, EcologyView
+from selfconf.model.holder import Holder
+from selfconf.model.run_event import AnswerRejected, EcologyAsked, EcologyDiscovered
+from selfconf.model.term import IRI
+
+
+class TaskDiscovery:
+    """Asks the ecology for one task, and feeds its machine with what was found."""
+
+    def __init__(
+        self,
+        ecology: EcologyView,
+        name: str,
+        liveness: Liveness,
+        state: Callable[[], State],
+        step: Callable[[Event], None],
+        report: EventListener,
+    ) -> None:
+        """`name` is that of the configurator."""
+        self._bus, self._ecology, self._name, self._liveness = ecology.bus, ecology, name, liveness
+        self._state, self._step, self._report = state, step, report
+        self._asked = 0
+        """How often the ecology was asked."""
+
+    def begin(self) -> None:
+        """Ask the sites what they advertise, and meanwhile the other tasks what they hold.
+
+        One question counts at a time: where an earlier one is not answered yet, its answer is older than this question.
+        """
+        self._report(EcologyAsked())
+        self._asked += 1
+        number = self._asked
+        found: list[Discovery] = []
+        held: list[Mapping[IRI, Holder]] = []
+
+        def both() -> None:
+            if found and held and number == self._asked:
+                self._discovered(found[0], held[0])
+
+        def discovered(discovery: Discovery) -> None:
+            found.append(discovery)
+            both()
+
+        def answered(holders: Mapping[IRI, Holder]) -> None:
+            held.append(holders)
+            both()
+
+        ask_holders(self._bus, self._ecology.keys, self._name, answered)
+        self._ecology.discover(discovered)
+
+    def _discovered(self, discovery: Discovery, holders: Mapping[IRI, Holder]) -> None:
+        if self._state().ended:
+            return
+        self._ecology.discovery = discovery
+        self._liveness.discovered(discovery)
+        for complaint in discovery.complaints:
+            self._report(AnswerRejected(complaint))
+        self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
+        number = self._asked
+        shared = {component: holder for component, holder in holders.items() if self.shareable(component)}
+        held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared)
+
+        def known() -> None:
+            if number == self._asked:
+                self._step(held)
+
+        self._liveness.select(self._state().held, known)
+
+    def shareable(self, component: IRI) -> bool:
+        found = self._ecology.discovery.found.get(component)
+        return found is not None and found.advertisement.profile.is_shareable

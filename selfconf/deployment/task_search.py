@@ -1,0 +1,93 @@
+"""Act 3 of a running task: the search for a configuration, apart from the bus, and what comes of its answer."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from selfconf.bus.port import Undo
+from selfconf.configurator import Compose, Composed, Event, Phase, State
+from selfconf.deployment.liveness import Liveness
+from selfconf.deployment.run_request import EventListener, RunRequest
+from selfconf.discovery import EcologyView
+from selfconf.errors import ProgrammerError, SelfconfError
+from selfconf.model.configuration import Configuration
+from selfconf.model.obstacle import NotJudged
+from selfconf.model.refusal import Refusal
+from selfconf.model.run_event import ComponentLeftOut, SearchEnded
+from selfconf.model.term import IRI
+
+log = logging.getLogger(__name__)
+
+
+class TaskSearch:
+    """Searches for one task, one search at a time, and feeds its machine with the answers."""
+
+    def __init__(
+        self,
+        ecology: EcologyView,
+        request: RunRequest,
+        liveness: Liveness,
+        state: Callable[[], State],
+        step: Callable[[Event], None],
+        report: EventListener,
+        give_up: Callable[[SelfconfError], None],
+    ) -> None:
+        """`give_up` ends the task where it cannot be searched for."""
+        self._bus, self._ecology, self._request, self._liveness = ecology.bus, ecology, request, liveness
+        self._state, self._step, self._report, self._give_up = state, step, report, give_up
+        self._left_out: set[IRI] = set()
+        """The components that were reported to play no role, as they cannot be judged."""
+        self._outdated: Undo = lambda: None
+        """Abandons the search that was begun last."""
+
+    def begin(self, effect: Compose) -> None:
+        """Search elsewhere, so that a search keeps this configurator from nothing."""
+        found = {component: f.advertisement for component, f in self._ecology.discovery.found.items()}
+        taken, refused = self._state().taken.keys(), self._state().refusal if self._state().despite else None
+
+        def work() -> None:
+            began = time.monotonic()
+            try:
+                outcome = self._request.compose(found, effect.lost, effect.running)
+                not_judged = dict(self._request.not_judged())
+                refusal = outcome if isinstance(outcome, Refusal) else refused
+                usable = self._request.usable(taken, refusal) if isinstance(refusal, Refusal) else {}
+            except SelfconfError as error:
+                trouble = error
+                self._bus.wake_up(lambda: self._give_up(trouble))
+                return
+            except Exception as error:  # nothing may wait for ever for a search that broke
+                log.exception("the search broke")
+                broken = ProgrammerError(f"the search broke: {type(error).__name__}: {error}")
+                self._bus.wake_up(lambda: self._give_up(broken))
+                return
+            if isinstance(outcome, Refusal):
+                outcome = outcome.told_of_held(usable)
+            seconds = time.monotonic() - began
+            composed = Composed(effect.attempt, outcome, frozenset(usable))
+            self._bus.wake_up(lambda: self._composed(composed, seconds, not_judged))
+
+        self._outdated()  # the answer of an earlier search is not looked at any more
+        self._outdated = self._request.aside(work)
+
+    def _composed(self, composed: Composed, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
+        for component in sorted(not_judged.keys() - self._left_out):
+            self._report(ComponentLeftOut(component, not_judged[component].reason))
+        self._left_out |= not_judged.keys()
+        outcome = composed.outcome
+        if isinstance(outcome, Refusal):
+            outcome = replace(outcome, missing_sites=self._ecology.discovery.missing)
+            composed = replace(composed, outcome=outcome)
+        current = composed.attempt == self._state().attempt
+        counts = current and not self._state().despite and self._state().phase is Phase.COMPOSING
+        if isinstance(outcome, Configuration):
+            goes_on = bool(self._state().contested(outcome))
+        else:
+            goes_on = self._state().searches_again
+        if counts and not goes_on:
+            self._report(SearchEnded(outcome, seconds))
+        wanted = outcome.components if isinstance(outcome, Configuration) else ()
+        self._liveness.select(wanted, lambda: self._step(composed))
