@@ -116,8 +116,9 @@ class Partition:
     """The components that may be recruited, in the order in which they are preferred; none where no role recruits."""
     mentions: tuple[tuple[Mention, ...], ...] = ()
     """For each role the free parameters that its shape mentions, whether or not any candidate states a value."""
-    contradictory: frozenset[int] = frozenset()
-    """The roles, by number, whose shape contradicts itself: no component can be eligible for one."""
+    unaddable: frozenset[int] = frozenset()
+    """The roles, by number, for which no component can be added: their shapes contradict themselves, or list who may
+    play them."""
 
     def mentioned(self, role: int) -> tuple[Mention, ...]:
         """The free parameters that the shape of a role, given by its number, mentions."""

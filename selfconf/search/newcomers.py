@@ -46,7 +46,7 @@ def newcomer(problem: Problem, addition: Addition, number: int) -> Candidate:
 
 def impossible(problem: Problem) -> set[int]:
     """Return the roles, by number, for which no component can be added that would be eligible."""
-    found = set(problem.partition.contradictory)
+    found = set(problem.partition.unaddable)
     for role, variable in itertools.product(range(len(problem.roles)), problem.variables):
         mention = _mention(problem, role, variable)
         if mention is not None and mention.required and not _statable(mention, variable):

@@ -48,7 +48,8 @@ class Roles:
             count = rng.choice(["", "", "", " ; sc:minCount 2", " ; sc:minCount 0"])
             recruits = rng.choice(["", "", "", " ; sc:recruits true", " ; sc:recruits [ sh:class :HELPER ]"])
             where = self._where(rng, role) if self.parameter and rng.random() < 0.7 else ""
-            self.about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where}{recruits} ."
+            named = rng.choice([*[""] * 7, f" ; sh:in ( :c{role}0 :elsewhere )"])
+            self.about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where}{named}{recruits} ."
 
     def _where(self, rng: random.Random, role: str) -> str:
         kind, listed = rng.choice(["may", "may", "must", "value"]), rng.choice(["", "", "A", "A B", "B C"]).split()

@@ -125,7 +125,7 @@ def test_where_a_component_has_to_state_another_value_than_the_others_more_is_ad
 
 def test_for_a_role_whose_shape_contradicts_itself_nothing_is_added() -> None:
     given = problem({"sonar": [], "drive": [component("drive")]}, counts={"drive": (2, None)}, domain=["astrid"])
-    closed = Problem(given.task, replace(given.partition, contradictory=frozenset((1,))), given.hierarchy)
+    closed = Problem(given.task, replace(given.partition, unaddable=frozenset((1,))), given.hierarchy)
     assert impossible(closed) == {1}
     assert added(closed) is None
     nothing = mentioning(given, sonar=Mention(iri("robot"), frozenset(), required=True))

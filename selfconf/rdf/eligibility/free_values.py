@@ -18,7 +18,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.partition import Mention
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
-from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest
+from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest, SelfTest
 from selfconf.rdf.tasks import shape_statements, suitable
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, SH, TYPE
@@ -172,7 +172,7 @@ class StatedOnPath:
 
 def stated_on_paths(tests: Iterable[RoleTest], hierarchy: Hierarchy) -> list[StatedOnPath]:
     """What the tests of a role ask of the values of each property that they look at."""
-    found = list(_conjuncts(tests))
+    found = [test for test in _conjuncts(tests) if isinstance(test, PropertyTest)]
     paths = dict.fromkeys(test.path for test in found)
     return [
         StatedOnPath(
@@ -199,10 +199,15 @@ def contradictory(paths: Iterable[StatedOnPath], mentions: Iterable[Mention]) ->
     return any(path.contradictory for path in paths) or any(one.required and one.only == _NONE for one in mentions)
 
 
-def _conjuncts(tests: Iterable[RoleTest]) -> Iterator[PropertyTest]:
-    """Yield the tests of properties that all have to be passed, those within `sh:and` and `sh:node` too."""
+def lists_components(tests: Iterable[RoleTest]) -> bool:
+    """Whether a role lists the components that may play it: one that is added would have to have one of their names."""
+    return any(isinstance(test, SelfTest) for test in _conjuncts(tests))
+
+
+def _conjuncts(tests: Iterable[RoleTest]) -> Iterator[RoleTest]:
+    """Yield the tests that all have to be passed, those within `sh:and` and `sh:node` too."""
     for test in tests:
-        if isinstance(test, PropertyTest):
-            yield test
-        elif isinstance(test, Count) and test.minimum == len(test.groups):
+        if isinstance(test, Count) and test.minimum == len(test.groups):
             yield from _conjuncts(chain.from_iterable(test.groups))
+        else:
+            yield test

@@ -40,7 +40,7 @@ from selfconf.rdf.eligibility.advertisement_index import (
     TypeSet,
 )
 from selfconf.rdf.eligibility.compiled_roles import compile_role, left_to_judge, suppliers_of, with_named_suppliers
-from selfconf.rdf.eligibility.free_values import contradictory, mentions_of, stated_on_paths
+from selfconf.rdf.eligibility.free_values import contradictory, lists_components, mentions_of, stated_on_paths
 from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
@@ -270,15 +270,18 @@ class Partitioner:
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
 
     def _mentions(self, variables: Iterable[Variable]) -> tuple[tuple[tuple[Mention, ...], ...], frozenset[int]]:
-        """The free parameters that the shape of each role mentions, and the roles whose shape contradicts itself."""
+        """The free parameters that the shape of each role mentions, and the roles for which none can be added."""
         known = {variable.parameter: variable.domain for variable in variables}
         paths = [stated_on_paths(role.tests, self.hierarchy) for role in self.roles]
         found = tuple(
             mentions_of(sorted(mentions(self.document, role.iri, self.free)), some, known, self.suitable.of)
             for role, some in zip(self.roles, paths, strict=True)
         )
-        wrong = frozenset(n for n, (some, one) in enumerate(zip(paths, found, strict=True)) if contradictory(some, one))
-        return found if self.free else (), wrong
+        rows = zip(self.roles, paths, found, strict=True)
+        unaddable = frozenset(
+            n for n, (role, some, one) in enumerate(rows) if lists_components(role.tests) or contradictory(some, one)
+        )
+        return found if self.free else (), unaddable
 
     def mentioned(self, role: CompiledRole) -> IRI | None:
         """The free parameter that the shape of a role mentions where pySHACL judges it, if it does."""

@@ -234,7 +234,7 @@ def values(*names: str) -> frozenset[str]:
 )
 def test_the_rest_of_a_shape_says_what_may_be_stated(shape: str, mention: Mention) -> None:
     assert asked(shape) == mention
-    assert not partition(shape).contradictory
+    assert not partition(shape).unaddable
 
 
 def test_of_the_values_that_candidates_state_those_that_fail_another_test_are_told() -> None:
@@ -257,7 +257,7 @@ def test_of_the_values_that_candidates_state_those_that_fail_another_test_are_to
     ],
 )
 def test_a_shape_may_contradict_itself_by_the_value_that_is_bound(shape: str) -> None:
-    assert partition(shape, bound=True).contradictory == {0}
+    assert partition(shape, bound=True).unaddable == {0}
 
 
 @pytest.mark.parametrize(
@@ -269,9 +269,23 @@ def test_a_shape_may_contradict_itself_by_the_value_that_is_bound(shape: str) ->
     ],
 )
 def test_a_shape_may_contradict_itself_whatever_a_parameter_is(shape: str) -> None:
-    assert partition(shape).contradictory == {0}
+    assert partition(shape).unaddable == {0}
+
+
+@pytest.mark.parametrize(
+    ("shape", "unaddable"),
+    [
+        ("sh:in ( :here :there )", True),
+        ("sh:hasValue :here", True),
+        ("sh:and ( [ sh:in ( :here :there ) ] )", True),
+        ("sh:or ( [ sh:in ( :here ) ] [ sh:class :Other ] )", False),
+        ("sh:not [ sh:in ( :here ) ]", False),
+    ],
+)
+def test_none_can_be_added_for_a_role_that_lists_its_components(shape: str, unaddable: bool) -> None:
+    assert bool(partition(shape).unaddable) is unaddable
 
 
 def test_a_component_that_may_state_nothing_can_be_eligible_whatever_the_lists_are() -> None:
     shape = f"{ONE_OF} ; sh:property [ sh:path rob:support ; sh:in ( :Pippi ) ]"
-    assert not partition(shape, bound=True).contradictory
+    assert not partition(shape, bound=True).unaddable
