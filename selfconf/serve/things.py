@@ -12,8 +12,8 @@ from typing import Any
 
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.protocol.keys import Keys
-from selfconf.rdf.sparql import QUERY_PREFIXES
-from selfconf.serve.component_bodies import KNOWN_NAMES, label_of
+from selfconf.rdf.vocabulary import LABEL, RDFS, SC, UNIT
+from selfconf.serve.json_ld import CONTEXT, in_languages, members, name_of
 
 TD_CONTEXTS = ["https://www.w3.org/2019/wot/td/v1", "https://www.w3.org/2022/wot/td/v1.1"]
 """Those of both versions, in this order: so TD 1.1 (section 5.3.1.1) wants it where consumers may know 1.0 alone."""
@@ -25,20 +25,29 @@ _SECURITY = {"securityDefinitions": {"nosec_sc": {"scheme": "nosec"}}, "security
 
 
 def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
-    """The Thing Description of a component of an ecology; its forms are the keys of the ecology on Zenoh."""
-    title = profile.component.short or str(profile.component)
-    label = label_of(profile)
+    """The Thing Description of a component of an ecology; its forms are the keys of the ecology on Zenoh.
+
+    Its title is the component's label, or its local name. Its properties are members of JSON-LD; what has no member of
+    TD is said in the terms of selfconf, but for shapes and frames of ports and what a site or configurator heeds.
+    """
+    title, labels = in_languages("title", profile.values(LABEL))
+    comment, comments = in_languages("description", profile.values(RDFS.comment))
+    in_words = *((LABEL, one) for one in labels), *((RDFS.comment, one) for one in comments)
+    others = ((predicate, value) for predicate, value in profile.properties if predicate not in (LABEL, RDFS.comment))
     description: dict[str, Any] = {
-        "@context": [*TD_CONTEXTS, {prefix: QUERY_PREFIXES[prefix] for prefix in ("sc", "rob", "home")}],
-        "@type": sorted(KNOWN_NAMES(kind).strip("<>") for kind in profile.types),
+        "@context": [*TD_CONTEXTS, CONTEXT],
+        "@type": sorted(map(name_of, profile.types)),
         "id": str(profile.component),
-        "title": title,
-        **({"description": label} if label else {}),
+        "title": profile.component.short or str(profile.component),
+        **title,
+        **comment,
+        **members((*in_words, *others)),
         **_SECURITY,
         "properties": {
             port.name: {
-                **({"@type": [KNOWN_NAMES(signal).strip("<>") for signal in port.signals]} if port.signals else {}),
+                **({"@type": [*map(name_of, port.signals)]} if port.signals else {}),
                 **({} if port.unit is None else {"unit": str(port.unit)}),
+                **({} if port.rate is None else {"sc:rate": {"sc:value": port.rate, "sc:unit": {"@id": UNIT.HZ}}}),
                 "readOnly": True,
                 "observable": True,
                 "forms": [
@@ -50,6 +59,7 @@ def thing_description(profile: Profile, keys: Keys) -> dict[str, Any]:
         },
         "events": {
             "fail": {
+                "@type": name_of(SC.Failure),
                 "title": "FAIL",
                 "description": "the component cannot go on",
                 "forms": [_form(keys.fail(profile.component), ["subscribeevent", "unsubscribeevent"])],
@@ -63,7 +73,12 @@ def _own_terms(profile: Profile) -> dict[str, list[dict[str, Any]]]:
     """What is said in the terms of selfconf."""
     return {
         "sc:hasInput": [
-            {"sc:name": port.name, "sc:signalType": [{"@id": str(signal)} for signal in port.signals]}
+            {
+                "sc:name": port.name,
+                "sc:signalType": [{"@id": str(signal)} for signal in port.signals],
+                **({"sc:unit": {"@id": str(unit)}} if (unit := port.condition and port.condition.unit) else {}),
+                **({"sc:optional": True} if port.optional else {}),
+            }
             for port in profile.signal_inputs
         ],
         "sc:hasOperation": [*map(_operation, profile.operations)],
@@ -77,7 +92,8 @@ def _own_terms(profile: Profile) -> dict[str, list[dict[str, Any]]]:
 def _operation(port: Input | Output) -> dict[str, Any]:
     types = ("sc:request", port.request), ("sc:response", port.response)
     said = {member: {"@id": str(kind)} for member, kind in types if kind is not None}
-    return {"sc:name": port.name.removesuffix(CALL_MARK), **said}
+    optional = {"sc:optional": True} if isinstance(port, Input) and port.optional else {}
+    return {"sc:name": port.name.removesuffix(CALL_MARK), **said, **optional}
 
 
 def _form(key: str, operations: list[str]) -> Mapping[str, Any]:

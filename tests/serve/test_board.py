@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from selfconf.serve.board import Board
 from selfconf.serve.change import EcologyChange
 from selfconf.serve.metrics import Metrics
@@ -30,6 +32,18 @@ def test_a_thing_is_created_updated_and_deleted(board: Board) -> None:
     things = [event for event in missed if event.kind.startswith("thing")]
     assert [event.kind for event in things] == ["thing_updated", "thing_deleted", "thing_created"]
     assert things[1].data == {"id": gone}
+
+
+@pytest.mark.parametrize(
+    "more", ["rob:place :attic", 'sc:hasOutput [ sc:name "b" ; sc:rate [ sc:value 2 ; sc:unit unit:HZ ] ]']
+)
+def test_a_thing_of_other_properties_or_rates_is_updated(board: Board, more: str) -> None:
+    before = board.stream.last
+    prefix = "@prefix unit: <http://qudt.org/vocab/unit/> . "
+    for said in (more, more.replace("attic", "cellar").replace("2", "3")):
+        tracker = found("tracker", f"{prefix}:person-tracker {said} .")
+        board.apply(EcologyChange({tracker.advertisement.component: tracker}))
+    assert [event.kind for event in board.stream.missed(before) or []] == ["thing_updated"] * 2
 
 
 def test_a_thing_that_is_described_as_before_is_not_told_as_updated(board: Board) -> None:

@@ -9,8 +9,11 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.rdf.advertisements import read_advertisements
 from selfconf.serve.things import TD_CONTEXTS, directory_description, thing_description
+from tests.importing.imports import Workshop, left_out
 from tests.lab import ADVERTISEMENTS, iri
 from tests.serve.shown import found
 
@@ -45,3 +48,44 @@ def test_every_description_keeps_to_the_schema_of_the_w3c() -> None:
     things = [thing_description(found(name).advertisement.profile, Keys("lab")) for name in ADVERTISEMENTS]
     for thing in (*things, directory_description("http://localhost:8000")):
         jsonschema.validate(thing, schema)
+
+
+EVERYTHING = """
+    rdfs:label "Tracker"@en , "Ortung"@de , "tracker" ; rdfs:comment "On the ceiling." ;
+    rob:place :living-room , "kitchen" ; :built "2020-01-01"^^xsd:date ; :weight 2.5 ; :count 3 ; :on true ;
+    :nom "suiveur"@fr ; <http://x.example/1> "x" ;
+    sc:hasInput [ sc:name "clock" ; sc:signalType rob:Velocity2D ; sc:unit unit:M ; sc:optional true ] ;
+    sc:hasOutput [ sc:name "range" ; sc:unit unit:M ; sc:rate [ sc:value 12.5 ; sc:unit unit:HZ ] ] ;
+    sc:hasParameter [ sc:name "goal" ; sc:parameterType rob:BehaviouralGoal ] ;
+    sc:hasOperation [ sc:name "photo" ; sc:request rob:BehaviouralGoal ; sc:response rob:PlanarPose2D ] ;
+    sc:needsOperation [ sc:name "lamp" ; sc:request rob:BehaviouralGoal ; sc:optional true ] .
+"""
+
+
+def test_the_title_is_the_label_in_its_languages() -> None:
+    def words(label: str) -> dict[str, object]:
+        more = f" :person-tracker rdfs:label {label} ." if label else ""
+        thing = thing_description(found("tracker", more).advertisement.profile, Keys("lab"))
+        return {member: said for member, said in thing.items() if member.startswith("title") or "label" in member}
+
+    assert words("") == {"title": "person-tracker"}
+    assert words('"Tracker"') == {"title": "Tracker"}
+    assert words('"Ortung"@de , "Tracker"@en') == {"title": "Ortung", "titles": {"de": "Ortung", "en": "Tracker"}}
+    assert words('"a" , "b"@en') == {"title": "b", "titles": {"en": "b"}, "rdfs:label": "a"}
+
+
+def test_what_a_component_is_comes_back_from_its_description(tmp_path: Path) -> None:
+    prefixes = "@prefix unit: <http://qudt.org/vocab/unit/> . @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n"
+    component = found("tracker", f"\n{prefixes}:person-tracker{EVERYTHING}").advertisement
+    thing = thing_description(component.profile, Keys("lab"))
+    workshop = Workshop(tmp_path)
+    report = workshop.imported("wot", {"tracker.td.json": json.dumps(thing)})
+    (text,) = workshop.texts().values()
+    assert text.count("sc:Component") == 1
+    (again,), problems = read_advertisements(text.encode(), "tracker.ttl")
+    assert not problems
+    profile = again.profile
+    assert profile.types == component.profile.types | {IRI("https://www.w3.org/2019/wot/td#Thing")}
+    assert set(profile.properties) == set(component.profile.properties)
+    assert (profile.ports, profile.parameters) == (component.profile.ports, component.profile.parameters)
+    assert set(left_out(report)) == {"forms", "security", "titles and descriptions of affordances"}

@@ -105,6 +105,8 @@ def interactions(thing: DescribedThing, forms: ThingForms, rate: float) -> Thing
         outputs=tuple(_promised(port, rate) if output.polled else port for port, output in outputs.items()),
         inputs=tuple(inputs),
         operations=tuple(operations),
+        needs=(),  # what only another ecology's configurator could connect or set
+        parameters=(),
     )
     probes = [
         *(output.read for output in outputs.values()),
@@ -161,7 +163,7 @@ def _write(
     port: ImportedPort, affordances: _Affordances, forms: ThingForms, fields: Mapping[IRI, SignalFields]
 ) -> ThingInput | None:
     affordance = affordances.find("properties", port.name)
-    form = forms.find(affordance, "writeproperty")
+    form = forms.find(affordance, "writeproperty") if affordance else None  # it may be said in our own terms alone
     if form is None:
         return None
     return ThingInput(port.name, form, False, _plain_field(affordance, port.types, fields))
@@ -171,7 +173,7 @@ def _action(
     operation: ImportedOperation, affordances: _Affordances, forms: ThingForms, fields: Mapping[IRI, SignalFields]
 ) -> ThingOperation | None:
     affordance = affordances.find("actions", operation.name)
-    form = forms.find(affordance, "invokeaction")
+    form = forms.find(affordance, "invokeaction") if affordance else None  # as an input
     if form is None:
         return None
     asked, answered = (
@@ -194,9 +196,10 @@ def _commands(
 
 
 def _promised(port: ImportedPort, rate: float) -> ImportedPort:
-    """An output that is issued at a rate."""
+    """An output that is issued at a rate, whatever rate its description states."""
     hertz = NestedNode(((SC.value, (Literal(f"{rate:g}", XSD.decimal),)), (SC.unit, (UNIT.HZ,))))
-    return replace(port, properties=(*port.properties, (SC.rate, hertz)))
+    others = (stated for stated in port.properties if stated[0] != SC.rate)
+    return replace(port, properties=(*others, (SC.rate, hertz)))
 
 
 def _schema(affordance: Mapping[str, Any], member: str) -> Mapping[str, Any]:

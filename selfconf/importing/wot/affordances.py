@@ -8,6 +8,7 @@ affordance are its signal types. One without any is kept: an interaction can nam
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 from selfconf.importing.imported import ImportedOperation, ImportedPort
@@ -16,9 +17,10 @@ from selfconf.importing.sources import SourceDocument
 from selfconf.importing.units import unit_of
 from selfconf.importing.wot.contexts import TermMeanings
 from selfconf.importing.wot.json_text import one_or_several
+from selfconf.importing.wot.own_terms import stated_rate
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
-from selfconf.rdf.vocabulary import XSD
+from selfconf.rdf.vocabulary import SC, XSD
 
 W3C = "https://www.w3.org/2019/wot/"
 """What the W3C's own classes begin with: they say what kind of affordance it is, not what kind of signal."""
@@ -68,7 +70,7 @@ class AffordanceReader:
             self._note_schema(affordance)
             reads, writes = _operations(affordance)
             if reads:
-                yield "output", port
+                yield "output", replace(port, properties=stated_rate(affordance, self.meanings))
             if writes:
                 yield "input", ImportedPort(name, port.types, port.unit, optional=True)
             if not reads and not writes:
@@ -78,6 +80,8 @@ class AffordanceReader:
             signal: dict[str, Any] = data if isinstance(data, dict) else {}
             self._note_schema(signal)
             kinds = self.types(affordance) or self.types(signal)
+            if SC.Failure in kinds:
+                continue  # every component can fail
             yield "output", ImportedPort(name, kinds, self._unit(signal))
 
     def operations(self, thing: dict[str, Any]) -> Iterator[ImportedOperation]:

@@ -20,6 +20,7 @@ from selfconf.importing.wot.affordances import AffordanceReader
 from selfconf.importing.wot.contexts import TermMeanings, spoken
 from selfconf.importing.wot.json_text import parse_json
 from selfconf.importing.wot.json_values import terms_of
+from selfconf.importing.wot.own_terms import OWN_TERMS, OwnTerms
 from selfconf.importing.wot.thing_models import ModelReferences
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Literal, Term
@@ -110,23 +111,35 @@ class _ThingReader:
         self, thing: dict[str, Any], meanings: TermMeanings, source: SourceDocument, ledger: ImportLedger
     ) -> None:
         self.thing, self.meanings, self.source, self.ledger = thing, meanings, source, ledger
+        self.own_terms = OwnTerms(thing, meanings)
         self.affordances = AffordanceReader(meanings, ledger, source)
 
     def component(self, position: tuple[str, ...]) -> ImportedComponent:
         ports = list(self.affordances.ports(self.thing))
         types = dict.fromkeys((THING, *self.affordances.types(self.thing, "thing")))
+        types.pop(SC.Component, None)  # every component is said to be one
         for member, (what, why) in _UNUSED.items():
             if member in self.thing:
                 self.ledger.leave_out(what, why, self.source)
-        return ImportedComponent(
+        inputs = [port for kind, port in ports if kind == "input"]
+        operations = list(self.affordances.operations(self.thing))
+        own = self.own_terms
+        found = ImportedComponent(
             self.ledger.names.component(self._iri(position), self.source),
             tuple(types),
             labels=self._words("title"),
             properties=(*((RDFS.comment, words) for words in self._words("description")), *self._properties()),
-            inputs=tuple(port for kind, port in ports if kind == "input"),
+            inputs=(*inputs, *own.inputs({port.name for port in inputs})),
             outputs=tuple(port for kind, port in ports if kind == "output"),
-            operations=tuple(self.affordances.operations(self.thing)),
+            parameters=tuple(own.parameters()),
+            operations=(*operations, *own.operations(SC.hasOperation, {each.name for each in operations})),
+            needs=tuple(own.operations(SC.needsOperation)),
         )
+        if own.unread:
+            what = "what else is said of inputs, operations and parameters in the terms of selfconf"
+            reason = "each has a name of its own and types, and an input its unit and whether it is optional"
+            self.ledger.leave_out(what, reason, self.source, own.unread)
+        return found
 
     def _iri(self, position: tuple[str, ...]) -> IRI:
         for member in ("id", "@id"):
@@ -154,6 +167,8 @@ class _ThingReader:
             if member in _KNOWN or member in _UNUSED or member.startswith("@"):
                 continue
             predicate = self.meanings.expanded(member)
+            if predicate in OWN_TERMS:
+                continue
             if predicate in SC or predicate == TYPE:
                 self.ledger.leave_out("terms of selfconf", "an import states those itself", self.source)
                 continue

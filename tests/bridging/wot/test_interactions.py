@@ -44,6 +44,21 @@ def test_what_can_be_observed_is_followed_and_the_rest_promises_the_rate() -> No
     }
 
 
+def test_what_is_said_in_the_terms_of_selfconf_alone_is_nothing_that_a_thing_can_do() -> None:
+    sc = "https://w3id.org/selfconf#"
+    rate = {f"{sc}value": 9, f"{sc}unit": {"@id": "http://qudt.org/vocab/unit/HZ"}}
+    thing = found(
+        properties={"level": {"readOnly": True, f"{sc}rate": rate, "forms": [{"href": "level"}]}},
+        **{f"{sc}{term}": {f"{sc}name": "x"} for term in ("hasInput", "hasOperation", "needsOperation")},
+    )
+    component = thing.component
+    assert (component.inputs, component.operations, component.needs, component.parameters) == ((), (), (), ())
+    assert thing.problems == ()
+    text = described_text(ImportedDocument("", "", (component.described(),), {}))
+    ((advertisement,), _) = read_advertisements(text.encode(), "lamp.ttl", "file:///lamp.ttl")
+    assert [port.rate for port in advertisement.profile.outputs] == [2.0]
+
+
 def test_a_plain_value_is_the_one_field_of_its_type() -> None:
     thing = found(
         properties={
