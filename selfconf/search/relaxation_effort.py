@@ -9,8 +9,8 @@ from __future__ import annotations
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
+from selfconf.search.cores import READINGS, FeasibilityOracle, core
 from selfconf.search.engines import any_by_clauses, least_by_clauses
-from selfconf.search.explain import READINGS, FeasibilityOracle, core
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import possible_with_recruits
 from selfconf.search.reduction import Constraint, LazyReduction, ReducedProblem

@@ -6,14 +6,11 @@ import pytest
 from hypothesis import given
 
 from benchmarks.search.further_families import pigeonholes
-from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.requirement import InputFed
+from selfconf.model.refusal import Refusal
 from selfconf.search import explain
-from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning
-from selfconf.search.explain import refusal
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, all_of
+from selfconf.search.reduction import LazyReduction
 from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.possibility import possible
@@ -68,43 +65,6 @@ def test_the_cause_comes_first_and_then_what_follows_from_it() -> None:
     (reason,) = first.search(given_).reasons
     assert reason.code == "input-unfed"
     assert str(reason).startswith("the input 'scan' (RangeScan) of cap cannot be fed: no candidate of sonar issues")
-
-
-def test_of_needs_that_nothing_supports_the_fewest_are_named_that_keep_all_out() -> None:
-    # The first two candidates lack a signal each and a common one, the third another one; a role before them follows.
-    given_ = problem(
-        {
-            "screen": [component("lamp", "pose:Pose")],
-            "position": [
-                component("a", "s:Sonar t:Time", "p:Pose"),
-                component("b", "s:Radar t:Time", "p:Pose"),
-                component("c", "s:Lidar", "p:Pose"),
-            ],
-        },
-        "position>screen",
-    )
-    answer = first.search(given_)
-    assert isinstance(answer, Refusal)
-    (reason,) = answer.reasons
-    assert {r.wanted.signals[0].short for r in reason.requirements if isinstance(r, InputFed)} == {"Time", "Lidar"}
-    assert answer.irreducible
-
-
-def test_a_thousand_candidates_with_a_need_each_are_explained_without_a_question() -> None:
-    many = [component(f"c{number}", f"i:Signal{number}") for number in range(1000)]
-    unsolvable = LazyReduction(problem({"r": many, "s": [component("source", outputs="o:Other")]}, "s>r"))
-    found = refusal(unsolvable, steps=1)
-    (reason,) = found.reasons
-    assert (len(reason.requirements), found.irreducible) == (1001, True)
-
-
-def test_the_budget_of_an_explanation_bounds_the_questions_that_arc_consistency_answers() -> None:
-    # Each candidate needs what only a component issues that cannot play, and whose role another one can.
-    many = [component(f"c{number}", f"i:Signal{number}") for number in range(40)]
-    source = component("source", "x:Nothing", " ".join(f"o{number}:Signal{number}" for number in range(40)))
-    unsolvable = LazyReduction(problem({"s": [source, component("spare")], "r": many}, "s>r"))
-    assert refusal(unsolvable).irreducible
-    assert not refusal(unsolvable, steps=5).irreducible
 
 
 @pytest.mark.parametrize(
@@ -163,15 +123,6 @@ def test_a_source_with_a_minimum_of_zero_is_not_said_to_issue_nothing() -> None:
     (reason,) = first.search(given_).reasons
     cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for no component (sc:minCount 0)"
     assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"
-
-
-def test_once_enough_was_read_a_question_stays_open_even_where_no_search_would_be_needed() -> None:
-    deaf = problem({"eye": [component("deaf")], "mind": [component("mind", "i:Image")]}, "eye>mind")
-    given_ = LazyReduction(deaf).reduced
-    oracle = explain.FeasibilityOracle(given_, Budget())
-    assert oracle.feasible(all_of(given_)) is False
-    oracle.readings.steps = 0
-    assert isinstance(oracle.feasible(all_of(given_)), Undecided)
 
 
 def test_explaining_that_ends_before_all_is_asked_says_so() -> None:
