@@ -131,13 +131,11 @@ class _Reader(DocumentReader):
     def _listed(self, template: IRI) -> list[Term]:
         """The members of the list of roles."""
         head = self.only(template, SC.roles, "a template has exactly one list of roles, sc:roles ( ... )")
-        names = self.document.items(head)
-        end: Term | None = head
-        for _ in names:
-            end = self.document.value(end, REST) if end is not None else None
-        if names and end != NIL:
-            problem = "the list sc:roles has no end; write it in parentheses, sc:roles ( ... )"
+        broken = self._broken(head)
+        if broken is not None:
+            problem = f"{broken}; write it in parentheses, sc:roles ( ... )"
             raise self.mistake(problem, template, SC.roles, head)
+        names = self.document.items(head)
         if not names:
             problem = "the list sc:roles is empty; a template needs at least one role"
             raise self.mistake(problem, template, SC.roles, head)
@@ -147,6 +145,22 @@ class _Reader(DocumentReader):
                 again = names.index(name, names.index(name) + 1)
                 raise self.mistake(problem, self.cell(head, again), FIRST, name)
         return names
+
+    def _broken(self, head: Term) -> str | None:
+        """Why a term is no list of roles, if it is none."""
+        passed: set[Term] = set()
+        cell = head
+        while cell != NIL:
+            if cell in passed:
+                return "the list sc:roles has no end"
+            passed.add(cell)
+            members, rests = self.document.values(cell, FIRST), self.document.values(cell, REST)
+            if not members and not rests and cell == head:
+                return f"{worded(cell)} is no list of roles"
+            if len(members) != 1 or len(rests) != 1:
+                return "each cell of the list sc:roles has exactly one rdf:first and one rdf:rest"
+            cell = rests[0]
+        return None
 
     def _said_of_others(self) -> None:
         """Raises where something is said that is said of roles or templates alone."""

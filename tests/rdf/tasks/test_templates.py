@@ -18,6 +18,7 @@ from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import ROB, SC
 from tests.lab import NAVIGATE, PREFIXES, iri
 
+FIRST, REST = (f"<http://www.w3.org/1999/02/22-rdf-syntax-ns#{name}>" for name in ("first", "rest"))
 ROLE = ":r a sc:Role ; sh:class :L ."
 BINDING = "sc:binding [ sc:parameter :p ; sc:value 1 ]"
 INTERACTION = "[] a sc:Interaction ; sc:from :r ; sc:to :s"
@@ -104,6 +105,12 @@ def test_of_several_templates_one_must_be_named() -> None:
         ),
         (":t a sc:Template ; sc:roles ( :r ) , ( :s ) .", "exactly one list"),
         (':t a sc:Template ; sc:roles ( "r" ) .', "needs an IRI"),
+        (':t a sc:Template ; sc:roles "r" .', '"r" is no list of roles; write it in parentheses'),
+        (f":t a sc:Template ; sc:roles :r . {ROLE}", "is no list of roles"),
+        (f":t a sc:Template ; sc:roles () . {ROLE}", "at least one role"),
+        (f":t a sc:Template ; sc:roles [ {FIRST} :r ] . {ROLE}", "exactly one rdf:first and one rdf:rest"),
+        (f":t a sc:Template ; sc:roles [ {FIRST} :r, :s ; {REST} () ] . {ROLE}", "exactly one rdf:first"),
+        (f":t a sc:Template ; sc:roles _:l . _:l {FIRST} :r ; {REST} _:l . {ROLE}", "has no end"),
         (f':t a sc:Template ; sc:roles ( :r ) . {ROLE} :r sc:feeds "x" .', "no role"),
         (f":t a sc:Template ; sc:roles ( :r ) . {ROLE} :r sc:minCount -1 .", "whole number"),
         (f":t a sc:Template ; sc:roles ( :r ) . {ROLE} :r sc:minCount 1, 2 .", "whole number"),
