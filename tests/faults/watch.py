@@ -14,10 +14,11 @@ from selfconf.model.profile import CALL_MARK
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import ActivationPhase
+from selfconf.protocol.messages import Wire
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.faults import invariants, upgrades
-from tests.faults.histories import History
+from tests.faults.histories import History, Life
 from tests.faults.invariants import MOST_WAITING, undecided
 from tests.faults.simulated_code import SimulatedCodeThread
 
@@ -27,8 +28,13 @@ ENDS = (*invariants.ENDS, *upgrades.ENDS)
 """What must hold in the end."""
 ROUNDING = 1e-6
 """By how many seconds a sum of times may be wrong."""
+LOOKS = 0.25
+"""Seconds after which conditions are looked at again while signals are heard, though nothing else has changed."""
+_TURNING = (("started",), ("stopped",))
+"""What components write down that decides whether they are on."""
 _STATE = attrgetter("state")
 _ACTIVATION = attrgetter("activation")
+_SAID = attrgetter("recorder.said")
 _TURNS = attrgetter("turn", "_acting_turn")  # by these it is decided whether code acts
 CONNECTED = "who calls is connected"
 TRIES_FIRST = "a composite tries first"
@@ -54,7 +60,12 @@ class Watch:
         """The shape of the network, and how many processes there have been, when it was noted which of them live."""
         self._runtimes: list[ComponentRuntime] = []
         self._codes: list[ComponentCode] = []
-        self._said: list[list[tuple[object, ...]]] = []
+        self._lives: list[Life] = []
+        self._lengths: list[int] = []
+        """How much each of these lives had written down at the last look."""
+        self._followed: list[set[tuple[str, Wire]]] = []
+        """What their inputs followed when the conditions were looked at last, which was at a time."""
+        self._compared_at = -math.inf
         self._threads: list[SimulatedCodeThread] = []
         self.broken: list[str] = []
         self.names: set[str] = set()
@@ -69,11 +80,15 @@ class Watch:
 
     def look(self) -> None:
         """Look at the ecology as it is now; conditions need a second look only if something has changed."""
-        if self._is_changed():
+        changed, heard = self._is_changed(), self._heard()
+        if changed or heard:
             with self._history.standing_still():
-                self._note_composed()
-                self.upgrades.look()
-                self._compare()
+                matters = changed or self._matters(heard)
+                if matters:
+                    self._note_composed()
+                self.upgrades.look()  # of what signals are heard matters to these alone
+                if matters:
+                    self._compare()
         now = self._history.network.time
         if now < self._overdue:
             return
@@ -141,8 +156,27 @@ class Watch:
                 else:
                     yield one.sink
 
+    def _heard(self) -> list[tuple[int, int]]:
+        """The lives that have written something down since the last look, by number, and how much they had before."""
+        before, self._lengths = self._lengths, list(map(len, map(_SAID, self._lives)))
+        if before == self._lengths:
+            return []
+        return [(n, had) for n, (had, has) in enumerate(zip(before, self._lengths, strict=True)) if had != has]
+
+    def _matters(self, heard: Sequence[tuple[int, int]]) -> bool:
+        """Whether what lives have heard may change a condition: by being started or stopped, or what is followed.
+
+        Some conditions end as time passes, so they are looked at from time to time.
+        """
+        return self._history.network.time >= self._compared_at + LOOKS or any(
+            any(said in _TURNING for said in self._lives[number].recorder.said[had:])
+            or self._lives[number].followed != self._followed[number]
+            for number, had in heard
+        )
+
     def _compare(self) -> None:
-        now = self._history.network.time
+        now = self._compared_at = self._history.network.time
+        self._followed = [life.followed for life in self._lives]
         present = {(one.name, condition) for one in STEPS for condition in one.conditions(self._history)}
         for name, condition in list(self._since):
             if (name, condition) not in present:
@@ -165,11 +199,11 @@ class Watch:
         history, network = self._history, self._history.network
         if (network.shape, len(history.processes)) != self._shape:
             self._shape = network.shape, len(history.processes)
-            living = [life for life in history.processes if life.node.open]
-            self._runtimes = [life.runtime for life in living]
-            self._codes = [life.runtime.code for life in living]
-            self._said = [life.recorder.said for life in living]
-            self._threads = [life.thread for life in living]
+            self._lives = [life for life in history.processes if life.node.open]
+            self._runtimes = [life.runtime for life in self._lives]
+            self._codes = [life.runtime.code for life in self._lives]
+            self._threads = [life.thread for life in self._lives]
+            self._lengths = list(map(len, map(_SAID, self._lives)))
             self._seen.clear()
         insides = list(history.insides())
         now = network.time
@@ -177,7 +211,6 @@ class Watch:
             list(map(_STATE, history.agents)),
             list(map(_ACTIVATION, self._runtimes)),
             list(map(_TURNS, self._codes)),
-            list(map(len, self._said)),
             # Few threads have a limit that is over; of those it matters whether they hang.
             [(thread, thread.hangs) for thread in self._threads if thread.limit_until < now],
             [(one.runtime.activation, _TURNS(one.runtime.code), one.runner and one.runner.state) for one in insides],
