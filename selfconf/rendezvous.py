@@ -40,6 +40,8 @@ ONTOLOGY_VARIABLE = "SELFCONF_ONTOLOGY"
 """The variable with the ontologies of a site, apart as the folders of $PATH are; its components are checked by them."""
 LIFE_VARIABLE = "SELFCONF_LIFE"
 """The variable with the life that a site gives to the components of a program that it starts, so that it knows them."""
+SEEN_AFTER = 2.0
+"""Seconds after which a program that has claimed the name of a task is seen to run it, unless it is suspended."""
 ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
 PLACES = 4
@@ -175,6 +177,26 @@ def claim(ecology: str, name: str) -> ClaimedName | None:
     except NetworkError:
         return ClaimedName(name)
     return None if file is None else ClaimedName(name, file)
+
+
+def claimed(ecology: str, seconds: float = SEEN_AFTER) -> tuple[str, ...]:
+    """The names of tasks of an ecology that programs of this machine have had for that many seconds, sorted."""
+    begin = f"{ecology}@"
+    files = sorted((runtime_folder() / "tasks").glob("*"))
+    return tuple(f.name.removeprefix(begin) for f in files if f.name.startswith(begin) and _held_for(f, seconds))
+
+
+def _held_for(path: Path, seconds: float) -> bool:
+    """Whether a program has locked a file, and that many seconds ago."""
+    try:
+        with path.open() as file:
+            if time.time() - os.fstat(file.fileno()).st_mtime >= seconds:
+                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:  # it was released, or is the folder of a site
+        pass
+    return False
 
 
 def _locked_file(path: Path) -> IO[str] | None:

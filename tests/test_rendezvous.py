@@ -259,9 +259,12 @@ def test_a_name_that_is_claimed_is_free_again_when_it_is_released_or_its_process
                 "office@patrol",
             ]
         other.kill()
+    assert rendezvous.claimed("home", 0.0) == ()  # its file may be left
     claimed = rendezvous.claim("home", "patrol")
     assert claimed is not None
     assert rendezvous.claim("home", "patrol") is None
+    assert (rendezvous.claimed("home", 0.0), rendezvous.claimed("home", 60.0)) == (("patrol",), ())
+    assert rendezvous.claimed("office", 0.0) == ()
     claimed.release()
     claimed.release()
     assert list((runtime_folder / "tasks").iterdir()) == []

@@ -273,8 +273,11 @@ class LivingEcology(Ecology):
 
     @property
     def silent(self) -> tuple[str, ...]:
-        """The configurators that live or hold components, but did not answer when asked for their `tasks`, sorted."""
-        return self._tasks.silent
+        """The configurators that live or hold components, but did not answer when asked for their `tasks`, sorted.
+
+        A run of this machine that is not even seen, as it is suspended, is there by the name of its task.
+        """
+        return (*self._tasks.silent, *self._tasks.unseen)
 
     def _complaining(self, found: _Result) -> _Result:
         """Take over what was wrong with what configurators have answered."""

@@ -16,7 +16,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
-from selfconf.rendezvous import ClaimedName, claim
+from selfconf.rendezvous import ClaimedName, claim, claimed
 
 COMING_TO_REST = 5.0
 """Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""
@@ -121,6 +121,8 @@ class LivingTasks:
         self._bus, self._keys = bus, keys
         self.silent: tuple[str, ...] = ()
         """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
+        self.unseen: tuple[str, ...] = ()
+        """The tasks that programs of this machine run, but of which nothing tells, as of the last question, sorted."""
         self.complaints: tuple[str, ...] = ()
         """What was wrong with the answers of configurators, as of the last question, and which sites have one name."""
         self._holding: list[SilentHolder] = []
@@ -129,7 +131,8 @@ class LivingTasks:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name.
 
         A configurator that is suspended is not seen to live any more before the components that it holds are at rest:
-        `by_components`, these are asked as well by which configurator each of them is held.
+        `by_components`, these are asked as well by which configurator each of them is held, and then this machine which
+        tasks its programs run.
         """
         living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
         found, rejected = _statuses(self._bus.ask(self._keys.configurator_call("*", "status")), self._keys)
@@ -139,6 +142,9 @@ class LivingTasks:
         rejected += map(_said_of_silent, sorted(living - answered - holding))
         rejected += map(str, self._holding)
         self.silent = tuple(sorted((living - answered) | holding))
+        named = {status.name for status in found}.union(task_name(one.task) for one in self._holding)
+        self.unseen = tuple(one for one in claimed(self._keys.ecology) if one not in named) if by_components else ()
+        rejected += map(_said_of_unseen, self.unseen)
         self.complaints = (*rejected, *namesakes(self._bus.living(self._keys.any_site_life())))
         return tuple(sorted(found, key=lambda status: status.configurator))
 
@@ -205,20 +211,19 @@ class LivingTasks:
         holding = [one for one in self._holding if one.is_meant(name)]
         unanswered = {record.task for record in kept}.difference(status.task for status in running)
         silent = self._silent_beside_holders(None if unanswered else name)
+        unseen = _meant(self.unseen, name)
         if name is not None and not kept:
-            _raise_for(map(_said_of_silent, sorted(silent)))
-            if not running and not holding:
-                raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
+            _check_there(name, silent, [*running, *holding, *unseen])
         self._take_down(running, kept)
-        _raise_for([*self._disobedience(running), *self._unheard(silent, holding)])
+        _raise_for([*self._disobedience(running), *self._unheard(silent, holding, unseen)])
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
     def _silent_beside_holders(self, name: str | None) -> set[str]:
         """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
-        return {one for one in self.silent if name in (None, one)}.difference(one.configurator for one in self._holding)
+        return _meant(self.silent, name).difference(one.configurator for one in self._holding)
 
-    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
+    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder], unseen: set[str]) -> Iterator[str]:
         """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest."""
         if silent:  # one that is suspended is no longer seen to live after a while
             living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
@@ -230,6 +235,7 @@ class LivingTasks:
             act_on = self._after_some_time((component, one.task) for component in one.components)
             at_rest = "they have come to rest, and if it was suspended, it takes them again when it goes on"
             yield f"{one}; {'they act on' if act_on else at_rest}"
+        yield from map(_said_of_unseen, sorted(unseen.intersection(claimed(self._keys.ecology))))
 
     def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
         """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
@@ -345,6 +351,22 @@ def _states(replies: Replies, keys: Keys) -> list[CallAnswer]:
 
 def _said_of_silent(configurator: str) -> str:
     return f"the configurator {configurator!r} lives, but does not answer"
+
+
+def _meant(names: Iterable[str], name: str | None) -> set[str]:
+    """Those of some names that one means; None means all."""
+    return {one for one in names if name in (None, one)}
+
+
+def _check_there(name: str, silent: Iterable[str], found: Sequence[object]) -> None:
+    """Raise NetworkError if configurators of a name are silent, or if nothing of that name was found."""
+    _raise_for(map(_said_of_silent, sorted(silent)))
+    if not found:
+        raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
+
+
+def _said_of_unseen(task: str) -> str:
+    return f"a program of this machine runs the task {task!r}, but does not answer; if it is suspended, it will go on"
 
 
 def _raise_for(troubles: Iterable[str]) -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from selfconf import rendezvous
 from selfconf.api.living_tasks import LivingTask, LivingTasks
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.bus.memory import Network
@@ -258,6 +259,26 @@ def test_a_configurator_that_has_not_answered_is_an_error_though_all_rests_and_i
     suspended.later(1.0, suspended.close)
     with pytest.raises(NetworkError, match=r"^the configurator 'c2' did not answer and is not seen any more"):
         tasks.asked.stop()
+
+
+@pytest.mark.parametrize("name", [None, "patrol"])
+def test_a_run_of_this_machine_that_has_vanished_but_not_ended_is_named_by_its_task(
+    tasks: Tasks, name: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that has been suspended for longer has lost its link, and its components are at rest and free."""
+    monkeypatch.setattr(rendezvous.claimed, "__defaults__", (0.0,))
+    tasks.configurator("c1", TIDY.task)
+    with tasks.asked.claim("patrol"), tasks.asked.claim("tidy-2", numbered=True) as begun:
+        begun.release()
+        tasks.asked.running()
+        assert (tasks.asked.unseen, tasks.asked.complaints) == ((), ())
+        tasks.asked.running(by_components=True)
+        assert tasks.asked.unseen == ("patrol",)
+        with pytest.raises(NetworkError, match=r"^a program of this machine runs the task .patrol., but does"):
+            tasks.asked.stop(name)
+    assert (tasks.asked.running() == ()) == (name is None)
+    tasks.asked.running(by_components=True)
+    assert tasks.asked.unseen == ()
 
 
 @pytest.mark.parametrize("kept", [True, False])
