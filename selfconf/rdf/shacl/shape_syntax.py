@@ -140,7 +140,7 @@ def _is_list(document: Document, predicate: IRI, value: Term) -> bool:
         return predicate not in LISTS_OF_SHAPES
     members = document.items(value) if predicate == SH.languageIn else ()
     tags = all(isinstance(member, Literal) and member.datatype == XSD.string for member in members)
-    return document.value(value, FIRST) is not None and tags
+    return document.is_list(value) and tags
 
 
 def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:
@@ -170,7 +170,9 @@ def is_path(document: Document, path: Term, depth: int = 0) -> bool:
 def _paths(document: Document, head: Term, depth: int) -> bool:
     """Whether a list has two members or more, each of them a path."""
     members = document.items(head)
-    return len(members) > 1 and all(is_path(document, member, depth + 1) for member in members)
+    return (
+        len(members) > 1 and document.is_list(head) and all(is_path(document, member, depth + 1) for member in members)
+    )
 
 
 def _compiles(pattern: str) -> bool:

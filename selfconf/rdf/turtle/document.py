@@ -96,6 +96,16 @@ class Document:
             head = rest
         return members
 
+    def is_list(self, head: Term) -> bool:
+        """Whether a term is an RDF list: cells of one member and one rest each, up to the end."""
+        seen: set[Term] = set()
+        while head != NIL:
+            if head in seen or len(self.values(head, FIRST)) != 1 or len(rests := self.values(head, REST)) != 1:
+                return False
+            seen.add(head)
+            head = rests[0]
+        return True
+
 
 def parse(text: str | bytes, source: str, base: str | None = None, predicates: Iterable[IRI] | None = None) -> Document:
     """Read Turtle, or of it the triples with some predicates.

@@ -9,7 +9,7 @@ from selfconf.model.template import Role
 from selfconf.rdf.tasks import read_task
 from selfconf.rdf.tasks.roles import mentions, shape_statements, shape_triples, substituted
 from selfconf.rdf.turtle import parse
-from selfconf.rdf.vocabulary import FIRST, SC, SH
+from selfconf.rdf.vocabulary import FIRST, REST, SC, SH
 from tests.lab import PREFIXES, iri
 
 DOCUMENT = parse(
@@ -83,6 +83,10 @@ def test_the_same_setting_twice_is_one() -> None:
         "sh:property 5",
         "sh:property [ sh:minCount 1 ]",
         "sh:or :x",
+        f"sh:or [ <{FIRST}> [ sh:class :L ] ]",
+        f"sh:property [ sh:path rob:place ; sh:in [ <{FIRST}> :x ] ]",
+        f"sh:property [ sh:path rob:place ; sh:in [ <{FIRST}> :x, :y ; <{REST}> () ] ]",
+        f"sh:property [ sh:path [ <{FIRST}> :x ; <{REST}> [ <{FIRST}> :y ] ] ; sh:minCount 1 ]",
         "sh:node 5",
         "sh:property [ sh:path rob:place ; sh:minInclusive :x ]",
         "sh:closed 'yes'",

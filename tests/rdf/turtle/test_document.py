@@ -11,7 +11,7 @@ from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.rdf import rdflib_terms
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.vocabulary import TYPE
+from selfconf.rdf.vocabulary import NIL, TYPE
 from tests.lab import PREFIXES, iri
 
 XSD = "http://www.w3.org/2001/XMLSchema#"
@@ -68,6 +68,25 @@ def test_a_list_that_runs_in_a_circle_ends() -> None:
         "@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> . <urn:a> rdf:first 1 ; rdf:rest <urn:a> .", "t"
     )
     assert len(document.items(IRI("urn:a"))) == 1
+
+
+@pytest.mark.parametrize(
+    ("cells", "whole"),
+    [
+        ("<urn:l> rdf:first 1 ; rdf:rest () .", True),
+        ("<urn:l> rdf:first 1 .", False),
+        ("<urn:l> rdf:rest () .", False),
+        ("<urn:l> rdf:first 1, 2 ; rdf:rest () .", False),
+        ("<urn:l> rdf:first 1 ; rdf:rest (), ( 2 ) .", False),
+        ("<urn:l> rdf:first 1 ; rdf:rest <urn:l> .", False),
+        ("<urn:l> rdf:first 1 ; rdf:rest 2 .", False),
+        ("", False),
+    ],
+)
+def test_a_list_has_one_member_and_one_rest_in_each_cell(cells: str, whole: bool) -> None:
+    document = turtle.parse(f"@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> . {cells}", "t")
+    assert document.is_list(IRI("urn:l")) is whole
+    assert document.is_list(NIL)
 
 
 def test_a_value_that_is_said_twice_counts_once() -> None:
