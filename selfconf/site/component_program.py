@@ -18,6 +18,7 @@ import os
 import secrets
 import shlex
 import sys
+import threading
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
@@ -85,6 +86,8 @@ class ComponentProgram:
         self.group: ProcessGroup | None = None
         """The process, while there is anything left of it."""
         self._closed = False
+        self._launching = threading.RLock()
+        """Held while the process is started: `close`, which any thread may call, waits until it is known."""
         self._ending_since: float | None = None
         self._again = False
         """Whether it is to be started again once it is gone."""
@@ -156,7 +159,8 @@ class ComponentProgram:
 
     def close(self) -> None:
         """Start nothing any more; the process is ended by the caller. May be called from any thread."""
-        self._closed = True
+        with self._launching:
+            self._closed = True
 
     def _launch(self) -> None:
         """Start the process. Raises PeerError."""
@@ -175,9 +179,12 @@ class ComponentProgram:
         first = next(iter(self._profiles))
         try:
             words = shlex.split(self.command) or [""]
-            self.group = ProcessGroup(words, self._folder, environment)
-            if self._closed:  # after the group is known: either it is ended here, or by the caller of `close`
-                self.group.kill()
+            with self._launching:
+                if self._closed:
+                    raise PeerError("this site is ending")
+                self.group = ProcessGroup(words, self._folder, environment)
+                if self._closed:  # by a signal to this very thread, which the lock does not keep out
+                    self.group.kill()
         except OSError as error:
             raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
         except ValueError as error:

@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,6 +21,7 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import End, Fail, Wake
 from selfconf.site import Site, component_program, life_watch, restart_limit
 from selfconf.site.component_program import ComponentProgram
+from selfconf.site.process_group import ProcessGroup
 from selfconf.termination import alive
 from tests.lab import iri
 from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve, until
@@ -405,6 +407,34 @@ def test_nothing_is_started_again_once_the_site_closes_on_another_thread(
     assert len(list((tmp_path / "here").glob("run-*"))) == started
     with pytest.raises(PeerError, match="is ending"):
         made.start(SLEEPER)
+
+
+def test_a_process_that_is_being_started_as_the_site_closes_has_ended_with_it(
+    site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, known = threading.Event(), threading.Event()
+
+    class Late(ProcessGroup):
+        def __init__(self, *arguments: Any) -> None:
+            super().__init__(*arguments)
+            begun.set()
+            known.wait(10.0)
+
+    monkeypatch.setattr(component_program, "ProcessGroup", Late)
+    made = site(python("import time; time.sleep(60)"))
+    starting, closing = (threading.Thread(target=do) for do in (lambda: made.start(SLEEPER), made.processes.close))
+    starting.start()
+    assert begun.wait(10.0)
+    closing.start()
+    closing.join(0.1)
+    closes_late = closing.is_alive()
+    known.set()
+    starting.join()
+    closing.join()
+    assert closes_late, "it does not know yet what to end"
+    group = program(made).group
+    assert group is not None
+    assert group.code() is not None
 
 
 @pytest.mark.parametrize("code", [0, 2])
