@@ -124,7 +124,7 @@ def test_files_that_are_not_there_or_are_not_turtle_are_one_sentence(desk: Desk)
     assert run(desk.capsys, "configure", str(missing), "--ads", str(desk.ads)).is_one_sentence(str(missing))
     assert run(desk.capsys, "configure", str(desk.ads), "--ads", str(desk.ads)).is_one_sentence("is a folder")
     (desk.ads / "broken.ttl").write_bytes(b"@prefix : <x> .\n:a :b \xff .")
-    assert desk.configure(*BOUND).is_one_sentence("broken.ttl:2", "not Turtle")
+    assert desk.configure(*BOUND).is_one_sentence("broken.ttl:2:7", "not UTF-8")
 
 
 def test_without_a_peer_there_is_a_sentence_that_says_what_to_start(
