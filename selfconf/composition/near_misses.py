@@ -1,7 +1,8 @@
 """The near misses of a refusal, the nearest first: also the components that only their ports keep out of a role.
 
 Ports keep a component out where the shape of the role asks for signal types that it lacks, and where it is eligible but
-feeds none of the inputs that stay unfed. How near it comes, by degree of match and by words, is `model.nearness`.
+feeds none of the inputs that stay unfed. What its properties lack is found by `rdf.eligibility.nearly_eligible`; how
+near it comes, by degree of match and by words, is `model.nearness`.
 """
 
 from __future__ import annotations

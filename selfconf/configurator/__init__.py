@@ -52,7 +52,7 @@ from selfconf.configurator.events import (
     WaitedLong,
 )
 from selfconf.configurator.machine import DEPLOYING, step
-from selfconf.configurator.order import Caller, Callers, callers, parameter_values, wiring
+from selfconf.configurator.starting_order import Caller, Callers, callers, parameter_values, wiring
 from selfconf.configurator.state import Loss, Phase, Policy, State
 
 __all__ = [

@@ -31,7 +31,14 @@ from selfconf.configurator.effects import (
     Watch,
 )
 from selfconf.configurator.events import Answered, Call
-from selfconf.configurator.order import InputWires, callers, parameter_values, resting_order, starting_order, wiring
+from selfconf.configurator.starting_order import (
+    InputWires,
+    callers,
+    parameter_values,
+    resting_order,
+    starting_order,
+    wiring,
+)
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI

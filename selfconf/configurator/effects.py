@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field
 
-from selfconf.configurator.order import Callers
+from selfconf.configurator.starting_order import Callers
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Refusal, Undecided

@@ -71,7 +71,7 @@ from selfconf.configurator.events import (
     Stopped,
     WaitedLong,
 )
-from selfconf.configurator.order import parameter_values, resting_next, wiring
+from selfconf.configurator.starting_order import parameter_values, resting_next, wiring
 from selfconf.configurator.state import Held, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal

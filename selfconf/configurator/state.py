@@ -7,7 +7,7 @@ from dataclasses import field
 from enum import Enum
 
 from selfconf.configurator.events import Call
-from selfconf.configurator.order import Callers, InputWires, StartingOrder
+from selfconf.configurator.starting_order import Callers, InputWires, StartingOrder
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable

@@ -33,7 +33,7 @@ from selfconf.configurator.events import (
     Rewired,
     WaitedLong,
 )
-from selfconf.configurator.order import wiring
+from selfconf.configurator.starting_order import wiring
 from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.holder import Holder

@@ -40,7 +40,7 @@ from selfconf.configurator.events import (
     WaitedLong,
 )
 from selfconf.configurator.machine import OBEYED, step
-from selfconf.configurator.order import parameter_values, resting_order, wiring
+from selfconf.configurator.starting_order import parameter_values, resting_order, wiring
 from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder

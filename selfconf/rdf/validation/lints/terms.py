@@ -1,17 +1,15 @@
-"""What reads well and is probably not what was meant: misspelt terms, confused namespaces, unused roles.
+"""The lints about words: misspelt terms, confused namespaces, ports that no component has.
 
 SHACL checks what it finds and passes over what it does not know: `sh:minCnt` asks for nothing, and a
-component whose prefix has https where http belongs is no component at all. Each lint is a function from
-one file to what it finds there. Only terms of sc: and sh: are errors, since there no one else can have
-declared them; all else warns. Here are the lints about words; `templates` and `flow` have those about templates, and
-the tables at the end say which lints run when.
+component whose prefix has https where http belongs is no component at all. Only terms of sc: and sh: are errors, since
+there no one else can have declared them; all else warns.
 """
 
 from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from rdflib import OWL, RDF, RDFS, SH, XSD, Literal, URIRef
 from rdflib.namespace import DefinedNamespace
@@ -21,17 +19,6 @@ from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf import vocabulary
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
-from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
-from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
-from selfconf.rdf.validation.lints.templates import (
-    impossible_roles,
-    queried_parameters,
-    typed_roles,
-    unlisted_parameters,
-    unlisted_roles,
-    unused_parameters,
-    useless_optional_roles,
-)
 from selfconf.rdf.validation.prefilter import TERM_POSITIONS
 from selfconf.rdf.validation.term_index import OWN, STANDARD, TermIndex, namespace
 
@@ -40,12 +27,6 @@ _SC, _SH = vocabulary.SC, vocabulary.SH
 LIKE = 0.7
 """How alike two words have to be for one to be a misspelling of the other; 1 is equal."""
 _MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
-
-
-def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
-    """Everything that the lints find in a file; about the make-up of a template only if it `conforms`."""
-    checks = (*WORDS, *TEMPLATES) if conforms else WORDS
-    return [found for check in checks for found in check(file)]
 
 
 def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
@@ -207,32 +188,3 @@ def local_components(file: LintedFile) -> Iterator[Diagnostic]:
             message = "The IRI of this component is relative, so it changes with the place of the file."
             hint = "Declare a prefix, or a @base that starts with https:."
             yield at(file.positions, file.offset(component), "SC-L08", message, hint=hint)
-
-
-WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
-    unknown_terms,
-    repeated_components,
-    prefixes,
-    undeclared_prefixes,
-    ownerless_ports,
-    untyped_ports,
-    typed_operations,
-    literals_for_iris,
-    local_components,
-    misnamed_units,
-)
-"""The lints that run on every file."""
-TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
-    unlisted_roles,
-    typed_roles,
-    unused_parameters,
-    unlisted_parameters,
-    queried_parameters,
-    impossible_roles,
-    idle_loops,
-    starving_inputs,
-    useless_optional_roles,
-    incommensurable_units,
-    unmet_shapes,
-)
-"""The lints that run on a file only where its templates conform: the others would say what SHACL has said."""

@@ -1,4 +1,4 @@
-"""Lints: what reads well and is probably not what was meant."""
+"""Lints about words: what reads well and is probably not what was meant."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.configurator.order import (
+from selfconf.configurator.starting_order import (
     Caller,
     callers,
     parameter_values,

@@ -1,0 +1,68 @@
+"""All lints, and which of them run when.
+
+A lint tells what reads well and is probably not what was meant: it is a function from one file to what it finds there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
+from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
+from selfconf.rdf.validation.lints.templates import (
+    impossible_roles,
+    queried_parameters,
+    typed_roles,
+    unlisted_parameters,
+    unlisted_roles,
+    unused_parameters,
+    useless_optional_roles,
+)
+from selfconf.rdf.validation.lints.terms import (
+    literals_for_iris,
+    local_components,
+    ownerless_ports,
+    prefixes,
+    repeated_components,
+    typed_operations,
+    undeclared_prefixes,
+    unknown_terms,
+    untyped_ports,
+)
+
+
+def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
+    """Everything that the lints find in a file; about the make-up of a template only if it `conforms`."""
+    checks = (*WORDS, *TEMPLATES) if conforms else WORDS
+    return [found for check in checks for found in check(file)]
+
+
+WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
+    unknown_terms,
+    repeated_components,
+    prefixes,
+    undeclared_prefixes,
+    ownerless_ports,
+    untyped_ports,
+    typed_operations,
+    literals_for_iris,
+    local_components,
+    misnamed_units,
+)
+"""The lints that run on every file."""
+TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
+    unlisted_roles,
+    typed_roles,
+    unused_parameters,
+    unlisted_parameters,
+    queried_parameters,
+    impossible_roles,
+    idle_loops,
+    starving_inputs,
+    useless_optional_roles,
+    incommensurable_units,
+    unmet_shapes,
+)
+"""The lints that run on a file only where its templates conform: the others would say what SHACL has said."""
