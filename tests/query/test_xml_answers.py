@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from xml.etree import ElementTree
 
 import pyoxigraph as ox
@@ -46,3 +47,31 @@ def test_a_predicate_that_ends_in_no_name_of_xml_is_named(predicate: str) -> Non
 def test_a_predicate_of_the_syntax_of_rdf_xml_is_named() -> None:
     with pytest.raises(NotAcceptableError, match="rdf-syntax-ns#li>"):
         answered('CONSTRUCT { <urn:s> <http://www.w3.org/1999/02/22-rdf-syntax-ns#li> "v" } {}')
+
+
+SNOMED = "a <http://snomed.info/id/138875005>, <urn:x:1>, <http://x/C>"
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        f'{SNOMED} ; <http://x/p> "v"',
+        f'<http://x/p> "v" ; {SNOMED}',
+        SNOMED,
+        f'{SNOMED} ; <http://www.w3.org/1999/02/22-rdf-syntax-ns#type-> "<rdf:type- "',
+        "<http://x/says> <<( <urn:o> a <urn:x:1> )>>",
+        'a "no class, and not as it may be", _:b',
+    ],
+)
+def test_a_class_is_written_whatever_it_ends_in_and_wherever_it_is_said(said: str) -> None:
+    query = f"CONSTRUCT {{ <urn:s> {said} }} {{}}"
+    found = {str(triple) for triple in ox.parse(answered(query), format=ox.RdfFormat.RDF_XML)}
+    blank = re.compile("_:[0-9a-z]+")
+    assert {blank.sub("_:b", triple) for triple in found} == {
+        blank.sub("_:b", str(triple)) for triple in ox.Store().query(query)
+    }
+
+
+def test_a_predicate_is_named_also_within_a_triple_that_another_is_about() -> None:
+    with pytest.raises(NotAcceptableError, match="cannot write the predicate <urn:x:1>"):
+        answered("CONSTRUCT { <urn:s> <http://x/says> <<( <urn:o> <urn:x:1> <urn:p> )>> } {}")
