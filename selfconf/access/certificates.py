@@ -126,6 +126,13 @@ class Certificate:
         return self.x509.serial_number
 
     @property
+    def public_key(self) -> bytes:
+        """The public key of its holder (RFC 5280, subjectPublicKeyInfo), which stays as it is renewed."""
+        return self.x509.public_key().public_bytes(
+            serialization.Encoding.DER, serialization.PublicFormat.SubjectPublicKeyInfo
+        )
+
+    @property
     def begins(self) -> datetime:
         """From when it is valid."""
         return self.x509.not_valid_before_utc

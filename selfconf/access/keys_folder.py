@@ -19,6 +19,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import os
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import datetime, timedelta, timezone
@@ -135,18 +136,28 @@ class KeysFolder:
                     _write_file(folder / "revoked.pem", listed)
         return len(found)
 
+    def aware(self) -> list[Path]:
+        """The folders that it has issued to and that have what it has revoked, besides those within its own."""
+        folders = dict.fromkeys(self._folders().values())
+        return [one for one in folders if self.path.resolve() not in one.parents and self._has_list(one)]
+
     def unaware(self) -> list[tuple[str, Path | None]]:
         """The sites whose folders lack what this authority has revoked, by common name, each with its folder.
 
         The folder is one that is not where it was issued any more, or that this user may not write; or it is not known.
+        Of a certificate that was renewed, which has the same key, one folder with the list is enough: the one that was
+        renewed may have been elsewhere before.
         """
-        listed, folders = _content(self.path / "revoked.pem"), self._folders()
-        sites = dict.fromkeys((one.common_name, folders.get(one.serial)) for one in self.issued() if self._is_site(one))
-        return [
-            (name, folder)
-            for name, folder in sites
-            if folder is None or not self._is_of_mine(folder) or _content(folder / "revoked.pem") != listed
-        ]
+        folders = self._folders()
+        written: dict[tuple[str, bytes], list[Path | None]] = defaultdict(list)
+        for one in filter(self._is_site, self.issued()):
+            written[one.common_name, one.public_key].append(folders.get(one.serial))
+        lacking = {key: some for key, some in written.items() if not any(one and self._has_list(one) for one in some)}
+        return list(dict.fromkeys((name, some[-1]) for (name, _), some in lacking.items()))
+
+    def _has_list(self, folder: Path) -> bool:
+        """Whether a folder has keys of this authority, and what it has revoked."""
+        return self._is_of_mine(folder) and _content(folder / "revoked.pem") == _content(self.path / "revoked.pem")
 
     def _is_site(self, certificate: Certificate) -> bool:
         """Whether a certificate is that of a site, which is good until now."""

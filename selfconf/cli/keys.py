@@ -111,7 +111,8 @@ def _revoke(given: argparse.Namespace) -> int:
     authority, principal = _authority(given), Principal.written(given.holder)
     number = authority.revoke(principal)
     print(f"revoked {number} certificate{'s' * (number != 1)} of {principal}")
-    print("the folders of keys that were issued on this machine, and are where they were, know it")
+    if authority.aware():
+        print("the folders of keys that were issued on this machine, and are where they were, know it")
     print(f"copy {authority.path / 'revoked.pem'} into the folder of keys of every site on another machine")
     for site, folder in authority.unaware():
         where = "" if folder is None else f", which is not in {folder} any more, or cannot be written"

@@ -145,6 +145,20 @@ def test_a_site_whose_folder_cannot_be_told_what_is_revoked_is_named(authority: 
     assert authority.unaware()[0] == ("site.cellar", None)
 
 
+def test_a_site_whose_folder_was_moved_and_renewed_has_the_list(authority: KeysFolder, tmp_path: Path) -> None:
+    site = Principal(SITE, "attic")
+    authority.issue(site, tmp_path / "before")
+    (tmp_path / "before").rename(tmp_path / "now")
+    authority.renew(tmp_path / "now")
+    authority.issue(ALICE, tmp_path / "alice")
+    authority.revoke(ALICE)
+    assert authority.unaware() == []
+    assert set(authority.aware()) == {tmp_path / "now", tmp_path / "alice"}
+    authority.issue(site, tmp_path / "another")
+    (tmp_path / "another").rename(tmp_path / "away")
+    assert authority.unaware() == [("site.attic", tmp_path / "another")], "it has another key"
+
+
 def test_what_a_host_issues_to_its_components_opens_no_other_door(authority: KeysFolder, tmp_path: Path) -> None:
     authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
     authority.issue(Principal(SITE, "cellar"), tmp_path / "cellar")

@@ -54,6 +54,19 @@ def test_what_is_revoked_is_known_in_the_folders_that_were_issued(
     assert (tmp_path / "attic/revoked.pem").is_file()
 
 
+def test_no_folder_knows_what_is_revoked_where_none_is_left(
+    authority: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    keys = ("--keys", str(authority))
+    run(capsys, "keys", "issue", "conf.carl", *keys, "--out", str(tmp_path / "carl"))
+    (tmp_path / "carl").rename(tmp_path / "elsewhere")
+    said = run(capsys, "keys", "revoke", "conf.carl", *keys).out.splitlines()
+    assert said == [
+        "revoked 1 certificate of conf.carl",
+        f"copy {authority / 'revoked.pem'} into the folder of keys of every site on another machine",
+    ]
+
+
 def test_what_is_wrong_with_a_holder_is_shown(
     authority: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
