@@ -41,7 +41,10 @@ log = logging.getLogger(__name__)
 PROCESS_CHECK = 0.5
 """How often, in seconds, it is looked whether a started process still runs; its end is mostly heard of at once."""
 ENDING_CHECK = 0.02
-"""How often, in seconds, it is looked whether a process that is to end has ended."""
+"""After how many seconds it is first looked whether a process that is to end has ended with all that it has started.
+
+It is looked again when as much time has passed as before, as each look at what has left the session reads about all
+processes of the machine."""
 TERMINATION = 2.0
 """Seconds that a process may take to end before it is killed."""
 UNKILLABLE = 3.0
@@ -252,10 +255,10 @@ class ComponentProgram:
 
     def _check_ending(self, group: ProcessGroup, since: float) -> None:
         waited = self._bus.now() - since
-        if waited > TERMINATION:
+        if waited >= TERMINATION:
             group.kill()
         if not group.gone() and waited < UNKILLABLE:
-            self._check_in(ENDING_CHECK)
+            self._check_in(_next_ending_check(waited))
             return
         self._gone()
         if self._again:
@@ -334,6 +337,13 @@ class ComponentProgram:
 
     def _source(self) -> str:
         return ",".join(sorted(self._asked))
+
+
+def _next_ending_check(waited: float) -> float:
+    """In how many seconds it is looked again at a process that is to end, by the seconds since it was asked to."""
+    if waited < TERMINATION:
+        return max(ENDING_CHECK, min(waited, PROCESS_CHECK, TERMINATION - waited))
+    return max(ENDING_CHECK, min(waited - TERMINATION, PROCESS_CHECK))  # it was killed then
 
 
 def _path() -> str:

@@ -5,7 +5,12 @@ own time. What a process leaves behind when it ends (a shell's child, say) is en
 
 What has left the session (`setsid`, a daemon) is found by a variable that it has inherited, where the system shows the
 environments of processes as Linux does: its parent may have ended long ago. A program that was started with an
-environment of its own making, or for another user, is not found.
+environment of its own making, or for another user, is not found; nor is one without the variable, which so is allowed
+to stay.
+
+A number says what is meant only as long as no other process can have it. That of the group is free once the program has
+been waited for and nothing is left in the group, after which it is never signalled again; a process outside is held by
+a descriptor (pidfd_open(2), where there is such a thing) before it is looked at and signalled.
 """
 
 from __future__ import annotations
@@ -21,7 +26,10 @@ from pathlib import Path
 from selfconf.termination import stopped
 
 GROUP_VARIABLE = "SELFCONF_PROCESS_GROUP"
-"""The variable that each process of a group inherits: a text that no other group has."""
+"""The variable that each process of a group inherits: words apart by spaces, the last of which no other group has.
+
+Those before are of the groups around it: what a component starts may be a site, whose components are of its group too.
+"""
 _PROCESSES = Path("/proc")
 """Where Linux shows the processes."""
 
@@ -32,10 +40,12 @@ class ProcessGroup:
     def __init__(self, words: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
         """Start it. Raises OSError or ValueError for a command that cannot be started."""
         self._mark = secrets.token_hex(8)
+        self._empty = False
+        """Whether nothing is left in the group, so that its number may be another's."""
         self._process = subprocess.Popen(
             list(words),
             cwd=folder,
-            env={**environment, GROUP_VARIABLE: self._mark},
+            env={**environment, GROUP_VARIABLE: f"{environment.get(GROUP_VARIABLE, '')} {self._mark}".strip()},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -82,24 +92,51 @@ class ProcessGroup:
         return True
 
     def _signalled(self, number: int) -> bool:
-        """Send a signal to all of the group, and to what has left it; return whether a process has received it.
-
-        The number of a group belongs to no other group as long as the program has not been waited for, or one of the
-        group is left.
-        """
-        reached = _reached(os.killpg, self.number, number)
+        """Send a signal to all of the group, and to what has left it; return whether a process has received it."""
+        reached = self._has_number() and _reached(os.killpg, self.number, number)
         for process in self._outside():
-            reached = _reached(os.kill, process, number) or reached
+            reached = self._sent_outside(process, number) or reached
         return reached
+
+    def _has_number(self) -> bool:
+        """Whether the number of the group is still its own.
+
+        No other process and no other group has it as long as the program has not been waited for, or one of the group
+        is left. So a process of that number is a later one, which may have come since the group was last looked at.
+        """
+        if self._process.returncode is not None and not self._empty:
+            self._empty = _reached(os.kill, self.number, 0) or not _reached(os.killpg, self.number, 0)
+        return not self._empty
 
     def _outside(self) -> Iterator[int]:
         """The processes that this one has started, or those in turn, and that have left its group."""
-        mark = f"{GROUP_VARIABLE}={self._mark}".encode()
         for environment in _PROCESSES.glob("[0-9]*/environ"):
             process = int(environment.parent.name)
-            with suppress(OSError):  # it has ended, or it is another user's
-                if mark in environment.read_bytes().split(b"\0") and os.getpgid(process) != self.number:
-                    yield process
+            if self._is_outside(process):
+                yield process
+
+    def _is_outside(self, process: int) -> bool:
+        with suppress(OSError):  # it has ended, or it is another user's
+            for line in (_PROCESSES / str(process) / "environ").read_bytes().split(b"\0"):
+                name, _, words = line.partition(b"=")
+                if name == GROUP_VARIABLE.encode() and self._mark.encode() in words.split():
+                    return os.getpgid(process) != self.number
+        return False
+
+    def _sent_outside(self, process: int, number: int) -> bool:
+        """Send a signal to a process outside, unless its number has become another's; return whether it was sent."""
+        if not hasattr(os, "pidfd_open") or not hasattr(signal, "pidfd_send_signal"):
+            return _reached(os.kill, process, number)
+        try:
+            held = os.pidfd_open(process)
+        except ProcessLookupError:
+            return False
+        except OSError:  # a kernel without it, or no descriptor is left
+            return _reached(os.kill, process, number)
+        try:
+            return self._is_outside(process) and _reached(signal.pidfd_send_signal, held, number)
+        finally:
+            os.close(held)
 
 
 def _reached(send: Callable[[int, int], None], receiver: int, number: int) -> bool:

@@ -249,6 +249,25 @@ def test_a_process_that_does_not_want_to_end_is_killed_with_all_that_it_started(
     assert not any(map(alive, runs(tmp_path)))
 
 
+def test_what_a_process_leaves_behind_is_looked_at_less_and_less_often(
+    network: Network, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[bool] = []
+
+    class Counting(ProcessGroup):
+        def gone(self) -> bool:
+            looks.append(super().gone())
+            return looks[-1]
+
+    monkeypatch.setattr(component_program, "ProcessGroup", Counting)
+    deaf = "import os, signal; signal.signal(signal.SIGTERM, signal.SIG_IGN)"
+    made = site(python(f"{deaf}; os.fork() and os._exit(0); os.setsid()"))
+    made.start(SLEEPER)
+    assert live(network, lambda: bool(looks) and program(made).group is None)
+    assert looks[-1]
+    assert len(looks) < 15  # within two seconds
+
+
 def test_a_frozen_process_is_ended_without_going_on(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -83,6 +84,83 @@ def test_what_has_left_the_session_is_ended_too(groups: list[ProcessGroup], tmp_
     assert group.wait(10)
     assert until(lambda: not alive(child))
     assert until(group.gone)
+
+
+def test_the_number_of_a_group_is_not_signalled_once_it_may_be_another_programs(
+    groups: list[ProcessGroup], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = CHILD.replace("pause()'])", "pause()'], start_new_session=True)")
+    group = started(groups, tmp_path, left + "os._exit(0)")
+    assert group.wait(10)
+    child = int((tmp_path / "child").read_text())
+    assert not group.gone()
+    later = subprocess.Popen([sys.executable, "-c", "import signal; signal.pause()"], start_new_session=True)
+    try:
+        monkeypatch.setattr(group, "number", later.pid)  # as if the system had given the number once more
+        group.terminate()
+        group.kill()
+        assert until(lambda: not alive(child))
+        assert group.gone()
+        assert later.poll() is None
+    finally:
+        later.kill()
+        later.wait(10)
+
+
+def test_a_later_process_of_the_number_of_a_group_is_not_taken_for_it(
+    groups: list[ProcessGroup], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    group = started(groups, tmp_path, "pass")
+    assert group.wait(10)
+    later = subprocess.Popen([sys.executable, "-c", "import signal; signal.pause()"], start_new_session=True)
+    try:
+        monkeypatch.setattr(group, "number", later.pid)
+        assert group.gone()
+        group.kill()
+        assert later.poll() is None
+    finally:
+        later.kill()
+        later.wait(10)
+
+
+def test_what_ignores_the_variable_is_still_ended_in_the_group(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    group = started(groups, tmp_path, CHILD.replace("pause()'])", "pause()'], env={})") + "os._exit(0)")
+    assert group.wait(10)
+    child = int((tmp_path / "child").read_text())
+    assert not group.gone()
+    group.kill()
+    assert until(lambda: not alive(child))
+
+
+def test_what_has_left_the_session_without_the_variable_is_left_alone(
+    groups: list[ProcessGroup], tmp_path: Path
+) -> None:
+    code = CHILD.replace("pause()'])", "pause()'], env={}, start_new_session=True)")
+    group = started(groups, tmp_path, code + "os._exit(0)")
+    assert group.wait(10)
+    child = int((tmp_path / "child").read_text())
+    try:
+        group.kill()
+        assert until(group.gone)
+        assert alive(child)
+    finally:
+        os.kill(child, signal.SIGKILL)
+
+
+def test_what_a_group_inside_of_a_group_has_started_belongs_to_both(groups: list[ProcessGroup], tmp_path: Path) -> None:
+    inner = (
+        "import os, sys; from pathlib import Path; from selfconf.site.process_group import ProcessGroup;"
+        'code = \'import signal; open("ready", "w"); signal.pause()\';'
+        "print(ProcessGroup([sys.executable, '-c', code], Path(), os.environ).number, file=open('child', 'w'));"
+        "os._exit(0)"
+    )
+    group = started(groups, tmp_path, inner)
+    assert group.wait(10)
+    assert until((tmp_path / "ready").exists)
+    child = int((tmp_path / "child").read_text())
+    assert not group.gone()
+    group.kill()
+    assert until(lambda: not alive(child))
 
 
 def test_what_another_program_has_started_is_left_alone(groups: list[ProcessGroup], tmp_path: Path) -> None:
