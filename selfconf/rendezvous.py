@@ -16,10 +16,10 @@ import os
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, field, replace
+from io import FileIO
 from pathlib import Path
-from typing import IO
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import client
@@ -28,7 +28,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
-from selfconf.termination import alive, start_time
+from selfconf.termination import alive, start_time, stopped
 
 ECOLOGY_VARIABLE = "SELFCONF_ECOLOGY"
 """The variable that names the ecology of a program to which none is given."""
@@ -40,8 +40,6 @@ ONTOLOGY_VARIABLE = "SELFCONF_ONTOLOGY"
 """The variable with the ontologies of a site, apart as the folders of $PATH are; its components are checked by them."""
 LIFE_VARIABLE = "SELFCONF_LIFE"
 """The variable with the life that a site gives to the components of a program that it starts, so that it knows them."""
-SEEN_AFTER = 2.0
-"""Seconds after which a program that has claimed the name of a task is seen to run it, unless it is suspended."""
 ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
 PLACES = 4
@@ -142,10 +140,33 @@ def _locked(descriptor: int, deadline: float) -> bool:
             return True
 
 
+@immutable
+class LocalTask:
+    """A task whose name a program of this machine has claimed, and the process of the program."""
+
+    ecology: str
+    name: str
+    process: int
+    started: str
+    """When the process began, to tell it from a later one with its number; empty where not known."""
+    endpoints: Sequence[str]
+    """Those by which the program has joined: on another network there may be another ecology of this name."""
+
+    def __str__(self) -> str:
+        return (
+            f"process {self.process} of this machine, which runs the task {self.name!r}, is suspended;"
+            f" `kill -CONT {self.process}` lets it go on"
+        )
+
+    def is_suspended(self) -> bool:
+        """Whether the process was stopped by a signal and has not gone on, as after Ctrl-Z."""
+        return stopped(self.process) and start_time(self.process) == self.started
+
+
 class ClaimedName:
     """The name of a task that a program of this machine has, until it is released or the program has ended."""
 
-    def __init__(self, name: str, file: IO[str] | None = None) -> None:
+    def __init__(self, name: str, file: FileIO | None = None) -> None:
         self.name = name
         self._file = file
         """The file that is locked; None where the runtime folder cannot be written in."""
@@ -164,10 +185,11 @@ class ClaimedName:
             file.close()
 
 
-def claim(ecology: str, name: str) -> ClaimedName | None:
+def claim(ecology: str, name: str, endpoints: Sequence[str]) -> ClaimedName | None:
     """Claim the name of a task of an ecology; None if another program of this machine has it, or is about to.
 
-    Programs that begin in the same moment do not see each other in the ecology yet.
+    Programs that begin in the same moment do not see each other in the ecology yet. The endpoints, by which this
+    program has joined the ecology, are for others to see.
     """
     try:
         with _writing() as root:
@@ -176,33 +198,36 @@ def claim(ecology: str, name: str) -> ClaimedName | None:
             file = _locked_file(folder / f"{ecology}@{name}")
     except NetworkError:
         return ClaimedName(name)
-    return None if file is None else ClaimedName(name, file)
+    if file is None:
+        return None
+    task = LocalTask(ecology, name, os.getpid(), start_time(os.getpid()), endpoints)
+    with suppress(OSError):  # the disk is full: the name is claimed by the lock
+        file.truncate(0)  # what a program that was killed has left
+        file.write(json.dumps(asdict(task)).encode())
+    return ClaimedName(name, file)
 
 
-def claimed(ecology: str, seconds: float = SEEN_AFTER) -> tuple[str, ...]:
-    """The names of tasks of an ecology that programs of this machine have had for that many seconds, sorted."""
-    begin = f"{ecology}@"
-    files = sorted((runtime_folder() / "tasks").glob("*"))
-    return tuple(f.name.removeprefix(begin) for f in files if f.name.startswith(begin) and _held_for(f, seconds))
+def suspended_tasks(ecology: str, endpoints: Sequence[str]) -> tuple[LocalTask, ...]:
+    """The tasks of an ecology that suspended programs of this machine run, sorted by name.
+
+    Only of programs that have joined by one of the endpoints. No file is locked, which would keep others from a name.
+    """
+    found = []
+    for path in _files("tasks/*"):
+        try:
+            task = LocalTask(**json.loads(path.read_bytes()))
+            joined = task.ecology == ecology and not set(endpoints).isdisjoint(task.endpoints)
+            if joined and task.is_suspended():
+                found.append(task)
+        except (OSError, ValueError, TypeError):  # it was released, is being written, or is the folder of a site
+            continue
+    return tuple(found)
 
 
-def _held_for(path: Path, seconds: float) -> bool:
-    """Whether a program has locked a file, and that many seconds ago."""
-    try:
-        with path.open() as file:
-            if time.time() - os.fstat(file.fileno()).st_mtime >= seconds:
-                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:  # it was released, or is the folder of a site
-        pass
-    return False
-
-
-def _locked_file(path: Path) -> IO[str] | None:
+def _locked_file(path: Path) -> FileIO | None:
     """Open and lock a file that is removed before it is unlocked; None if another process has locked it."""
     while True:
-        file = path.open("w")
+        file = FileIO(path, "a")  # that of another process stays as it is
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if os.path.samestat(os.fstat(file.fileno()), path.stat()):
@@ -263,13 +288,17 @@ def _is_the_same(site: LocalSite, path: Path) -> bool:
     return time.time() - since_boot < path.stat().st_mtime + 1.0  # it began before the file was written
 
 
+def _files(pattern: str) -> list[Path]:
+    """The files of the runtime folder that match a pattern, sorted; none where it belongs to another user."""
+    root = runtime_folder()
+    mine = root.is_dir() and root.stat().st_uid == os.getuid()
+    return sorted(root.glob(pattern)) if mine else []
+
+
 def local_sites(ecology: str | None = None) -> list[LocalSite]:
     """The sites that run on this machine, of one ecology or of all, sorted."""
     found: list[LocalSite] = []
-    root = runtime_folder()
-    if not root.is_dir() or root.stat().st_uid != os.getuid():
-        return found
-    for path in sorted(root.glob("*.json")):
+    for path in _files("*.json"):
         try:
             site = LocalSite(**json.loads(path.read_text()))
             living = alive(int(site.process)) and _is_the_same(site, path)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -16,6 +18,7 @@ from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.term import IRI
 from selfconf.rendezvous import LocalSite, usual_endpoints
 from selfconf.termination import start_time
+from tests.suspended_run import suspended_run
 
 
 def meeting(ecology: str = "home", site: str = "a", process: int | None = None) -> LocalSite:
@@ -246,33 +249,89 @@ def test_a_process_of_components_has_keys_that_speak_for_each_of_them(tmp_path: 
 
 
 def test_a_name_that_is_claimed_is_free_again_when_it_is_released_or_its_process_ends(runtime_folder: Path) -> None:
-    program = "from selfconf.rendezvous import claim; claimed = claim('home', 'patrol'); print(claimed.name); input()"
+    program = (
+        "from selfconf.rendezvous import claim; claimed = claim('home', 'patrol', []); print(claimed.name); input()"
+    )
     with subprocess.Popen(
         [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as other:
         assert other.stdout is not None
         assert other.stdout.readline() == "patrol\n"
-        assert rendezvous.claim("home", "patrol") is None
-        with rendezvous.claim("office", "patrol") or pytest.fail("none"):
+        assert rendezvous.claim("home", "patrol", []) is None
+        with rendezvous.claim("office", "patrol", []) or pytest.fail("none"):
             assert sorted(path.name for path in (runtime_folder / "tasks").iterdir()) == [
                 "home@patrol",
                 "office@patrol",
             ]
         other.kill()
-    assert rendezvous.claimed("home", 0.0) == ()  # its file may be left
-    claimed = rendezvous.claim("home", "patrol")
+    claimed = rendezvous.claim("home", "patrol", [])
     assert claimed is not None
-    assert rendezvous.claim("home", "patrol") is None
-    assert (rendezvous.claimed("home", 0.0), rendezvous.claimed("home", 60.0)) == (("patrol",), ())
-    assert rendezvous.claimed("office", 0.0) == ()
+    assert rendezvous.claim("home", "patrol", []) is None
     claimed.release()
     claimed.release()
     assert list((runtime_folder / "tasks").iterdir()) == []
+
+
+def names_of_suspended(ecology: str, *endpoints: str) -> list[str]:
+    """The names of the tasks that suspended programs run, as one sees them that has joined by some endpoints."""
+    return [task.name for task in rendezvous.suspended_tasks(ecology, endpoints)]
+
+
+def test_a_suspended_program_is_seen_by_those_that_have_joined_where_it_has_until_it_goes_on_or_ends(
+    runtime_folder: Path,
+) -> None:
+    (runtime_folder / "tasks" / "folder-of-a-site").mkdir(parents=True)
+    (runtime_folder / "tasks" / "home@half-written").write_text('{"ecology": "home"')
+    here, there, elsewhere = "tcp/127.0.0.1:7001", "tcp/127.0.0.1:7002", "tcp/127.0.0.1:7003"
+    with rendezvous.claim("home", "tidy", [here]) or pytest.fail("none"):  # which goes on
+        with suspended_run("home", "patrol", here, there) as program:
+            (task,) = rendezvous.suspended_tasks("home", [there, elsewhere])
+            assert (task.name, task.process) == ("patrol", program.pid)
+            assert str(task).startswith(f"process {program.pid} of this machine, which runs the task 'patrol', is susp")
+            assert names_of_suspended("home", elsewhere) == names_of_suspended("office", here) == []
+            program.send_signal(signal.SIGCONT)
+            assert os.WIFCONTINUED(os.waitpid(program.pid, os.WCONTINUED)[1])
+            assert names_of_suspended("home", here) == []
+        assert (runtime_folder / "tasks" / "home@patrol").exists()  # it was killed
+        assert names_of_suspended("home", here) == []
+
+
+def test_a_suspended_process_that_has_by_now_the_number_of_one_that_ran_a_task_is_another(runtime_folder: Path) -> None:
+    with suspended_run("home", "patrol", "tcp/127.0.0.1:7001"):
+        path = runtime_folder / "tasks" / "home@patrol"
+        path.write_text(json.dumps({**json.loads(path.read_text()), "started": "1"}))
+        assert names_of_suspended("home", "tcp/127.0.0.1:7001") == []
+
+
+def test_a_claim_that_is_refused_leaves_the_program_that_has_the_name_as_it_was_seen() -> None:
+    with suspended_run("home", "patrol", "tcp/127.0.0.1:7001"):
+        assert rendezvous.claim("home", "patrol", ["tcp/127.0.0.1:7002"]) is None
+        assert names_of_suspended("home", "tcp/127.0.0.1:7001") == ["patrol"]
+
+
+def test_a_claim_that_follows_one_of_a_program_that_was_killed_says_nothing_of_that(runtime_folder: Path) -> None:
+    path = runtime_folder / "tasks" / "home@patrol"
+    path.parent.mkdir()
+    path.write_text("x" * 1000)
+    with rendezvous.claim("home", "patrol", ["tcp/127.0.0.1:7001"]) or pytest.fail("none"):
+        assert json.loads(path.read_text())["process"] == os.getpid()
+
+
+def test_a_look_at_what_is_claimed_keeps_no_program_from_a_name(
+    runtime_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file of a program that was killed is read; any lock on it would be in the way of the next claim."""
+    with suspended_run("home", "patrol", "tcp/127.0.0.1:7001"):
+        pass
+    locked = list[object]()
+    monkeypatch.setattr(fcntl, "flock", lambda *given: locked.append(given))
+    rendezvous.suspended_tasks("home", ["tcp/127.0.0.1:7001"])
+    assert locked == []
 
 
 def test_where_nothing_can_be_written_every_name_can_be_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "file" / "runtime"))
     for _ in range(2):
-        with rendezvous.claim("home", "patrol") or pytest.fail("none") as claimed:
+        with rendezvous.claim("home", "patrol", []) or pytest.fail("none") as claimed:
             assert claimed.name == "patrol"

@@ -87,7 +87,7 @@ class LivingEcology(Ecology):
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self._synchronous = SynchronousBus(self._bus)
-        self._tasks = LivingTasks(self._synchronous, self._view.keys)
+        self._tasks = LivingTasks(self._synchronous, self._view.keys, self.endpoints)
         try:
             if not any(self._sites_answer(pause) for pause in PAUSES):
                 raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
@@ -277,7 +277,7 @@ class LivingEcology(Ecology):
 
         A run of this machine that is not even seen, as it is suspended, is there by the name of its task.
         """
-        return (*self._tasks.silent, *self._tasks.unseen)
+        return (*self._tasks.silent, *(one.name for one in self._tasks.suspended))
 
     def _complaining(self, found: _Result) -> _Result:
         """Take over what was wrong with what configurators have answered."""

@@ -16,7 +16,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
-from selfconf.rendezvous import ClaimedName, claim, claimed
+from selfconf.rendezvous import ClaimedName, LocalTask, claim, suspended_tasks
 
 COMING_TO_REST = 5.0
 """Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""
@@ -117,12 +117,13 @@ class SilentHolder:
 class LivingTasks:
     """Lists the tasks of an ecology, hands it others, and takes them down."""
 
-    def __init__(self, bus: SynchronousBus, keys: Keys) -> None:
-        self._bus, self._keys = bus, keys
+    def __init__(self, bus: SynchronousBus, keys: Keys, endpoints: Sequence[str]) -> None:
+        """The bus has joined by some endpoints; runs of this machine that have joined by others are not looked at."""
+        self._bus, self._keys, self._endpoints = bus, keys, endpoints
         self.silent: tuple[str, ...] = ()
         """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
-        self.unseen: tuple[str, ...] = ()
-        """The tasks that programs of this machine run, but of which nothing tells, as of the last question, sorted."""
+        self.suspended: tuple[LocalTask, ...] = ()
+        """The tasks of suspended programs of this machine of which nothing else tells, as of the last question."""
         self.complaints: tuple[str, ...] = ()
         """What was wrong with the answers of configurators, as of the last question, and which sites have one name."""
         self._holding: list[SilentHolder] = []
@@ -131,8 +132,8 @@ class LivingTasks:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name.
 
         A configurator that is suspended is not seen to live any more before the components that it holds are at rest:
-        `by_components`, these are asked as well by which configurator each of them is held, and then this machine which
-        tasks its programs run.
+        `by_components`, these are asked as well by which configurator each of them is held. A program of this machine
+        that is suspended is seen for as long as it is.
         """
         living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
         found, rejected = _statuses(self._bus.ask(self._keys.configurator_call("*", "status")), self._keys)
@@ -143,8 +144,9 @@ class LivingTasks:
         rejected += map(str, self._holding)
         self.silent = tuple(sorted((living - answered) | holding))
         named = {status.name for status in found}.union(task_name(one.task) for one in self._holding)
-        self.unseen = tuple(one for one in claimed(self._keys.ecology) if one not in named) if by_components else ()
-        rejected += map(_said_of_unseen, self.unseen)
+        suspended = suspended_tasks(self._keys.ecology, self._endpoints)
+        self.suspended = tuple(one for one in suspended if one.name not in named)
+        rejected += map(str, self.suspended)
         self.complaints = (*rejected, *namesakes(self._bus.living(self._keys.any_site_life())))
         return tuple(sorted(found, key=lambda status: status.configurator))
 
@@ -183,7 +185,7 @@ class LivingTasks:
         taken |= {task_name(record.task) for record in _records(kept)}
         further = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2)) if numbered else ()
         for name in chain([wanted], further):
-            claimed = None if name in taken else claim(self._keys.ecology, name)
+            claimed = None if name in taken else claim(self._keys.ecology, name, self._endpoints)
             if claimed is not None:
                 return claimed
         raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
@@ -211,11 +213,11 @@ class LivingTasks:
         holding = [one for one in self._holding if one.is_meant(name)]
         unanswered = {record.task for record in kept}.difference(status.task for status in running)
         silent = self._silent_beside_holders(None if unanswered else name)
-        unseen = _meant(self.unseen, name)
+        suspended = [one for one in self.suspended if name in (None, one.name)]
         if name is not None and not kept:
-            _check_there(name, silent, [*running, *holding, *unseen])
+            _check_there(name, silent, [*running, *holding, *suspended])
         self._take_down(running, kept)
-        _raise_for([*self._disobedience(running), *self._unheard(silent, holding, unseen)])
+        _raise_for([*self._disobedience(running), *self._unheard(silent, holding), *map(str, suspended)])
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
@@ -223,7 +225,7 @@ class LivingTasks:
         """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
         return _meant(self.silent, name).difference(one.configurator for one in self._holding)
 
-    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder], unseen: set[str]) -> Iterator[str]:
+    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
         """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest."""
         if silent:  # one that is suspended is no longer seen to live after a while
             living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
@@ -235,7 +237,6 @@ class LivingTasks:
             act_on = self._after_some_time((component, one.task) for component in one.components)
             at_rest = "they have come to rest, and if it was suspended, it takes them again when it goes on"
             yield f"{one}; {'they act on' if act_on else at_rest}"
-        yield from map(_said_of_unseen, sorted(unseen.intersection(claimed(self._keys.ecology))))
 
     def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
         """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
@@ -363,10 +364,6 @@ def _check_there(name: str, silent: Iterable[str], found: Sequence[object]) -> N
     _raise_for(map(_said_of_silent, sorted(silent)))
     if not found:
         raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
-
-
-def _said_of_unseen(task: str) -> str:
-    return f"a program of this machine runs the task {task!r}, but does not answer; if it is suspended, it will go on"
 
 
 def _raise_for(troubles: Iterable[str]) -> None:

@@ -144,7 +144,8 @@ class Run:
 
     def _claimed_name(self, bus: ZenohBus) -> ClaimedName:
         """A name that no other task of the ecology has: `stop` goes by it. Raises NetworkError for a given one."""
-        tasks = LivingTasks(SynchronousBus(bus, ROLL_CALL if self._named else TASKS_CALL), Keys(self._ecology))
+        asking = SynchronousBus(bus, ROLL_CALL if self._named else TASKS_CALL)
+        tasks = LivingTasks(asking, Keys(self._ecology), self._endpoints)
         return tasks.claim(self.wanted_name, numbered=not self._named)
 
     def _in_ecology(self) -> _Begun:

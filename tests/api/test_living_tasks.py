@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf import rendezvous
 from selfconf.api.living_tasks import LivingTask, LivingTasks
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.bus.memory import Network
@@ -18,8 +17,10 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import CallAnswer, Status, TaskRecord, Verdict
+from tests.suspended_run import suspended_run
 
 KEYS = Keys("lab")
+HERE = "tcp/127.0.0.1:7001"
 TEMPLATE = IRI("urn:t:navigate")
 DRIVE = IRI("urn:c#drive")
 AT_REST = CallAnswer(Verdict.DONE, DRIVE, "l1", place="process 7 on lab")
@@ -31,7 +32,7 @@ class Tasks:
 
     def __init__(self) -> None:
         self.network = Network()
-        self.asked = LivingTasks(SynchronousBus(self.network.node()), KEYS)
+        self.asked = LivingTasks(SynchronousBus(self.network.node()), KEYS, [HERE])
         self.kept: list[TaskRecord] = []
 
     def configurator(
@@ -261,24 +262,34 @@ def test_a_configurator_that_has_not_answered_is_an_error_though_all_rests_and_i
         tasks.asked.stop()
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("name", [None, "patrol"])
-def test_a_run_of_this_machine_that_has_vanished_but_not_ended_is_named_by_its_task(
-    tasks: Tasks, name: str | None, monkeypatch: pytest.MonkeyPatch
+def test_a_run_of_this_machine_that_is_suspended_and_not_seen_is_named_by_its_task(
+    tasks: Tasks, name: str | None
 ) -> None:
     """One that has been suspended for longer has lost its link, and its components are at rest and free."""
-    monkeypatch.setattr(rendezvous.claimed, "__defaults__", (0.0,))
     tasks.configurator("c1", TIDY.task)
-    with tasks.asked.claim("patrol"), tasks.asked.claim("tidy-2", numbered=True) as begun:
-        begun.release()
+    with suspended_run("lab", "patrol", HERE), suspended_run("lab", "tidy", HERE):  # tidy is seen, and answers
         tasks.asked.running()
-        assert (tasks.asked.unseen, tasks.asked.complaints) == ((), ())
-        tasks.asked.running(by_components=True)
-        assert tasks.asked.unseen == ("patrol",)
-        with pytest.raises(NetworkError, match=r"^a program of this machine runs the task .patrol., but does"):
+        assert [task.name for task in tasks.asked.suspended] == ["patrol"]
+        assert tasks.asked.complaints == tuple(map(str, tasks.asked.suspended))
+        with pytest.raises(NetworkError, match=r"^process \d+ of this machine, which runs the task .patrol., is susp"):
             tasks.asked.stop(name)
     assert (tasks.asked.running() == ()) == (name is None)
-    tasks.asked.running(by_components=True)
-    assert tasks.asked.unseen == ()
+    assert tasks.asked.suspended == ()
+
+
+@pytest.mark.process
+def test_a_run_of_this_machine_in_another_ecology_of_the_name_is_nothing_to_this_one(tasks: Tasks) -> None:
+    with suspended_run("lab", "patrol", "tcp/127.0.0.1:7002"):
+        assert tasks.asked.stop() == ()
+        assert (tasks.asked.suspended, tasks.asked.complaints) == ((), ())
+
+
+def test_a_run_of_this_machine_that_is_not_suspended_is_not_named_before_it_is_seen(tasks: Tasks) -> None:
+    with tasks.asked.claim("patrol"):
+        assert tasks.asked.stop() == ()
+        assert (tasks.asked.suspended, tasks.asked.complaints) == ((), ())
 
 
 @pytest.mark.parametrize("kept", [True, False])

@@ -97,13 +97,12 @@ def test_no_moment_passes_in_which_a_run_that_is_suspended_acts_and_is_not_named
     assert stopped.code == 2
     assert f"the configurator {name!r}" in stopped.err
     assert inhabited.until(lambda: inhabited.active(*EVERYBODY) == set())
-    monkeypatch.setenv(
-        "SELFCONF_RUNTIME_DIR", str(inhabited.runtime)
-    )  # commands on the machine of the run see its name
-    assert inhabited.until(lambda: f"the task {status['task']!r}" in command(capsys, "status", *where).err)
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(inhabited.runtime))  # commands on its machine see the run itself
+    said = f"process {status['process']} of this machine, which runs the task {status['task']!r}, is suspended"
+    assert inhabited.until(lambda: said in command(capsys, "status", *where).err)
     for asked in ("status", "stop"):
         found = command(capsys, asked, *where)
-        assert (found.code, f"runs the task {status['task']!r}, but does not answer" in found.err) == (2, True)
+        assert (found.code, said in found.err) == (2, True)
     run.send(signal.SIGCONT)
     run.act("running")
     assert run.end(signal.SIGINT) == 0
