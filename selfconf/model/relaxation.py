@@ -27,6 +27,8 @@ class Addition:
     """The names of outputs that an interaction asks for; the others may be called anything."""
     values: tuple[tuple[str, Term | None], ...] = ()
     """Of free parameters, by name, the value that each component must admit; None if it must not state any."""
+    shared: tuple[str, ...] = ()
+    """The free parameters, by name, of which they state the value that other additions state as well."""
 
     def __str__(self) -> str:
         return self.worded("")
@@ -75,7 +77,7 @@ class AddComponents:
     code: ClassVar[str] = "add-components"
     additions: tuple[Addition, ...]
     shared: tuple[str, ...] = ()
-    """The free parameters, by name, of which all of them have to state one value, whichever that is."""
+    """The free parameters, by name, of which all that share them have to state one value, whichever that is."""
     place: Place | None = field(default=None, kw_only=True, compare=False)
     """Where the role or component to be changed is described, if that is known."""
 
@@ -89,8 +91,13 @@ class AddComponents:
 
     @property
     def _sharing(self) -> str:
-        all_ = "both" if sum(one.count for one in self.additions) == 2 else "all"
-        return "".join(f", with one {name} for {all_}" for name in self.shared)
+        return "".join(f", with one {name} for {self._those_that_share(name)}" for name in self.shared)
+
+    def _those_that_share(self, name: str) -> str:
+        roles = dict.fromkeys(one.role.short for one in self.additions if name in one.shared)
+        if roles and len(roles) < len({one.role for one in self.additions}):
+            return f"those for the role{'s' if len(roles) > 1 else ''} {listed(roles)}"
+        return "both" if sum(one.count for one in self.additions) == 2 else "all"
 
 
 @immutable

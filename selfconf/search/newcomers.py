@@ -78,7 +78,7 @@ def with_mentioned_variables(problem: Problem) -> Problem:
 
 def without_values(asked: AddComponents) -> AddComponents:
     """Return additions of which no values of parameters are known."""
-    return replace(asked, additions=tuple(replace(one, values=()) for one in asked.additions), shared=())
+    return replace(asked, additions=tuple(replace(one, values=(), shared=()) for one in asked.additions), shared=())
 
 
 def with_values(problem: Problem, asked: AddComponents, playing: Sequence[Sequence[Candidate]]) -> AddComponents:
@@ -89,7 +89,7 @@ def with_values(problem: Problem, asked: AddComponents, playing: Sequence[Sequen
     names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
     index = _index(problem)
     values: list[dict[str, Term | None]] = [{} for _ in asked.additions]
-    shared = []
+    shared: dict[str, list[int]] = {}
     for variable, left in zip(problem.variables, _left(problem, playing), strict=True):
         name, stating = names[variable.parameter], []
         for number, one in enumerate(asked.additions):
@@ -106,9 +106,14 @@ def with_values(problem: Problem, asked: AddComponents, playing: Sequence[Sequen
             for number in stating:
                 values[number][name] = value
         elif sum(asked.additions[number].count for number in stating) > 1:
-            shared.append(name)
+            shared[name] = stating
     additions = tuple(
-        replace(one, values=tuple(some.items())) for one, some in zip(asked.additions, values, strict=True)
+        replace(
+            one,
+            values=tuple(values[number].items()),
+            shared=tuple(name for name, stating in shared.items() if number in stating),
+        )
+        for number, one in enumerate(asked.additions)
     )
     return replace(asked, additions=additions, shared=tuple(shared))
 

@@ -57,6 +57,13 @@ WORDED: list[tuple[Relaxation, str]] = [
     ),
     (AddComponents((Addition(EYE, 3),), ("robot",)), "add 3 more components for the role eye, with one robot for all"),
     (
+        AddComponents((Addition(EYE, 2, shared=("robot",)), Addition(MIND, 2)), ("robot",)),
+        (
+            "add 2 more components for the role eye and 2 more components for the role mind,"
+            " with one robot for those for the role eye"
+        ),
+    ),
+    (
         AddComponents((Addition(EYE, 2, (Output("reset()", ()),), frozenset(("reset()",))),)),
         "add 2 more components for the role eye that offer an operation by the name 'reset'",
     ),

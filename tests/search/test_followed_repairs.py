@@ -23,7 +23,7 @@ ADDED = re.compile(
     r"(one|\d+) more components? for the role (\w+)( to recruit)?(?: that issues? (.*?))?"
     r"(?:, with robot (\w+)|, with (no robot))?(?=$|(?:,| and) (?:one|\d+) more)"
 )
-SHARED = re.compile(r", with one robot for (?:both|all)$")
+SHARED = re.compile(r", with one robot for (?:both|all|those for the roles? ([\w, ]+))$")
 ISSUED = re.compile(r"(\w+)(?: in (\w+))?( as the sc:accepts of its input asks)?(?: by the output '(\w+)')?(?:, |$)")
 IN_METRES = "sc:accepts [ sh:property [ sh:path sc:unit ; sh:hasValue unit:M ] ]"
 ANY_ROBOT = ("A", "B", "D")
@@ -33,6 +33,17 @@ PARAMETER_AS = {
     "must": "sh:in ( :robot ) ; sh:minCount 1",
     "value": "sh:hasValue :robot",
 }
+ALTERNATIVES: dict[str, list[str | None]] = {
+    " ; sh:not [ sh:property [ sh:path :on ; sh:minCount 1 ] ]": [None],
+    " ; sh:or ( [ sh:property [ sh:path :on ; sh:hasValue :A ] ] [ sh:property [ sh:path :on ; sh:hasValue :B ] ] )": [
+        "A",
+        "B",
+    ],
+    " ; sh:xone ( [ sh:property [ sh:path :on ; sh:maxCount 0 ] ] [ sh:property [ sh:path :on ; sh:in ( :B ) ] ] )": [
+        "B",
+    ],
+}
+"""Alternatives of a role, and what a component may state where they are all that its shape says of the property."""
 
 
 class Roles:
@@ -44,12 +55,19 @@ class Roles:
         self.about: dict[str, str] = {}
         self.on: dict[str, tuple[str, list[str]]] = {}
         """How the parameter stands in the shape of a role, if it does, and which values the role lists besides."""
+        self.alternatives: dict[str, list[str | None]] = {}
+        """What a component may state for a role that has alternatives."""
         for role in [f"r{k}" for k in range(number)]:
             count = rng.choice(["", "", "", " ; sc:minCount 2", " ; sc:minCount 0"])
             recruits = rng.choice(["", "", "", " ; sc:recruits true", " ; sc:recruits [ sh:class :HELPER ]"])
             where = self._where(rng, role) if self.parameter and rng.random() < 0.7 else ""
             named = rng.choice([*[""] * 7, f" ; sh:in ( :c{role}0 :elsewhere )"])
-            self.about[role] = f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where}{named}{recruits} ."
+            alternatives = rng.choice([*[""] * 7, *ALTERNATIVES])
+            if alternatives:
+                self.alternatives[role] = ALTERNATIVES[alternatives]
+            self.about[role] = (
+                f":{role} a sc:Role ; sh:class :{role.upper()}{count}{where}{named}{alternatives}{recruits} ."
+            )
 
     def _where(self, rng: random.Random, role: str) -> str:
         kind, listed = rng.choice(["may", "may", "must", "value"]), rng.choice(["", "", "A", "A B", "B C"]).split()
@@ -63,7 +81,9 @@ class Roles:
         """What a component states that is made for a role by its shape alone: any value that the shape permits."""
         kind, listed = self.on.get(role, ("may", []))
         may = [one for one in (ANY_ROBOT[:1] if self.bound else listed or ANY_ROBOT) if not listed or one in listed]
-        return rng.choice([*may, *([None] if kind == "may" else [])] or [None])
+        permitted: list[str | None] = [*may, *([None] if kind == "may" else [])] or [None]
+        passing = self.alternatives.get(role, permitted)
+        return rng.choice([one for one in permitted if one in passing] or passing)
 
 
 def ecology(rng: random.Random) -> tuple[str, Roles]:
@@ -121,11 +141,12 @@ def issued(words: str) -> dict[str, str]:
 def added(rng: random.Random, said: str, roles: Roles) -> list[str]:
     """The components that a sentence asks for; of what it leaves open they state what their roles permit."""
     said, found = said.removeprefix("add "), []
-    shared = SHARED.search(said) is not None
+    shared = SHARED.search(said)
+    sharing = re.findall(r"\b(r\d)\b", shared[1]) if shared and shared[1] else list(roles.about) if shared else []
     for number, role, recruited, issues, robot, no_robot in ADDED.findall(SHARED.sub("", said)):
         for k in range(1 if number == "one" else int(number)):
             kind = "helper" if recruited else role
-            on = robot or (None if no_robot or recruited else "D" if shared else roles.stated(rng, role))
+            on = robot or (None if no_robot or recruited else "D" if role in sharing else roles.stated(rng, role))
             found.append(component(f"new{role}{len(found)}{k}", kind, {}, issued(issues) if issues else {}, on))
     return found
 

@@ -172,7 +172,7 @@ class StatedOnPath:
 
 def stated_on_paths(tests: Iterable[RoleTest], hierarchy: Hierarchy) -> list[StatedOnPath]:
     """What the tests of a role ask of the values of each property that they look at."""
-    found = [test for test in _conjuncts(tests) if isinstance(test, PropertyTest)]
+    found = [test for test in conjuncts(tests) if isinstance(test, PropertyTest)]
     paths = dict.fromkeys(test.path for test in found)
     return [
         StatedOnPath(
@@ -201,13 +201,13 @@ def contradictory(paths: Iterable[StatedOnPath], mentions: Iterable[Mention]) ->
 
 def lists_components(tests: Iterable[RoleTest]) -> bool:
     """Whether a role lists the components that may play it: one that is added would have to have one of their names."""
-    return any(isinstance(test, SelfTest) for test in _conjuncts(tests))
+    return any(isinstance(test, SelfTest) for test in conjuncts(tests))
 
 
-def _conjuncts(tests: Iterable[RoleTest]) -> Iterator[RoleTest]:
+def conjuncts(tests: Iterable[RoleTest]) -> Iterator[RoleTest]:
     """Yield the tests that all have to be passed, those within `sh:and` and `sh:node` too."""
     for test in tests:
         if isinstance(test, Count) and test.minimum == len(test.groups):
-            yield from _conjuncts(chain.from_iterable(test.groups))
+            yield from conjuncts(chain.from_iterable(test.groups))
         else:
             yield test

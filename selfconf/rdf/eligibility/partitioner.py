@@ -39,6 +39,7 @@ from selfconf.rdf.eligibility.advertisement_index import (
     ClassClosure,
     TypeSet,
 )
+from selfconf.rdf.eligibility.alternatives import in_doubt, passable
 from selfconf.rdf.eligibility.compiled_roles import compile_role, left_to_judge, suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.free_values import contradictory, lists_components, mentions_of, stated_on_paths
 from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
@@ -279,7 +280,12 @@ class Partitioner:
         )
         rows = zip(self.roles, paths, found, strict=True)
         unaddable = frozenset(
-            n for n, (role, some, one) in enumerate(rows) if lists_components(role.tests) or contradictory(some, one)
+            n
+            for n, (role, some, one) in enumerate(rows)
+            if lists_components(role.tests)
+            or in_doubt(role.tests)
+            or not passable(role.tests, self.hierarchy)
+            or contradictory(some, one)
         )
         return found if self.free else (), unaddable
 
