@@ -73,7 +73,7 @@ def test_an_empty_configuration_is_an_empty_diagram() -> None:
 
 
 def test_a_long_name_is_cut_and_a_strange_one_escaped() -> None:
-    long, strange = IRI("urn:" + "x" * 200), IRI(f"urn:{EVIL}")
+    long, strange = IRI("urn:" + "x" * 200), IRI.unchecked(f"urn:{EVIL}")
     text = diagram(Configuration(TEMPLATE, (Assignment(SINK, (long, strange)),)), short)
     nodes = [node.text or "" for node in ElementTree.fromstring(text).iter(f"{SVG}text")]
     assert nodes[0] == "x" * (CHARACTERS - 1) + "…"
