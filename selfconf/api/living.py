@@ -273,11 +273,16 @@ class LivingEcology(Ecology):
 
     @property
     def silent(self) -> tuple[str, ...]:
-        """The configurators that live or hold components, but did not answer when asked for their `tasks`, sorted.
+        """The configurators that live or hold components, but did not answer when asked for their `tasks`, sorted."""
+        return self._tasks.silent
 
-        A run of this machine that is not even seen, as it is suspended, is there by the name of its task.
+    @property
+    def suspended(self) -> tuple[str, ...]:
+        """The names of tasks whose runs on this machine are suspended, so that they were not among the `tasks`, sorted.
+
+        One whose components are still held is known by its configurator, among the `silent`.
         """
-        return (*self._tasks.silent, *(one.name for one in self._tasks.suspended))
+        return tuple(task.name for task in self._tasks.suspended)
 
     def _complaining(self, found: _Result) -> _Result:
         """Take over what was wrong with what configurators have answered."""

@@ -28,21 +28,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 once every configurator has answered, also if nothing is deployed; 2 if one lives and does not answer."""
+    """0 once every configurator has answered, also if nothing is deployed.
+
+    2 if one lives or holds components and does not answer, or if a run of this machine is suspended.
+    """
     with joined(given) as ecology:
         found = ecology.tasks
         deployed = ecology.deployed() if found else {}
         disobedient = ecology.out_of_control() if given.format != "json" else {}
         complain_of(ecology)
+        code = 2 if ecology.silent or ecology.suspended else 0
     if given.format == "json":
         bodies = [_body(status, deployed.get(status.configurator, {})) for status in found]
         print(json.dumps(bodies, indent=2, ensure_ascii=False))
-        return 2 if ecology.silent else 0
-    if not found and not ecology.silent:
+        return code
+    if not found and not code:
         print(f"nothing is deployed in ecology {ecology.name}")
     for line in _told(found, deployed, disobedient):
         print(line)
-    return 2 if ecology.silent else 0
+    return code
 
 
 def _told(

@@ -43,4 +43,4 @@ def run(given: argparse.Namespace) -> int:
         ]
         head = ["task", "priority", "phase", "since", "configurator", "lives in", "components"]
         print(table(head, rows))
-    return 2 if ecology.silent else 0
+    return 2 if ecology.silent or ecology.suspended else 0

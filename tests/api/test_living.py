@@ -16,6 +16,7 @@ from selfconf.discovery import ecology_view
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
+from tests.suspended_run import suspended_run
 
 pytestmark = pytest.mark.process
 
@@ -211,6 +212,16 @@ def test_a_run_is_shown_while_it_lasts_and_can_be_stopped_by_another_program(
     assert living.stop(status.configurator) == ("navigate",)
     assert program.ended() == 0
     assert living.tasks == ()
+
+
+def test_a_run_of_this_machine_that_is_suspended_is_told_by_its_task_apart_from_silent_configurators(
+    living: LivingEcology, house: Home, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(house.runtime))
+    with suspended_run(house.ecology, "patrol", house.endpoint()):
+        assert living.tasks == ()
+        assert (living.silent, living.suspended) == ((), ("patrol",))
+    assert living.tasks == living.suspended == ()
 
 
 def test_an_ecology_that_is_not_there_is_an_error_that_says_what_to_try(house: Home) -> None:

@@ -81,7 +81,7 @@ def test_a_run_that_is_not_entered_holds_nothing(served: Home, clock: sc.TaskSpe
         threads, files = threading.active_count(), open_files()
         forgotten = [living.run(clock, name="forgotten") for _ in range(3)]
         assert (threading.active_count(), open_files()) == (threads, files)
-        assert living.all_tasks() == living.tasks == living.silent == living.complaints == ()
+        assert living.all_tasks() == living.tasks == living.silent == living.suspended == living.complaints == ()
         with living.run(clock, name="forgotten") as run:  # the name is free
             until(run, TaskRunning)
             with pytest.raises(NetworkError, match="a task 'forgotten' lives already"), forgotten[0]:
