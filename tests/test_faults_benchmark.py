@@ -139,6 +139,15 @@ def test_after_a_broken_promise_an_ecology_is_made_anew_and_what_happened_is_kep
     assert kept.read_text().splitlines() == ["running: kill drive", "   0.000 kill drive", "   0.500 lost"]
 
 
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Ctrl-C as a terminal has it: what a shell starts in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_trials_before_ctrl_c_count_and_the_ecologies_are_ended(
     monkeypatch: pytest.MonkeyPatch, quiet: list[Quiet]
 ) -> None:
