@@ -191,6 +191,10 @@ def text(found: bytes, name: str) -> bytes:
     """What is to be parsed of the bytes of a source. Raises TurtleError where that cannot be text."""
     if b"\0" in found:
         raise TurtleError("not Turtle: this is a binary file", file=name)
+    if not found.isascii():
+        from selfconf.rdf.turtle import check_utf_8  # loads a parser
+
+        check_utf_8(found, name)
     return found.removeprefix(BYTE_ORDER_MARK)
 
 

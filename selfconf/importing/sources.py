@@ -27,6 +27,7 @@ from selfconf import files
 from selfconf.errors import AuthorError
 from selfconf.importing.turtle_text import MARK
 from selfconf.model.immutable import immutable
+from selfconf.rdf.turtle import check_utf_8
 
 LARGEST_SOURCE = 16 << 20
 """A document of more bytes is not read; the largest Thing Descriptions that are known have a few hundred kilobytes."""
@@ -48,12 +49,8 @@ class SourceDocument:
 
     def text(self) -> str:
         """Its text, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
-        try:
-            return self.octets.removeprefix(files.BYTE_ORDER_MARK).decode()
-        except UnicodeDecodeError as error:
-            before = self.octets[: error.start]
-            line, column = before.count(b"\n") + 1, error.start - before.rfind(b"\n")
-            raise AuthorError("this is not UTF-8", file=self.shown, line=line, column=column) from None
+        check_utf_8(self.octets, self.shown)
+        return self.octets.removeprefix(files.BYTE_ORDER_MARK).decode()
 
 
 def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadable) -> Iterator[SourceDocument]:

@@ -125,6 +125,12 @@ def test_files_that_are_not_there_or_are_not_turtle_are_one_sentence(desk: Desk)
     assert run(desk.capsys, "configure", str(desk.ads), "--ads", str(desk.ads)).is_one_sentence("is a folder")
     (desk.ads / "broken.ttl").write_bytes(b"@prefix : <x> .\n:a :b \xff .")
     assert desk.configure(*BOUND).is_one_sentence("broken.ttl:2:7", "not UTF-8")
+    (desk.ads / "broken.ttl").write_bytes(b"# \xff in a comment\n")
+    for answer in (
+        desk.configure(*BOUND),
+        run(desk.capsys, "partition", str(desk.template), *BOUND, "--ads", str(desk.ads)),
+    ):
+        assert answer.is_one_sentence("broken.ttl:1:3", "not UTF-8: the byte 0xFF cannot stand here")
 
 
 def test_without_a_peer_there_is_a_sentence_that_says_what_to_start(

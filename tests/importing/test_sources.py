@@ -88,8 +88,8 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
 
 
 def test_text_that_is_not_utf_8_is_named_with_its_place() -> None:
-    with pytest.raises(AuthorError, match="lamp:2:3: this is not UTF-8"):
-        SourceDocument("lamp", "lamp", b"{\nab\xff").text()
+    with pytest.raises(AuthorError, match="lamp:2:4: this is not UTF-8: the byte 0xFF"):
+        SourceDocument("lamp", "lamp", b"{\nab\xc3\xa9\xff").text()
 
 
 def test_a_url_is_fetched_and_named_after_its_last_part(server: str) -> None:

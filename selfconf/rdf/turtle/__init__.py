@@ -5,10 +5,11 @@
 IRIs that stand for labelled blank nodes. `ntriples` and `to_turtle` write, and `pretty_turtle` writes for people;
 `ox_term` makes a term of Oxigraph. `not_turtle` words a syntax error. `read_ontology` reads any format of RDF;
 `format_of` and `other_format` tell which one a file is in (`RdfFormat`), and `conversion` is the command that makes
-Turtle of it.
+Turtle of it. `first_not_utf_8` finds the place where a text is not UTF-8, and `check_utf_8` refuses it.
 """
 
 from selfconf.rdf.turtle.document import SKOLEM, Document, Node, Triple, named, not_turtle, parse, resource, term
+from selfconf.rdf.turtle.encoding import check_utf_8, first_not_utf_8
 from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, other_format, read_ontology
 from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, to_turtle
 
@@ -18,7 +19,9 @@ __all__ = [
     "Node",
     "RdfFormat",
     "Triple",
+    "check_utf_8",
     "conversion",
+    "first_not_utf_8",
     "format_of",
     "named",
     "not_turtle",

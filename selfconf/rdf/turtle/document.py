@@ -110,7 +110,7 @@ class Document:
 def parse(text: str | bytes, source: str, base: str | None = None, predicates: Iterable[IRI] | None = None) -> Document:
     """Read Turtle, or of it the triples with some predicates.
 
-    Raises TurtleError with line and column where it is not Turtle, or not UTF-8.
+    Raises TurtleError with line and column where it is not Turtle.
     """
     reader = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base, rename_blank_nodes=True)
     try:
@@ -134,18 +134,6 @@ def document_of(reader: ox.QuadParser, source: str, base: str | None, predicates
     return Document(source, dict(statements), dict(reader.prefixes), base)
 
 
-def not_utf_8(octets: bytes, source: str) -> TurtleError | None:
-    """What is wrong with the encoding of a text, if anything is: Oxigraph passes over it in comments."""
-    try:
-        octets.decode("utf-8")
-    except UnicodeDecodeError as error:
-        before = octets[: error.start].decode("utf-8").removeprefix("\ufeff")
-        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-        said = f"this is not UTF-8: the byte 0x{octets[error.start]:02X} cannot stand here"
-        return TurtleError(f"{said}; save the file in the encoding UTF-8", file=source, line=line, column=column)
-    return None
-
-
 def not_turtle(error: SyntaxError | MemoryError, source: str, text: str | bytes) -> TurtleError:
     """Oxigraph's complaint as selfconf's: its message without the position, which the error carries on its own.
 
@@ -158,8 +146,6 @@ def not_turtle(error: SyntaxError | MemoryError, source: str, text: str | bytes)
     if other is not None:
         message = f"this is {other.name}, where Turtle is read; convert it: {conversion(source, other)}"
         return TurtleError(message, file=source)
-    if isinstance(text, bytes) and (wrong := not_utf_8(text, source)) is not None:
-        return wrong
     if isinstance(error, MemoryError):
         return TurtleError("a literal in it is over 16 MiB, which is more than can be read", file=source)
     head, found, tail = str(error.msg).partition(": ")

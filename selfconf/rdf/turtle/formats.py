@@ -19,7 +19,8 @@ import pyoxigraph as ox
 from selfconf.errors import TurtleError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
-from selfconf.rdf.turtle.document import Document, document_of, not_utf_8
+from selfconf.rdf.turtle.document import Document, document_of
+from selfconf.rdf.turtle.encoding import check_utf_8
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _HEAD = 1 << 16
@@ -84,6 +85,7 @@ def read_ontology(
     Raises TurtleError with the line, and the column where it is known, for what is not in the format that it seems.
     """
     octets = octets.removeprefix(_BYTE_ORDER_MARK)
+    check_utf_8(octets, source)
     found = format_of(source, octets)
     if found is RDF_XML and _NESTED_ENTITY.search(octets):
         raise TurtleError("an entity within an entity is not expanded; write it out", file=source)
@@ -97,11 +99,6 @@ def read_ontology(
     try:
         return document_of(reader, source, base, predicates)
     except SyntaxError as error:
-        wrong = (
-            None if found is RDF_XML else not_utf_8(octets, source)
-        )  # RDF/XML may say that it is in another encoding
-        if wrong is not None:
-            raise wrong from None
         head, colon, tail = str(error.msg).partition(": ")
         message = tail if colon and head.startswith("Parser error") else str(error.msg)
         if "LoadDocumentCallback" in message:

@@ -200,14 +200,11 @@ def _too_large(source: SourceText, size: int) -> Diagnostic:
 
 
 def _encoding(source: SourceText) -> Iterator[Diagnostic]:
-    try:
-        source.octets.decode("utf-8")
-    except UnicodeDecodeError as error:
-        before = source.octets[: error.start].decode("utf-8").removeprefix("\ufeff")
-        octet = source.octets[error.start]
-        message = f"This is not UTF-8: the byte 0x{octet:02X} cannot stand here."
-        advice = "Save the file in the encoding UTF-8."
-        yield TextPlaces(source.name, source.octets).at(len(before), "SC-S02", message, advice)
+    found = turtle.first_not_utf_8(source.octets)
+    if found is not None:
+        line, column, said = found
+        message, advice = f"T{said[1:]}.", "Save the file in the encoding UTF-8."
+        yield TextPlaces(source.name, source.octets).on(line, column, "SC-S02", message, advice)
         return
     before, nul, _ = source.octets.decode("utf-8").removeprefix("\ufeff").partition("\0")
     if nul:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 import rdflib
 from hypothesis import given
@@ -13,7 +11,6 @@ from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.rdf import rdflib_terms
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.turtle import read_ontology
 from selfconf.rdf.vocabulary import NIL, TYPE
 from tests.lab import PREFIXES, iri
 
@@ -94,15 +91,6 @@ def test_a_list_has_one_member_and_one_rest_in_each_cell(cells: str, whole: bool
 
 def test_a_value_that_is_said_twice_counts_once() -> None:
     assert objects(":o, :o, :o") == [iri("o")]
-
-
-@pytest.mark.parametrize("read", [turtle.parse, lambda octets, name: read_ontology(octets, name)])
-def test_a_byte_that_is_no_utf_8_is_named_with_its_place(read: Callable[[bytes, str], object]) -> None:
-    text = "\ufeff# ä\n<urn:a> <urn:b> 'ä".encode() + "ö' .\n".encode("latin-1")
-    with pytest.raises(TurtleError) as caught:
-        read(text, "t.ttl")
-    wrong = "this is not UTF-8: the byte 0xF6 cannot stand here; save the file in the encoding UTF-8"
-    assert str(caught.value) == f"t.ttl:2:19: {wrong}"
 
 
 def test_prefixes_are_kept() -> None:

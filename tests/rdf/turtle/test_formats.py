@@ -75,12 +75,16 @@ def test_the_triples_of_every_graph_of_an_ontology_count() -> None:
         ("a.jsonld", '{"@context": "https://example.org/context", "a": 1}', "not fetched"),
         ("a.trig", ":g { }", "a.trig:1:1: not TriG: The prefix"),
         ("a.ttl", "<urn:a> <urn:b> .", "a.ttl:1:"),
+        *(
+            (f"a.{form}", "\n# \udce9", f"a.{form}:2:3: this is not UTF-8: the byte 0xE9")
+            for form in ("ttl", "nt", "rdf")
+        ),
         ("a.xml", '<!DOCTYPE a [<!ENTITY a "aa"><!ENTITY b "&a;&a;">]><rdf:RDF/>', "an entity within an entity"),
     ],
 )
 def test_what_is_wrong_in_an_ontology_is_told_with_its_file_and_line(name: str, text: str, said: str) -> None:
     with pytest.raises(TurtleError) as caught:
-        read_ontology(text.encode(), name, "file:///a")
+        read_ontology(text.encode(errors="surrogateescape"), name, "file:///a")
     assert said in str(caught.value)
 
 
