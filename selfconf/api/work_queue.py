@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
 UNDISTURBED = 0.2
 """For how many seconds there must have been nothing else before something begins that nothing waits for: other programs
 that have begun at the same time want the processors too."""
+MOST_UNDISTURBED = 5.0
+"""For how many seconds at most, where it was interrupted again and again: it is begun anew each time."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -25,6 +29,14 @@ class _Work:
 
     do: Callable[[], None]
     owner: str
+
+
+@dataclass(eq=False, slots=True)
+class _Leisurely:
+    """What nothing waits for, and for how many seconds there must have been nothing else before it begins."""
+
+    do: Callable[[], None]
+    undisturbed: float
 
 
 class WorkQueue:
@@ -36,8 +48,10 @@ class WorkQueue:
         """The work that is being done, and what ends it."""
         self._until_more: Callable[[], None] | None = None
         """What ends that which is done only until there is something else."""
-        self._leisurely: dict[str, Callable[[], None]] = {}
-        """What is to be done when there is nothing else, one thing for each owner."""
+        self._leisurely: dict[str, _Leisurely] = {}
+        """What is to be done when there is nothing else, one thing for each owner; what was interrupted comes last."""
+        self._disturbed = -math.inf
+        """When there was something else to do, as told by the monotonic clock."""
         self._events: deque[AnyRunEvent] = deque()
         self._more = threading.Condition()
         self._woken = False
@@ -53,11 +67,14 @@ class WorkQueue:
     def at_leisure(self, work: Callable[[], None], owner: str) -> None:
         """Have `next` do something when there has been nothing else for a while, in place of what that was before.
 
-        What comes in the middle of it is done first, and then this anew. Outside of the main thread, where nothing
-        could end it, it is forgotten.
+        What comes in the middle of it is done first, and then this anew, after what waits for other owners and when
+        there has been nothing else for twice as long. Outside of the main thread, where nothing could end it, it is
+        forgotten.
         """
         with self._more:
-            self._leisurely[owner] = work
+            before = self._leisurely.get(owner)
+            self._leisurely[owner] = _Leisurely(work, UNDISTURBED if before is None else before.undisturbed)
+            self._disturbed = time.monotonic()
             self._notify()
 
     def _abandon(self, one: _Work) -> None:
@@ -109,9 +126,7 @@ class WorkQueue:
         try:
             with abandonable() as abandon:
                 with self._more:
-                    if not self._has_more and after > 0:
-                        self._more.wait(after)
-                    if self._has_more:
+                    if self._more.wait_for(lambda: self._has_more, after):
                         return False
                     self._until_more = abandon
                 work()
@@ -128,29 +143,46 @@ class WorkQueue:
     def next(self, seconds: float) -> AnyRunEvent | None:
         """Do all the work there is, and return the next event; None if none has come after that long."""
         with self._more:
-            if not self._has_more and not self._leisurely and seconds > 0:
-                self._more.wait(seconds)
-            self._woken = False
+            if not self._has_more and seconds > 0:
+                self._more.wait(min(seconds, self._until_leisure))
+            disturbed, self._woken = self._has_more, False
             waiting = len(self._works)
         for _ in range(waiting):
             self._do_first()  # one at a time: where one breaks, the others wait for the next call
+        if disturbed:
+            self._disturbed = time.monotonic()
         self._do_at_leisure()
         with self._more:
             return self._events.popleft() if self._events else None
 
+    @property
+    def _until_leisure(self) -> float:
+        """In how many seconds something is done at leisure, if nothing else comes; infinite if nothing is to be."""
+        least = min((one.undisturbed for one in self._leisurely.values()), default=math.inf)
+        return max(0.0, self._disturbed + least - time.monotonic())
+
     def _do_at_leisure(self) -> None:
-        """Do the first thing that waits for a time in which there is nothing else, if this is one."""
+        """Do what waits for the shortest time in which there is nothing else, if that has passed."""
         with self._more:
-            owner, work = next(iter(self._leisurely.items()), ("", None))
-        if work is None:
-            return
+            if not self._leisurely or self._until_leisure > 0:
+                return
+            owner, one = min(self._leisurely.items(), key=lambda each: each[1].undisturbed)
         over = True
         try:
-            over = self.until_more(work, UNDISTURBED) or threading.current_thread() is not threading.main_thread()
+            over = self.until_more(one.do) or threading.current_thread() is not threading.main_thread()
         finally:
             with self._more:
-                if over and self._leisurely.get(owner) is work:
+                if not over:
+                    self._put_last(owner)
+                elif self._leisurely.get(owner) is one:
                     del self._leisurely[owner]
+
+    def _put_last(self, owner: str) -> None:
+        """Let what was interrupted wait for a longer time in which there is nothing else, and for other owners."""
+        one = self._leisurely.pop(owner, None)
+        if one is not None:  # neither has it been abandoned
+            one.undisturbed = min(2 * one.undisturbed, MOST_UNDISTURBED)
+            self._leisurely[owner] = one
 
     def do(self, work: Callable[[], None]) -> bool:
         """Do something now; whether it has come to its own end, and was not abandoned."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import pytest
 
+from selfconf.api import work_queue
 from selfconf.api.work_queue import WorkQueue
 from selfconf.model.run_event import EcologyAsked
 
@@ -165,7 +167,8 @@ def test_what_is_done_at_leisure_is_done_anew_when_something_has_come_in_the_mid
     other.start()
     queue.next(60.0)
     other.join()
-    queue.next(60.0)
+    while done[-1] != "explained":
+        queue.next(60.0)
     assert done == ["begun", "searched", "begun", "explained"]
     assert queue.next(0.0) is None
     assert len(done) == 4
@@ -177,13 +180,82 @@ def test_what_is_done_at_leisure_is_the_newest_of_each_owner_that_has_not_ended(
         queue.at_leisure(lambda what=what: done.append(what), owner)  # type: ignore[misc]  # a default binds it
     queue.abandon("watch")
     for _ in range(4):
-        queue.next(0.0)
+        queue.next(1.0)
     assert done == ["second", "tidied"]
     queue.at_leisure(lambda: done.append("third"), "patrol")
     queue.abandon()
-    queue.next(0.0)
-    queue.next(0.0)
+    queue.next(0.3)
+    queue.next(0.3)
     assert done == ["second", "tidied"]
+
+
+def test_what_was_interrupted_at_leisure_comes_after_what_waits_for_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work_queue, "UNDISTURBED", 0.05)
+    queue, begun, done = WorkQueue(), threading.Event(), list[str]()
+    disturbed = 0
+
+    def explain() -> None:
+        done.append("begun")
+        if disturbed < 3:
+            _forever(begun)
+
+    def disturb() -> None:
+        nonlocal disturbed
+        while disturbed < 3:
+            begun.wait()
+            begun.clear()
+            disturbed += 1
+            queue.work(lambda: done.append("searched"))
+
+    queue.at_leisure(explain, "patrol")
+    queue.at_leisure(lambda: done.append("tidied"), "tidy")
+    other = threading.Thread(target=disturb)
+    other.start()
+    while disturbed < 3:
+        queue.next(60.0)
+    other.join()
+    queue.next(0.0)
+    assert done == ["begun", "searched", "tidied", "begun", "searched", "begun", "searched"]
+
+
+def test_what_is_interrupted_at_leisure_again_and_again_is_begun_more_and_more_rarely(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(work_queue, "UNDISTURBED", 0.01)
+    monkeypatch.setattr(work_queue, "MOST_UNDISTURBED", 0.04)
+    queue, begun = WorkQueue(), threading.Event()
+    disturbed, pauses = time.monotonic(), list[float]()
+
+    def explain() -> None:
+        pauses.append(time.monotonic() - disturbed)
+        _forever(begun)
+
+    def disturb() -> None:
+        nonlocal disturbed
+        begun.wait()
+        begun.clear()
+        disturbed = time.monotonic()
+        queue.at_leisure(explain, "patrol")  # a refusal that is found again
+
+    queue.at_leisure(explain, "patrol")
+    for number in range(5):
+        other = threading.Thread(target=disturb)
+        other.start()
+        while len(pauses) == number:
+            queue.next(60.0)
+        other.join()
+    least = (0.01, 0.02, 0.04, 0.04, 0.04)
+    assert [pause for pause, seconds in zip(pauses, least, strict=True) if pause < seconds] == []
+    queue.abandon("patrol")
+    queue.next(0.0)
+    assert queue.next(0.0) is None
+
+
+def test_what_waits_for_leisure_holds_up_no_caller() -> None:
+    queue, done = WorkQueue(), list[str]()
+    queue.at_leisure(lambda: done.append("explained"), "patrol")
+    queue.next(0.0)
+    assert done == []
 
 
 def test_what_breaks_at_leisure_is_not_done_again() -> None:
