@@ -269,16 +269,16 @@ class LivingEcology(Ecology):
 
     def all_tasks(self) -> tuple[LivingTask, ...]:
         """The tasks that run and those that live in the sites, sorted by name."""
-        return self._complaining(self._tasks.all())
+        return self._complaining(self._tasks.all(by_components=not self._looks_on_only))
 
     @property
     def silent(self) -> tuple[str, ...]:
-        """The configurators that live or hold components, but did not answer when asked for their `tasks`, sorted."""
+        """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
         return self._tasks.silent
 
     @property
     def suspended(self) -> tuple[str, ...]:
-        """The names of tasks whose runs on this machine are suspended, so that they were not among the `tasks`, sorted.
+        """The names of tasks whose runs on this machine are suspended, so that they were not seen to run, sorted.
 
         One whose components are still held is known by its configurator, among the `silent`.
         """

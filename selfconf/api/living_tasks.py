@@ -164,9 +164,9 @@ class LivingTasks:
         records = _records(self._bus.ask(self._keys.kept_tasks()))
         return [record for record in records if name in (None, task_name(record.task))]
 
-    def all(self) -> tuple[LivingTask, ...]:
-        """The tasks that run and those that live in the sites, sorted by name."""
-        running = self.running()
+    def all(self, by_components: bool = False) -> tuple[LivingTask, ...]:
+        """The tasks that run, found as by `running`, and those that live in the sites, sorted by name."""
+        running = self.running(by_components)
         kept = {record.task: record for record in self.kept()}
         found = [LivingTask.of(status, status.task in kept) for status in running]
         known = {status.task for status in running}

@@ -18,17 +18,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 once every configurator has answered, also if there is no task; else 2."""
+    """0 once every configurator has answered, also if there is no task.
+
+    2 if one lives or holds components and does not answer, or if a run of this machine is suspended.
+    """
     from selfconf.render import table
 
     with joined(given) as ecology:
         found = ecology.all_tasks()
         complain_of(ecology)
+        code = 2 if ecology.silent or ecology.suspended else 0
     if given.format == "json":
         print(json.dumps([task.body() for task in found], indent=2))
-    elif not found:
-        print(f"there is no task in ecology {ecology.name}")
-    else:
+    elif found:
         rows = [
             [
                 task.name,
@@ -43,4 +45,6 @@ def run(given: argparse.Namespace) -> int:
         ]
         head = ["task", "priority", "phase", "since", "configurator", "lives in", "components"]
         print(table(head, rows))
-    return 2 if ecology.silent or ecology.suspended else 0
+    elif not code:
+        print(f"there is no task in ecology {ecology.name}")
+    return code

@@ -219,9 +219,9 @@ def test_a_run_of_this_machine_that_is_suspended_is_told_by_its_task_apart_from_
 ) -> None:
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(house.runtime))
     with suspended_run(house.ecology, "patrol", house.endpoint()):
-        assert living.tasks == ()
+        assert living.all_tasks() == ()
         assert (living.silent, living.suspended) == ((), ("patrol",))
-    assert living.tasks == living.suspended == ()
+    assert living.all_tasks() == living.suspended == ()
 
 
 def test_an_ecology_that_is_not_there_is_an_error_that_says_what_to_try(house: Home) -> None:

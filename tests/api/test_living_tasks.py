@@ -216,9 +216,11 @@ def test_a_configurator_that_is_known_by_what_it_holds_alone_is_silent(tasks: Ta
     tasks.component(DRIVE, held_by("c2", PATROL.task))
     assert [status.configurator for status in tasks.asked.running()] == ["c1"]
     assert (tasks.asked.silent, tasks.asked.complaints) == ((), ())
-    assert [status.configurator for status in tasks.asked.running(by_components=True)] == ["c1"]
-    assert tasks.asked.silent == ("c2",)
-    assert tasks.asked.complaints == ("the configurator 'c2' of 'patrol' holds drive, but does not answer",)
+    for ask in (tasks.asked.running, tasks.asked.all):
+        tasks.asked.running()
+        assert [found.configurator for found in ask(by_components=True)] == ["c1"]
+        assert tasks.asked.silent == ("c2",)
+        assert tasks.asked.complaints == ("the configurator 'c2' of 'patrol' holds drive, but does not answer",)
 
 
 @pytest.mark.parametrize("name", [None, "patrol", "c2"])

@@ -12,6 +12,7 @@ from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import Notice
 from tests.cli.command import run
 from tests.cli.processes import Home
+from tests.suspended_run import suspended_run
 
 pytestmark = pytest.mark.process
 
@@ -43,6 +44,21 @@ def test_a_task_that_runs_is_listed_by_its_name_and_stopped_by_it(
     assert run(capsys, "stop", "midnight", *where).is_one_sentence("no task or configurator 'midnight' answers")
     assert run(capsys, "stop", "noon", *where).code == 0
     assert program.ended() == 0
+
+
+@pytest.mark.parametrize("command", ["tasks", "status"])
+def test_no_command_says_that_there_is_no_task_where_a_run_of_this_machine_is_suspended(
+    house: Home, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    house.site("kitchen", CLOCK)
+    where = house.arguments()
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(house.runtime))
+    with suspended_run(house.ecology, "noon", house.endpoint()) as program:
+        said = f"process {program.pid} of this machine, which runs the task 'noon', is suspended;"
+        for form, out in (("text", ""), ("json", "[]\n")):
+            found = run(capsys, command, "--format", form, *where)
+            assert (found.code, found.out, found.err.startswith(said)) == (2, out, True)
+    assert run(capsys, command, *where).code == 0
 
 
 @pytest.mark.parametrize("how", ["--detach", "--wait"])
