@@ -42,13 +42,11 @@ def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> No
     searches, abandoned = list[Callable[[], None]](), list[Callable[[], None]]()
 
     def aside(work: Callable[[], None]) -> Undo:
-        if work.__qualname__.startswith("TaskSearch.begin."):
-            searches.append(work)
-        else:
-            work()
+        searches.append(work)
         return partial(abandoned.append, work)
 
-    agent = lab.agent(aside=aside)
+    agent = lab.agent()
+    agent._search._request = replace(agent.request, aside=aside)  # of the search alone
     assert lab.until(lambda: len(searches) == 1)
     searches[0]()
     assert lab.running(agent)
