@@ -105,7 +105,7 @@ class SilentHolder:
     """The identity of its task."""
     components: tuple[IRI, ...]
 
-    def is_meant(self, name: str | None) -> bool:
+    def is_named(self, name: str | None) -> bool:
         """Whether a name is that of the configurator or of its task; None means all."""
         return name in (None, self.configurator, task_name(self.task))
 
@@ -210,7 +210,7 @@ class LivingTasks:
         """
         running = [s for s in self.running(by_components=True) if name in (None, s.configurator, s.name)]
         kept = self.kept(name)
-        holding = [one for one in self._holding if one.is_meant(name)]
+        holding = [one for one in self._holding if one.is_named(name)]
         unanswered = {record.task for record in kept}.difference(status.task for status in running)
         silent = self._silent_beside_holders(None if unanswered else name)
         suspended = [one for one in self.suspended if name in (None, one.name)]
@@ -223,7 +223,8 @@ class LivingTasks:
 
     def _silent_beside_holders(self, name: str | None) -> set[str]:
         """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
-        return _meant(self.silent, name).difference(one.configurator for one in self._holding)
+        silent = {one for one in self.silent if name in (None, one)}
+        return silent.difference(one.configurator for one in self._holding)
 
     def _unheard(self, silent: set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
         """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest."""
@@ -352,11 +353,6 @@ def _states(replies: Replies, keys: Keys) -> list[CallAnswer]:
 
 def _said_of_silent(configurator: str) -> str:
     return f"the configurator {configurator!r} lives, but does not answer"
-
-
-def _meant(names: Iterable[str], name: str | None) -> set[str]:
-    """Those of some names that one means; None means all."""
-    return {one for one in names if name in (None, one)}
 
 
 def _check_there(name: str, silent: Iterable[str], found: Sequence[object]) -> None:
