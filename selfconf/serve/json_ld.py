@@ -48,16 +48,16 @@ def value_of(term: IRI | Literal) -> Any:
 
 
 def in_languages(member: str, said: Iterable[Term]) -> tuple[dict[str, Any], list[Term]]:
-    """A title or description, in its languages where they are known, and those words that have no room in it.
+    """A title or description, with its texts in other languages, and those words that have no room in it.
 
-    A description has one text for each language, or else one without any.
+    A description has one text without a language, or else that of the first language, and one for each language.
     """
     literals = [one for one in said if isinstance(one, Literal)]
     several: dict[str, Literal] = {}
     for one in literals:
         if one.language:
             several.setdefault(one.language, one)
-    kept = [*several.values()] or [one for one in literals if one.datatype == STRING][:1]
+    kept = [*[one for one in literals if one.datatype == STRING][:1], *several.values()]
     rest = [one for one in said if one not in kept]
     if not kept:
         return {}, rest

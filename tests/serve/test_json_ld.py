@@ -38,13 +38,14 @@ def test_nodes_without_a_name_are_left_out() -> None:
     assert name_of(FAR) == FAR
 
 
-def test_words_have_one_text_for_each_language_or_one_without() -> None:
+def test_words_have_one_text_without_a_language_and_one_for_each() -> None:
     english, german = Literal("a", RDF.langString, "en"), Literal("b", RDF.langString, "de")
     plain, other, again = Literal("c"), Literal("d"), Literal("e", RDF.langString, "en")
     assert in_languages("title", []) == ({}, [])
     assert in_languages("title", [plain, other]) == ({"title": "c"}, [other])
     assert in_languages("title", [english, plain, german, again]) == (
-        {"title": "a", "titles": {"en": "a", "de": "b"}},
-        [plain, again],
+        {"title": "c", "titles": {"en": "a", "de": "b"}},
+        [again],
     )
+    assert in_languages("title", [german, english]) == ({"title": "b", "titles": {"en": "a", "de": "b"}}, [])
     assert in_languages("title", [IRI("urn:x")]) == ({}, [IRI("urn:x")])

@@ -71,10 +71,12 @@ def test_the_title_is_the_label_in_its_languages() -> None:
     assert words("") == {"title": "person-tracker"}
     assert words('"Tracker"') == {"title": "Tracker"}
     assert words('"Ortung"@de , "Tracker"@en') == {"title": "Ortung", "titles": {"de": "Ortung", "en": "Tracker"}}
-    assert words('"a" , "b"@en') == {"title": "b", "titles": {"en": "b"}, "rdfs:label": "a"}
+    assert words('"Eye" , "Auge"@de') == {"title": "Eye", "titles": {"de": "Auge"}}
+    assert words('"a" , "b" , "c"@en') == {"title": "a", "titles": {"en": "c"}, "rdfs:label": "b"}
 
 
 def test_what_a_component_is_comes_back_from_its_description(tmp_path: Path) -> None:
+    """Its rate as a double, as numbers of JSON are read."""
     prefixes = "@prefix unit: <http://qudt.org/vocab/unit/> . @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n"
     component = found("tracker", f"\n{prefixes}:person-tracker{EVERYTHING}").advertisement
     thing = thing_description(component.profile, Keys("lab"))

@@ -151,15 +151,13 @@ class _ThingReader:
         return self.ledger.minted(stem(self.source).replace("/", "-"), *position)
 
     def _words(self, member: str) -> tuple[Literal, ...]:
-        """A title or description, in its languages."""
-        several = self.thing.get(f"{member}s")
-        found = {}
-        if isinstance(several, dict):
-            found = {language: words for language, words in several.items() if isinstance(words, str) and words}
-        if found:
-            return tuple(spoken(words, language) for language, words in found.items())
-        words = self.thing.get(member)
-        return (spoken(words, self.meanings.language),) if isinstance(words, str) and words else ()
+        """A title or description, in its languages; by itself, unless it is that of one of them."""
+        several, words = self.thing.get(f"{member}s"), self.thing.get(member)
+        found = several if isinstance(several, dict) else {}
+        said = [spoken(one, language) for language, one in found.items() if isinstance(one, str) and one]
+        if isinstance(words, str) and words and all(one.lexical != words for one in said):
+            said.insert(0, spoken(words, self.meanings.language))
+        return tuple(said)
 
     def _properties(self) -> Iterator[tuple[IRI, Term]]:
         """What the thing says in terms of other vocabularies, as far as it is a literal or an IRI."""

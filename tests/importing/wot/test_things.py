@@ -60,6 +60,8 @@ def test_a_thing_model_is_imported_as_what_it_is_a_model_of(workshop: Workshop) 
 def test_titles_are_kept_in_their_languages(workshop: Workshop) -> None:
     text = described(titles={"de": "Lampe", "en": "Lamp", "no tag": "?"})
     assert 'rdfs:label "Lampe"@de, "Lamp"@en, "?" .' in only(workshop, workshop.imported("wot", {"lamp.json": text}))
+    text = described(title="Leuchte", titles={"de": "Lampe"})
+    assert 'rdfs:label "Leuchte", "Lampe"@de .' in only(workshop, workshop.imported("wot", {"lamp.json": text}))
 
 
 def test_an_array_holds_several_things_as_a_directory_answers(workshop: Workshop) -> None:
