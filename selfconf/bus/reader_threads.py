@@ -26,15 +26,20 @@ class ReaderThreads:
         self._ended = False
 
     def begin(self, reading: Callable[[], None]) -> None:
-        """Call `reading`, which returns when there is nothing more to read, on a thread that does nothing else."""
+        """Call `reading`, which returns when there is nothing more to read, on a thread that does nothing else.
+
+        After `end` nothing is read any more. Raises RuntimeError where the system starts no more threads.
+        """
         with self._lock:
-            self._readings.put(reading)
+            if self._ended:
+                return
             if self._idle:
                 self._idle -= 1
-                return
-            thread = threading.Thread(target=self._read, daemon=True, name="bulk")
-            self._threads.add(thread)
-            thread.start()
+            else:
+                thread = threading.Thread(target=self._read, daemon=True, name="bulk")
+                thread.start()
+                self._threads.add(thread)
+            self._readings.put(reading)
 
     def end(self, seconds: float) -> None:
         """Have the threads end, and wait for those that still read, for each so many seconds at most."""
@@ -51,6 +56,7 @@ class ReaderThreads:
         try:
             while (reading := self._readings.get()) is not None:
                 reading()
+                reading = None  # while the thread waits, what was read must not be held by it
                 with self._lock:
                     if self._ended or self._idle >= MOST_IDLE:
                         return

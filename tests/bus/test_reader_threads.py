@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import threading
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+import pytest
 
 from selfconf.bus.reader_threads import MOST_IDLE, ReaderThreads
 
@@ -103,3 +106,36 @@ def test_one_that_breaks_ends_alone() -> None:
         threading.excepthook = before
     assert heard == [ZeroDivisionError]
     assert not threads._threads
+
+
+def test_what_was_read_is_not_held_by_a_thread_that_waits() -> None:
+    threads = ReaderThreads()
+    with begun(threads, 1) as readings:
+        read = weakref.ref(readings[0])
+    readings.clear()
+    assert idle(threads, 1)
+    assert read() is None
+    threads.end(PATIENCE)
+
+
+def test_nothing_is_read_after_the_end() -> None:
+    threads, reading = ReaderThreads(), Reading()
+    threads.end(PATIENCE)
+    threads.begin(reading)
+    reading.finish()
+    assert not threads._threads
+    assert not reading._begun.is_set()
+
+
+def test_what_no_thread_could_be_started_for_is_not_read_later() -> None:
+    threads, read = ReaderThreads(), list[str]()
+    before = threading.stack_size(1 << 47)  # more than there are addresses
+    try:
+        with pytest.raises(RuntimeError, match="can't start new thread"):
+            threads.begin(lambda: read.append("first"))
+    finally:
+        threading.stack_size(before)
+    threads.begin(lambda: read.append("second"))
+    assert idle(threads, 1)
+    threads.end(PATIENCE)
+    assert read == ["second"]
