@@ -140,7 +140,7 @@ def _is_list(document: Document, predicate: IRI, value: Term) -> bool:
         return predicate not in LISTS_OF_SHAPES
     members = document.items(value) if predicate == SH.languageIn else ()
     tags = all(isinstance(member, Literal) and member.datatype == XSD.string for member in members)
-    return document.is_list(value) and tags
+    return document.list_fault(value) is None and tags
 
 
 def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:
@@ -171,7 +171,9 @@ def _paths(document: Document, head: Term, depth: int) -> bool:
     """Whether a list has two members or more, each of them a path."""
     members = document.items(head)
     return (
-        len(members) > 1 and document.is_list(head) and all(is_path(document, member, depth + 1) for member in members)
+        len(members) > 1
+        and document.list_fault(head) is None
+        and all(is_path(document, member, depth + 1) for member in members)
     )
 
 

@@ -24,8 +24,8 @@ from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.tasks.parameters import parameters_of
 from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.tasks.template_ports import template_ports
-from selfconf.rdf.turtle import Document, Node
-from selfconf.rdf.vocabulary import FIRST, LABEL, NIL, REST, SC, TYPE, XSD
+from selfconf.rdf.turtle import Document, ListFault, Node
+from selfconf.rdf.vocabulary import FIRST, LABEL, SC, TYPE, XSD
 
 _PRIORITY = re.compile(r"[+-]?[0-9]{1,300}")
 _SAID_OF = {
@@ -34,6 +34,11 @@ _SAID_OF = {
     SC.priority: (SC.Template, SC.Task),
 }
 """What is said only of instances of a class, or of one of two."""
+_BROKEN = {
+    ListFault.NO_LIST: "{head} is no list of roles",
+    ListFault.CELL: "each cell of the list sc:roles has exactly one rdf:first and one rdf:rest",
+    ListFault.ENDLESS: "the list sc:roles has no end",
+}
 
 
 @immutable
@@ -131,9 +136,9 @@ class _Reader(DocumentReader):
     def _listed(self, template: IRI) -> list[Term]:
         """The members of the list of roles."""
         head = self.only(template, SC.roles, "a template has exactly one list of roles, sc:roles ( ... )")
-        broken = self._broken(head)
-        if broken is not None:
-            problem = f"{broken}; write it in parentheses, sc:roles ( ... )"
+        fault = self.document.list_fault(head)
+        if fault is not None:
+            problem = f"{_BROKEN[fault].format(head=worded(head))}; write it in parentheses, sc:roles ( ... )"
             raise self.mistake(problem, template, SC.roles, head)
         names = self.document.items(head)
         if not names:
@@ -145,22 +150,6 @@ class _Reader(DocumentReader):
                 again = names.index(name, names.index(name) + 1)
                 raise self.mistake(problem, self.cell(head, again), FIRST, name)
         return names
-
-    def _broken(self, head: Term) -> str | None:
-        """Why a term is no list of roles, if it is none."""
-        passed: set[Term] = set()
-        cell = head
-        while cell != NIL:
-            if cell in passed:
-                return "the list sc:roles has no end"
-            passed.add(cell)
-            members, rests = self.document.values(cell, FIRST), self.document.values(cell, REST)
-            if not members and not rests and cell == head:
-                return f"{worded(cell)} is no list of roles"
-            if len(members) != 1 or len(rests) != 1:
-                return "each cell of the list sc:roles has exactly one rdf:first and one rdf:rest"
-            cell = rests[0]
-        return None
 
     def _said_of_others(self) -> None:
         """Raises where something is said that is said of roles or templates alone."""

@@ -1,6 +1,7 @@
 """Turtle in and out: text to triples of the model's terms, and triples to text, by Oxigraph.
 
-`Document` is the triples of one source by subject; `parse` reads one. `Triple` and `Node` are its parts.
+`Document` is the triples of one source by subject; `parse` reads one. `Triple` and `Node` are its parts, and
+`ListFault` is what can be wrong with a list in it.
 `term`, `resource` and `named` pass between Oxigraph's terms, Turtle's names and the model's terms; `SKOLEM` marks the
 IRIs that stand for labelled blank nodes. `ntriples` and `to_turtle` write, and `pretty_turtle` writes for people;
 `ox_term` makes a term of Oxigraph. `not_turtle` words a syntax error. `read_ontology` reads any format of RDF;
@@ -8,7 +9,18 @@ IRIs that stand for labelled blank nodes. `ntriples` and `to_turtle` write, and 
 Turtle of it. `first_not_utf_8` finds the place where a text is not UTF-8, and `check_utf_8` refuses it.
 """
 
-from selfconf.rdf.turtle.document import SKOLEM, Document, Node, Triple, named, not_turtle, parse, resource, term
+from selfconf.rdf.turtle.document import (
+    SKOLEM,
+    Document,
+    ListFault,
+    Node,
+    Triple,
+    named,
+    not_turtle,
+    parse,
+    resource,
+    term,
+)
 from selfconf.rdf.turtle.encoding import check_utf_8, first_not_utf_8
 from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, other_format, read_ontology
 from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, to_turtle
@@ -16,6 +28,7 @@ from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, 
 __all__ = [
     "SKOLEM",
     "Document",
+    "ListFault",
     "Node",
     "RdfFormat",
     "Triple",

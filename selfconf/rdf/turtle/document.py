@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
 import pyoxigraph as ox
@@ -40,6 +41,14 @@ def resource(iri: str) -> Node:
 def named(node: Node) -> str:
     """The name of a resource in Turtle: of a blank node, the IRI that would stand for it."""
     return f"<{SKOLEM}{node[2:]}>" if isinstance(node, BlankNode) else f"<{node}>"
+
+
+class ListFault(Enum):
+    """What is wrong with an RDF list."""
+
+    NO_LIST = "it has neither members nor a rest"
+    CELL = "a cell of it has not exactly one member and one rest"
+    ENDLESS = "a rest leads back to a cell before it"
 
 
 @dataclass(slots=True)
@@ -96,15 +105,19 @@ class Document:
             head = rest
         return members
 
-    def is_list(self, head: Term) -> bool:
-        """Whether a term is an RDF list: cells of one member and one rest each, up to the end."""
-        seen: set[Term] = set()
-        while head != NIL:
-            if head in seen or len(self.values(head, FIRST)) != 1 or len(rests := self.values(head, REST)) != 1:
-                return False
-            seen.add(head)
-            head = rests[0]
-        return True
+    def list_fault(self, head: Term) -> ListFault | None:
+        """Why a term is no RDF list, which is cells of one member and one rest each, up to the end; None if it is."""
+        passed: set[Term] = set()
+        cell = head
+        while cell != NIL:
+            if cell in passed:
+                return ListFault.ENDLESS
+            passed.add(cell)
+            members, rests = self.values(cell, FIRST), self.values(cell, REST)
+            if len(members) != 1 or len(rests) != 1:
+                return ListFault.CELL if members or rests or cell != head else ListFault.NO_LIST
+            cell = rests[0]
+        return None
 
 
 def parse(text: str | bytes, source: str, base: str | None = None, predicates: Iterable[IRI] | None = None) -> Document:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.rdf import rdflib_terms
+from selfconf.rdf.turtle import ListFault
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import NIL, TYPE
 from tests.lab import PREFIXES, iri
@@ -71,22 +72,23 @@ def test_a_list_that_runs_in_a_circle_ends() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "whole"),
+    ("cells", "fault"),
     [
-        ("<urn:l> rdf:first 1 ; rdf:rest () .", True),
-        ("<urn:l> rdf:first 1 .", False),
-        ("<urn:l> rdf:rest () .", False),
-        ("<urn:l> rdf:first 1, 2 ; rdf:rest () .", False),
-        ("<urn:l> rdf:first 1 ; rdf:rest (), ( 2 ) .", False),
-        ("<urn:l> rdf:first 1 ; rdf:rest <urn:l> .", False),
-        ("<urn:l> rdf:first 1 ; rdf:rest 2 .", False),
-        ("", False),
+        ("<urn:l> rdf:first 1 ; rdf:rest () .", None),
+        ("<urn:l> rdf:first 1 .", ListFault.CELL),
+        ("<urn:l> rdf:rest () .", ListFault.CELL),
+        ("<urn:l> rdf:first 1, 2 ; rdf:rest () .", ListFault.CELL),
+        ("<urn:l> rdf:first 1 ; rdf:rest (), ( 2 ) .", ListFault.CELL),
+        ("<urn:l> rdf:first 1 ; rdf:rest <urn:l> .", ListFault.ENDLESS),
+        ("<urn:l> rdf:first 1 ; rdf:rest 2 .", ListFault.CELL),
+        ("", ListFault.NO_LIST),
     ],
 )
-def test_a_list_has_one_member_and_one_rest_in_each_cell(cells: str, whole: bool) -> None:
+def test_a_list_has_one_member_and_one_rest_in_each_cell(cells: str, fault: ListFault | None) -> None:
     document = turtle.parse(f"@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> . {cells}", "t")
-    assert document.is_list(IRI("urn:l")) is whole
-    assert document.is_list(NIL)
+    assert document.list_fault(IRI("urn:l")) is fault
+    assert document.list_fault(NIL) is None
+    assert document.list_fault(Literal("r")) is ListFault.NO_LIST
 
 
 def test_a_value_that_is_said_twice_counts_once() -> None:
