@@ -30,7 +30,7 @@ def solved(problem: Problem, playing: Playing, running: Configuration | None = N
     """
     if any(role.recruits for role in problem.roles):
         return problem.configuration(playing, problem.values_of(playing))
-    return _extended(problem, playing, _preferred(problem, running))
+    return _connected_extension(problem, playing, _preferred(problem, running))
 
 
 def with_further_players(
@@ -48,7 +48,7 @@ def with_further_players(
     brought = [c for c in configuration.connections if not {c.source, c.sink}.isdisjoint(configuration.recruits)]
     supplied = {(connection.sink, connection.input) for connection in brought}
     preferred = [_not_feeding(problem, candidates, playing, supplied) for candidates in _preferred(problem, running)]
-    extended = _extended(problem, playing, preferred, configuration.recruits)
+    extended = _connected_extension(problem, playing, preferred, configuration.recruits)
     whole = replace(extended, recruits=configuration.recruits)
     return replace(whole, connections=ordered_connections((*whole.connections, *brought), whole.components))
 
@@ -65,7 +65,7 @@ def _preferred(problem: Problem, running: Configuration | None) -> list[Playing]
     return [kept, problem.candidates]
 
 
-def _extended(
+def _connected_extension(
     problem: Problem, playing: Playing, preferred: Sequence[Playing], besides: Collection[IRI] = ()
 ) -> Configuration:
     """Return the configuration of what plays, with each further candidate that fits and is connected to another.
@@ -77,7 +77,7 @@ def _extended(
     while True:
         extended, values = [list(role) for role in playing], problem.values_of(playing)
         for candidates in preferred:
-            values = _extend(problem, extended, values, candidates, besides)
+            values = _add_fitting(problem, extended, values, candidates, besides)
         found = problem.configuration(extended, values)
         idle = {(role, component) for role, component in _idle(problem, found) if component not in asked}
         players = {(role, c.profile.component) for role, some in enumerate(extended) for c in some}
@@ -129,7 +129,7 @@ def _not_feeding(
     ]
 
 
-def _extend(
+def _add_fitting(
     problem: Problem,
     playing: list[list[Candidate]],
     values: tuple[int, ...],
@@ -146,11 +146,13 @@ def _extend(
         for p, role in enumerate(problem.roles)
         if p not in closed and (role.maximum is None or len(playing[p]) < role.maximum)
     ]
-    return _Extension(problem, playing, values, candidates, besides).over(open_roles) if open_roles else values
+    if not open_roles:
+        return values
+    return _FittingCandidates(problem, playing, values, candidates, besides).added_to(open_roles)
 
 
-class _Extension:
-    """Adds further candidates to what plays already, each as soon as it fits.
+class _FittingCandidates:
+    """Further candidates, which are added to what plays already, each as soon as it fits.
 
     A candidate that is taken or admits no value left never fits later. One that is unfed may, once a role that feeds
     its own gets outputs that it did not have: it waits for that. So nearly every candidate is looked at once.
@@ -174,8 +176,8 @@ class _Extension:
         self.unfed: dict[int, set[tuple[tuple[Input, ...], tuple[Output, ...]]]] = {}
         """For each role the ports with which a candidate waits: another one with these need not be tried."""
 
-    def over(self, roles: Sequence[int]) -> tuple[int, ...]:
-        """Extend what plays the roles, and return the values left to the variables."""
+    def added_to(self, roles: Sequence[int]) -> tuple[int, ...]:
+        """Add those that fit to what plays the roles, and return the values left to the variables."""
         # Ascending pairs are a heap already.
         self.trying = [(role, number) for role in roles for number in range(len(self.candidates[role]))]
         full = {role for role in roles if self._is_full(role)}
