@@ -90,7 +90,7 @@ def application(
 
         return answer
 
-    search = once_heard(sparql.respond)
+    query = once_heard(sparql.respond)
     routes = [
         Route("/", file),
         Route("/page/{name}", file),
@@ -99,7 +99,7 @@ def application(
         Route("/look", onlookers.respond),
         Route("/fit", fits.respond),
         Route("/mend", explained.respond),
-        *(Route(path, search, methods=SPARQL_METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
+        *(Route(path, query, methods=SPARQL_METHODS) for path in ("/sparql", "/sparql/", "/search/sparql")),
         Route("/.well-known/wot", directory.itself),
         Route("/things", once_heard(directory.things)),
         Route("/things/{id:path}", once_heard(directory.thing)),
