@@ -11,7 +11,6 @@ from selfconf.certificate import broken_conditions
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.template import Parameter, Setting
-from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first, paper
 from tests.search.worlds import component, iri, problem
@@ -190,8 +189,8 @@ def test_ten_thousand_roles_are_no_deeper_than_the_stack() -> None:
     assert answer.reasons[0].role == iri("r1")
 
 
-def test_steps_that_are_used_up_are_no_refusal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+@pytest.mark.usefixtures("no_solvers")
+def test_steps_that_are_used_up_are_no_refusal() -> None:
     tangled = formula("ABC", "ABc", "AbC", "Abc", "aBC", "aBc", "abC", "abc")
     assert isinstance(first.decide(tangled, 3), Undecided)
     assert isinstance(first.decide(tangled, 100_000), Refusal)

@@ -8,12 +8,12 @@ from hypothesis import given
 from benchmarks.search.further_families import pigeonholes
 from selfconf.model.refusal import Refusal
 from selfconf.search import explain
-from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction
 from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.possibility import possible
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, component, problem, problems
 
 
@@ -48,8 +48,7 @@ def test_roles_that_are_crowded_because_of_what_a_third_could_feed_are_no_reason
 @given(problems(roles=3, components=4))
 @agreement(0.2)
 def test_a_reason_is_irreducible_without_a_solver_library(problem: Problem) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(clause_learning, "find_spec", lambda name: None)
+    with without_solvers():
         _check(problem)
 
 

@@ -13,12 +13,12 @@ from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal
 from selfconf.search import explain, reconfigure
-from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
 from tests.effort import NIGHTLY
 from tests.search.chance import Chance, chances
 from tests.search.oracle import World
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, component, explained_once, problem, problems
 
 
@@ -92,14 +92,14 @@ def test_clause_learning_finds_the_configuration_that_depth_first_search_finds(
 @pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
 def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
-    aided: bool, monkeypatch: pytest.MonkeyPatch
+    aided: bool, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     if aided:
         pytest.importorskip("pysat")
         monkeypatch.setattr(reconfigure, "DEPTH_FIRST_STEPS", 0)
         monkeypatch.setattr(reconfigure, "LEAST_STEPS", 1)  # too few to name the first of the nearest
     else:
-        monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+        request.getfixturevalue("no_solvers")
     monkeypatch.setattr(explain, "refusal", explained_once(explain.refusal))
     unproved: list[bool] = []
     """For each answer without a proof whether there is a nearer one."""
@@ -208,8 +208,7 @@ def test_more_steps_never_find_a_configuration_farther_away(problem: Problem, ch
     left = _after_losses(problem, running, chance)
     if not isinstance(first.search(left), Configuration):
         return
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(clause_learning, "find_spec", lambda name: None)
+    with without_solvers():
         found = [reconfigure.nearest(left, running, steps) for steps in range(1, 11)]
     scores = [_score(one.configuration, running) for one in found if isinstance(one, reconfigure.Reconfiguration)]
     assert scores == sorted(scores)

@@ -6,7 +6,6 @@ import pytest
 
 from selfconf.model.refusal import Conflict
 from selfconf.model.requirement import InputFed, OneRoleEach, RolePlayed
-from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.recruit_refusal import refusal_of_recruits
 from selfconf.search.recruiting import first_recruited
@@ -33,8 +32,8 @@ def test_what_has_nothing_to_do_with_it_is_no_reason() -> None:
     assert kinds == [RolePlayed, RolePlayed, InputFed, OneRoleEach]
 
 
-def test_without_a_solver_all_roles_are_named_and_nothing_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+@pytest.mark.usefixtures("no_solvers")
+def test_without_a_solver_all_roles_are_named_and_nothing_is_proved() -> None:
     refused = refusal_of_recruits(torn())
     assert not refused.irreducible
     assert [type(one) for one in refused.reasons] == [Conflict]

@@ -15,13 +15,13 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate, Recruit
 from selfconf.model.profile import Profile, WantedSignal
 from selfconf.model.refusal import Refusal
-from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import first_recruited, recruited
 from selfconf.search.strategies import first
 from tests.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance
 from tests.search.oracle import World
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import a_problem, agreement, component, iri, problem
 
 Players = tuple[tuple[Candidate, ...], ...]
@@ -165,8 +165,7 @@ def test_recruits_are_those_that_enumeration_finds_first(problem: Problem) -> No
 @given(recruiting())
 @agreement(0.3)
 def test_without_a_solver_recruits_are_enough_and_none_of_them_can_be_spared(problem: Problem) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(clause_learning, "find_spec", lambda name: None)
+    with without_solvers():
         outcome = first.search(problem)
         found = None if isinstance(outcome, Refusal) else recruited(problem, outcome)
     if found is not None:

@@ -12,7 +12,7 @@ exact, where clingo's priorities saturate at 32,767 levels. Without it everythin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from functools import cache
 from importlib.util import find_spec
@@ -38,15 +38,10 @@ LONGEST_CALL = 32_000
 restart ever more rarely, and to keep ever more of what it has learned, with each call anew."""
 
 
+@cache  # to look takes a tenth as long as a small search, and each search and each repair asks
 def solver_available() -> bool:
     """Return whether the extra `solvers` is installed, as of the first call."""
-    return _finds_solver(find_spec)
-
-
-@cache  # to look takes a tenth as long as a small search, and each search and each repair asks
-def _finds_solver(look: Callable[[str], object | None]) -> bool:
-    """Return whether a way to look for packages finds the one of the solvers."""
-    return look("pysat") is not None
+    return find_spec("pysat") is not None
 
 
 def as_clauses(literals: Sequence[int], most: int, top: int) -> list[list[int]]:

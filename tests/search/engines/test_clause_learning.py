@@ -14,13 +14,14 @@ from hypothesis import given
 
 from benchmarks.search import families
 from selfconf.search.budget import Budget
-from selfconf.search.engines import clause_learning
+from selfconf.search.engines import clause_learning, solver_available
 from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.constraints import pruned
 from selfconf.search.reduction.dominance import reduced
 from tests.search.comparison import least_numbers, numbers
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, problems
 
 
@@ -33,18 +34,13 @@ def interruptible() -> Iterator[None]:
 
 
 def test_whether_the_solver_is_there_is_looked_up_once() -> None:
-    clause_learning.solver_available()
-    looks = clause_learning._finds_solver.cache_info().misses
-    assert clause_learning.solver_available() == (importlib.util.find_spec("pysat") is not None)
-    assert clause_learning._finds_solver.cache_info().misses == looks
-
-
-def test_without_a_solver_there_is_none_whatever_was_found_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = clause_learning.solver_available()
-    with monkeypatch.context() as patch:
-        patch.setattr(clause_learning, "find_spec", lambda name: None)
-        assert not clause_learning.solver_available()
-    assert clause_learning.solver_available() == before
+    there = importlib.util.find_spec("pysat") is not None
+    assert solver_available() == there
+    with without_solvers():
+        assert not solver_available()
+        assert not solver_available()
+        assert solver_available.cache_info().misses == 1
+    assert solver_available() == there
 
 
 INTERRUPTING = "import os, signal, sys; sys.stdin.read(1); os.kill(os.getppid(), signal.SIGINT)"

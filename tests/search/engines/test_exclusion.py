@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from benchmarks.search.further_families import colouring, latin, pigeonholes, queens, tour
 from selfconf.search.budget import Budget
-from selfconf.search.engines import clause_learning
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.problem import Problem
@@ -47,10 +46,10 @@ def test_clause_learning_with_groups_finds_the_least_solution(problem: Problem) 
 @pytest.mark.parametrize(("pigeons", "holes"), [(9, 8), (30, 29)])
 @pytest.mark.parametrize("aided", [True, False])
 def test_pigeonholes_through_ports_are_refused_by_counting(
-    pigeons: int, holes: int, aided: bool, monkeypatch: pytest.MonkeyPatch
+    pigeons: int, holes: int, aided: bool, request: pytest.FixtureRequest
 ) -> None:
     if not aided:
-        monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+        request.getfixturevalue("no_solvers")
     assert solution(LazyReduction(pigeonholes(pigeons, holes)), Budget(20_000)) is None
 
 

@@ -17,7 +17,6 @@ from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search import explain
-from selfconf.search.engines import clause_learning
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
@@ -139,12 +138,14 @@ def test_clause_learning_finds_the_best_that_branch_and_bound_finds(problem: Pro
 
 @pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
-def test_what_is_found_in_few_steps_has_a_true_bound(aided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_found_in_few_steps_has_a_true_bound(
+    aided: bool, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
     if aided:
         pytest.importorskip("pysat")
         monkeypatch.setattr(best, "BRANCHING_STEPS", 1)
     else:
-        monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+        request.getfixturevalue("no_solvers")
     monkeypatch.setattr(explain, "refusal", explained_once(explain.refusal))
     unproved: list[bool] = []
     """For each answer without a proof whether there is a better one."""

@@ -19,7 +19,6 @@ from selfconf.model.partition import Recruit
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.cost_table import NO_ROLE
-from selfconf.search.engines import clause_learning
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best
 from tests.search.chance import Chance, by_chance
@@ -183,8 +182,8 @@ def test_a_recruit_that_could_be_spared_is_not_taken_for_its_reward() -> None:
     assert answer.configuration.recruits == (iri("dear"),)
 
 
-def test_without_a_solver_recruits_are_the_fewest_and_nothing_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clause_learning, "find_spec", lambda name: None)
+@pytest.mark.usefixtures("no_solvers")
+def test_without_a_solver_recruits_are_the_fewest_and_nothing_is_proved() -> None:
     answer = best.best_configuration(cheap_or_dear())
     assert isinstance(answer, Optimum)
     assert (answer.cost, answer.proved) == ((Fraction(6),), False)
