@@ -49,7 +49,7 @@ def test_a_predicate_of_the_syntax_of_rdf_xml_is_named() -> None:
         answered('CONSTRUCT { <urn:s> <http://www.w3.org/1999/02/22-rdf-syntax-ns#li> "v" } {}')
 
 
-SNOMED = "a <http://snomed.info/id/138875005>, <urn:x:1>, <http://x/C>"
+SNOMED = "a <http://x/C>, <http://snomed.info/id/138875005>, <urn:x:1>"
 
 
 @pytest.mark.parametrize(
