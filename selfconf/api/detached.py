@@ -12,6 +12,7 @@ from typing import Any
 from selfconf import files
 from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.arguments import checked_priority, checked_upgrade, option
+from selfconf.api.refusal_among import outcome_among, searched_ecology
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Policy
@@ -19,7 +20,6 @@ from selfconf.deployment import Aside, RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration
-from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, safe_name, task_identity
@@ -110,20 +110,14 @@ def request_of(
     """
     task, method, composer = recorded_task(record)
     options = record.options
-    able: Mapping[IRI, Advertisement] = {}
 
     def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
-        nonlocal able
-        answer = composed(composer, found, lost, running, TimeLimit(method.seconds))
-        if isinstance(answer, Refusal):
-            able = {component: one for component, one in found.items() if component not in lost}
-        return answer.configuration if isinstance(answer, Optimum) else answer
+        return outcome_among(composed(composer, found, lost, running, TimeLimit(method.seconds)), found, lost)
 
     def explain(refusal: Refusal, found: Callable[[Refusal], None]) -> None:
-        ecology = able
-
         def find() -> None:  # with a composer of its own: the partition of the next search must not be spoilt
-            found(refusal_with_places(method.composer(task), ecology, refusal, method, method.explaining()))
+            composer, ecology = method.composer(task), searched_ecology(refusal)
+            found(refusal_with_places(composer, ecology, refusal, method, method.explaining()))
 
         at_leisure(find)
 

@@ -14,6 +14,7 @@ from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
 from selfconf.api.places import Places
+from selfconf.api.refusal_among import outcome_among, searched_ecology
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.work_queue import UNDISTURBED, WorkQueue
@@ -25,7 +26,6 @@ from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import FrozenMapping
-from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
@@ -93,7 +93,6 @@ class Run:
         self._refusal: Refusal | Undecided | None = None
         self._composer = method.composer(self.task)
         self._rests_on, self._described = rests_on, described
-        self._found: Mapping[IRI, Advertisement] = {}
         self._told: tuple[Refusal, Mapping[IRI, Advertisement], Refusal] | None = None
         """The refusal that was explained last, of which ecology, and the explanation."""
         self._work = WorkQueue()
@@ -233,19 +232,19 @@ class Run:
 
     def _explain(self, refusal: Refusal, composer: Composer, limit: TimeLimit) -> Refusal:
         """A refusal with all that the time allows to find out; one that waits comes to the same again and again."""
-        if self._told is None or self._told[:2] != (refusal, self._found):
+        ecology = searched_ecology(refusal)
+        if self._told is None or self._told[:2] != (refusal, ecology):
             described = self._described()
-            explained = refusal_with_places(composer, self._found, refusal, self.method, limit, described)
-            self._told = refusal, self._found, explained
+            explained = refusal_with_places(composer, ecology, refusal, self.method, limit, described)
+            self._told = refusal, ecology, explained
         return self._told[2]
 
     def _compose(
         self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
     ) -> Outcome:
-        answer = composed(self._composer, found, lost, running, TimeLimit(self.method.seconds))
-        if isinstance(answer, Refusal):
-            self._found = {component: one for component, one in found.items() if component not in lost}
-        return answer.configuration if isinstance(answer, Optimum) else answer
+        return outcome_among(
+            composed(self._composer, found, lost, running, TimeLimit(self.method.seconds)), found, lost
+        )
 
     def _settle(self, refusal: Refusal | Undecided | None) -> None:
         self._refusal, self._ended = refusal, True
@@ -271,7 +270,7 @@ class Run:
         if not (self._work.do(explain) if over else self._work.until_more(explain, UNDISTURBED)):
             found = [self._with_places(refusal)]
             if over:
-                self._told = refusal, self._found, found[0]
+                self._told = refusal, searched_ecology(refusal), found[0]
         elif isinstance(event, TaskWaiting):
             self._in_ecology().runner.explained(event, found[0])
         return replace(event, refusal=found[0])

@@ -14,6 +14,7 @@ from selfconf.api.composites import Composites
 from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import gathered, text_of
+from selfconf.api.refusal_among import outcome_among, searched_ecology
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.bus.memory import Faults, Network
 from selfconf.bus.memory_bus import MemoryBus
@@ -80,9 +81,9 @@ class MemoryRun:
         self.refusal: Refusal | Undecided | None = None
         """Why the task has ended, where there is no configuration, explained as that of a `Run` is."""
         self.ended = False
-        self._method, self._able = method, dict[IRI, Advertisement]()
-        self._explained: tuple[Refusal, Refusal] | None = None
-        """The refusal that was explained last, and its explanation."""
+        self._method = method
+        self._explained: tuple[Refusal, Mapping[IRI, Advertisement], Refusal] | None = None
+        """The refusal that was explained last, in which ecology, and its explanation."""
         self._composer = composer = method.composer(task)
         request = RunRequest(
             task=task.document.task,
@@ -135,19 +136,16 @@ class MemoryRun:
     def _compose(
         self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
     ) -> Outcome:
-        answer = self._composer.compose(found, lost, running)
-        if isinstance(answer, Refusal):
-            self._able = {component: one for component, one in found.items() if component not in lost}
-            self._explained = None
-        return answer
+        return outcome_among(self._composer.compose(found, lost, running), found, lost)
 
     def _explain(self, refusal: Refusal) -> Refusal:
         """A refusal with all that can be found out: no time passes in the ecology meanwhile."""
-        if self._explained is None or self._explained[0] != refusal:
+        ecology = searched_ecology(refusal)
+        if self._explained is None or self._explained[:2] != (refusal, ecology):
             limit, described = TimeLimit(None), self._ecology.advertisements
-            found = refusal_with_places(self._composer, self._able, refusal, self._method, limit, described)
-            self._explained = refusal, found
-        return self._explained[1]
+            found = refusal_with_places(self._composer, ecology, refusal, self._method, limit, described)
+            self._explained = refusal, ecology, found
+        return self._explained[2]
 
     def _report(self, event: AnyRunEvent) -> None:
         if isinstance(event, TaskWaiting | TaskRefused) and isinstance(event.refusal, Refusal):

@@ -56,6 +56,21 @@ def test_a_site_explains_a_refusal_as_the_library_does() -> None:
     assert not plain.repairs
 
 
+def test_a_refusal_is_explained_by_the_ecology_in_which_it_was_found() -> None:
+    home, later, found = sc.read(ROOT / "examples" / "clock"), list[Callable[[], None]](), list[sc.Refusal]()
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":cellar")
+    kept = decode(encode(task_record(task, Method.of(), Policy.REPAIR)), TaskRecord)
+    request = request_of(kept, lambda work: lambda: None, at_leisure=later.append)
+    refused = request.compose(home.advertisements(), frozenset(), None)
+    request.compose({}, frozenset(), None)  # the next search begins before the refusal of the first is reported
+    assert isinstance(refused, sc.Refusal)
+    request.explain(refused.told_of_held({}), found.append)
+    later[0]()
+    wanted = sc.configure(task, home)
+    assert isinstance(wanted, sc.Refusal)
+    assert found[0].near_misses == wanted.near_misses != ()
+
+
 def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> None:
     assert record().task.startswith("tell-the-time~")
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")

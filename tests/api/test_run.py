@@ -15,6 +15,7 @@ import selfconf as sc
 from selfconf import read, template
 from selfconf.api.answer import Method
 from selfconf.api.run import Run, WorkQueue
+from selfconf.composition import TimeLimit
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
@@ -157,6 +158,16 @@ def test_what_cannot_be_configured_ends_with_a_refusal_that_is_explained(
     assert explained.repairs
     assert [str(miss) for miss in explained.near_misses] == ["its place is kitchen, not cellar"]
     assert repr(explained).startswith("<no configuration for :tell-the-time")
+
+
+def test_a_refusal_is_explained_by_the_ecology_in_which_it_was_found(served: Home, clock: sc.TaskSpecification) -> None:
+    with sc.join(served.ecology) as living:
+        run, home = living.run(clock.bind(room=":cellar")), living.advertisements()
+        refused = run._compose(home, frozenset(), None)
+        run._compose({}, frozenset(), None)
+        assert isinstance(refused, sc.Refusal)
+        explained = run._explain(refused, run._composer, TimeLimit(None))
+    assert [str(miss) for miss in explained.near_misses] == ["its place is kitchen, not cellar"]
 
 
 def test_a_patient_run_waits_for_the_ecology_to_change(served: Home, clock: sc.TaskSpecification) -> None:
