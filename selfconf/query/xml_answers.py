@@ -10,7 +10,6 @@ what it has written: each class is an attribute then, and all of them can be wri
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from html import unescape
 from xml.parsers.expat import ExpatError, ParserCreate
@@ -41,11 +40,12 @@ def xml_answer(found: QueryAnswer) -> bytes:
                     f"RDF/XML cannot write the predicate {predicate}, which does not end in a name of XML,"
                     f" or is of the syntax of RDF/XML; ask for text/turtle"
                 )
-        stand_in = "type-"  # a name of XML that no predicate of the answer has
-        while ox.NamedNode(f"{_RDF}{stand_in}") in predicates:
-            stand_in += "-"
-        written = _as_xml(_without_types(triple, ox.NamedNode(f"{_RDF}{stand_in}")) for triple in triples)
-        written = re.sub(rb"(</?rdf:)%b(?=[ >])" % stand_in.encode(), rb"\1type", written)
+        name = "type-"  # a name of XML that no predicate of the answer has
+        while (stand_in := ox.NamedNode(f"{_RDF}{name}")) in predicates:
+            name += "-"
+        written = _as_xml(_without_types(triple, stand_in) for triple in triples)
+        for begin, end in ((b"<", b" "), (b"<", b">"), (b"</", b">")):  # in values these signs are references
+            written = written.replace(b"%brdf:%b%b" % (begin, name.encode(), end), b"%brdf:type%b" % (begin, end))
     else:
         written = found.serialize(format=ox.QueryResultsFormat.XML) or b""
     written = written.replace(b"\r", b"&#13;")
