@@ -158,7 +158,9 @@ class WorkQueue:
     @property
     def _until_leisure(self) -> float:
         """In how many seconds something is done at leisure, if nothing else comes; infinite if nothing is to be."""
-        least = min((one.undisturbed for one in self._leisurely.values()), default=math.inf)
+        if not self._leisurely:
+            return math.inf
+        least = min(one.undisturbed for one in self._leisurely.values())
         return max(0.0, self._disturbed + least - time.monotonic())
 
     def _do_at_leisure(self) -> None:

@@ -28,6 +28,12 @@ def test_a_wake_up_ends_the_wait() -> None:
     assert queue.next(60.0) is None
 
 
+def test_where_there_is_nothing_to_do_it_waits() -> None:
+    queue, began = WorkQueue(), time.monotonic()
+    assert queue.next(0.05) is None
+    assert time.monotonic() - began >= 0.05
+
+
 def test_what_breaks_takes_nothing_with_it_that_waits() -> None:
     queue, done = WorkQueue(), list[str]()
     queue.work(lambda: {}["nothing"])
