@@ -78,6 +78,10 @@ class Board:
         """Whether there is a task of this identity, or was one lately."""
         return task in self._tasks
 
+    def task(self, task: str) -> Body:
+        """What is known of a task, as JSON; nothing where there is none of this identity."""
+        return self._tasks.get(task, {})
+
     def record(self, task: str) -> TaskRecord | None:
         """The template of a task, and how it is searched for; None where its configurator has not told it."""
         return self._records.get(task)

@@ -1,14 +1,16 @@
 """`/mend`: near misses and relaxations of a task without a configuration, found for the clients that look at it.
 
-The configurator of a task that waits has to listen, and tells what else it finds out only when nothing else is to be
-done; one that has been refused has ended. What nearly fits and which change would help takes a search, which is made
-for the client that asks in a process of its own that has not long.
+The configurator of a task that waits tells what nearly fits and which change would help itself, mostly within a second
+or two: that is waited for, as it takes a search, and two would find the same. But it has to listen, and tells that only
+when nothing else is to be done; one that has been refused has ended, and the inside of a composite tells why it is
+refused alone. For the client that asks about these the search is made in a process of its own that has not long.
 """
 
 from __future__ import annotations
 
 import asyncio
 import json
+import time
 
 from starlette.requests import Request
 from starlette.responses import Response
@@ -24,6 +26,10 @@ from selfconf.serve.problems import problem
 
 EXPLAINED_WITHIN = 20.0
 """Seconds that the search may take."""
+TOLD_WITHIN = 3.0
+"""Seconds within which the configurator of a task that waits has mostly told its near misses and repairs."""
+TOLD_CHECK = 0.1
+"""How often, in seconds, it is looked whether it has."""
 
 
 class ExplainedRefusals:
@@ -38,10 +44,25 @@ class ExplainedRefusals:
         task = request.query_params.get("task", "")
         if not self._board.knows(task):
             return problem(404, "there is no task of this identity; /mend?task=IDENTITY takes one of /state")
-        record = self._board.record(task)
-        told = {"detail": "its configurator has not told its task"}
-        body = told if record is None else await self._found(task, record)
+        body = await self._told(task)
+        if body is None:
+            record = self._board.record(task)
+            told = {"detail": "its configurator has not told its task"}
+            body = told if record is None else await self._found(task, record)
         return Response(json.dumps(body, ensure_ascii=False), media_type="application/json")
+
+    async def _told(self, task: str) -> Body | None:
+        """The refusal as the configurator of a task explains it, which it may do soon; None if it does not."""
+        until = time.monotonic() + TOLD_WITHIN
+        while True:
+            body = self._board.task(task)
+            refusal = body.get("refusal") or {}
+            if refusal.get("repairs"):
+                return refusal
+            expected = refusal and not refusal.get("near_misses") and not body["over"] and not body["inside_of"]
+            if not expected or time.monotonic() > until:
+                return None
+            await asyncio.sleep(TOLD_CHECK)
 
     async def _found(self, task: str, record: TaskRecord) -> Body | None:
         """The refusal of a task, as the page shows it, or the detail of why there is none."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -68,6 +69,53 @@ def test_a_task_that_was_refused_at_once_is_explained(lab: Lab, board: Board) ->
     told = explained(lab, board, task)
     assert iri("drive") in {one["role"] for one in told["reasons"]}
     assert iri("astrid-drive") in {one["component"] for one in told["near_misses"]}
+
+
+def refused(phase: str, *repairs: str, **facts: Any) -> dict[str, Any]:
+    """What is known of a task without a configuration."""
+    told = {"reasons": [], "near_misses": [], "repairs": [{"message": repair} for repair in repairs], "message": ""}
+    return {"phase": phase, "over": False, "inside_of": "", "refusal": told, **facts}
+
+
+def test_what_the_configurator_of_a_task_that_waits_tells_soon_is_not_searched_for(
+    board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(explained_refusals, "TOLD_WITHIN", 60.0)
+    board.apply(EcologyChange(tasks={"t": refused("waiting")}))
+
+    async def explained() -> Any:
+        asking = asyncio.create_task(asked(served(board), "/mend?task=t"))
+        done, _ = await asyncio.wait([asking], timeout=0.3)
+        assert not done
+        board.apply(EcologyChange(tasks={"t": refused("waiting", "add one")}))
+        return (await asking).json
+
+    assert asyncio.run(explained()) == refused("waiting", "add one")["refusal"]
+    assert ask(served(board), "/mend?task=t").json["repairs"] == [{"message": "add one"}]
+
+
+@pytest.mark.parametrize(
+    "facts",
+    [
+        {"over": True},
+        {"inside_of": "outer~c1"},
+        {"refusal": None},
+        {"refusal": {**refused("waiting")["refusal"], "near_misses": [{"component": "urn:a"}]}},
+    ],
+    ids=["refused", "inside", "runs", "told without repairs"],
+)
+def test_what_no_configurator_will_tell_is_searched_for_at_once(
+    board: Board, monkeypatch: pytest.MonkeyPatch, facts: dict[str, Any]
+) -> None:
+    monkeypatch.setattr(explained_refusals, "TOLD_WITHIN", 60.0)
+    board.apply(EcologyChange(tasks={"t": refused("waiting", **facts)}))
+    assert ask(served(board), "/mend?task=t").json == {"detail": "its configurator has not told its task"}
+
+
+def test_what_no_configurator_has_told_in_time_is_searched_for(board: Board, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(explained_refusals, "TOLD_WITHIN", 0.2)
+    board.apply(EcologyChange(tasks={"t": refused("waiting")}))
+    assert ask(served(board), "/mend?task=t").json == {"detail": "its configurator has not told its task"}
 
 
 def test_a_task_that_nobody_knows_is_none(board: Board) -> None:

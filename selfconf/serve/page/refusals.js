@@ -10,7 +10,7 @@ export class ExplainedRefusals {
   refusal(id, task, live) {
     const body = task?.refusal;
     if (!body || !live || body.repairs?.length) return body;  // with repairs, its configurator has found out the rest
-    const about = JSON.stringify([id, body, Object.keys(task.lost)]);
+    const about = JSON.stringify([id, body.reasons, body.message, Object.keys(task.lost)]);
     if (about !== this.#asked) {
       this.#asked = about;
       this.#told = { pending: true };
