@@ -59,8 +59,7 @@ class ExplainedRefusals:
             refusal = body.get("refusal") or {}
             if refusal.get("repairs"):
                 return refusal
-            expected = refusal and not refusal.get("near_misses") and not body["over"] and not body["inside_of"]
-            if not expected or time.monotonic() > until:
+            if not refusal or body["over"] or body["inside_of"] or time.monotonic() > until:
                 return None
             await asyncio.sleep(TOLD_CHECK)
 
