@@ -153,7 +153,7 @@ def test_what_would_mend_a_task_that_waits_is_found_while_its_refusal_is_looked_
     page.until("[...document.querySelectorAll('.task')].some((one) => one.textContent.includes('second'))")
     page.value("[...document.querySelectorAll('.task')].find((one) => one.textContent.includes('second')).click()")
     page.says("#below", "Not to be had")
-    page.says(".refusal", "no component is eligible for the role")
+    page.says(".refusal", "no component that is free is eligible for the role")
     page.says(".refusal", "add one more component for the role")
     assert run.end(signal.SIGINT) == 0
 
