@@ -118,8 +118,10 @@ def test_an_outcome_is_not_remembered_where_another_file_has_changed() -> None:
 @pytest.mark.slow
 def test_whatever_is_configured_conforms_to_the_files_that_it_is_made_from(tmp_path: Path) -> None:
     rng = random.Random(7)
-    judged = 0
-    for _ in range(examples(120)):
+    judged = tried = 0
+    while judged < examples(10):
+        tried += 1
+        assert tried < 100 * examples(10)
         template, roles = ecology(rng)
         ads = components(rng, list(roles.about))
         answer = configured(tmp_path, template, roles.about, ads, roles.bound)
@@ -130,4 +132,3 @@ def test_whatever_is_configured_conforms_to_the_files_that_it_is_made_from(tmp_p
             report = selfconf.validate(files)
             assert [one for one in report.diagnostics if one.file == str(files[0])] == [], (PREFIXES, template, ads)
             judged += 1
-    assert judged >= examples(10)
