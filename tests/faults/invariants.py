@@ -14,6 +14,7 @@ from selfconf.bus.memory import LEASE
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
+from selfconf.model.configuration import Configuration
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
@@ -126,13 +127,24 @@ def obeys_two(history: History) -> Iterator[str]:
 
 
 def acts_on_part(history: History) -> Iterator[str]:
-    """An actuator acts only while no other task holds a part of its configuration."""
+    """An actuator acts only while no other task holds a part of its configuration.
+
+    That is the one that ran before for as long as a better one is being prepared, of which parts may be held.
+    """
     for life in acting(history):
         if not life.runtime.profile.outputs:
             for agent in supervisors(history, life):
-                for component in agent.configuration.components if agent.configuration is not None else ():
-                    for other in strangers(history, component, agent):
-                        yield f"{life.name} acts for {agent.name}, and {component.short} is held by {other}"
+                plans = [plan for plan in (agent.state.target, agent.state.fallback) if plan is not None]
+                amiss = [list(held_by_others(history, plan, agent)) for plan in plans]
+                for part in amiss[-1] if amiss and all(amiss) else ():
+                    yield f"{life.name} acts for {agent.name}, and {part}"
+
+
+def held_by_others(history: History, plan: Configuration, agent: TaskRunner) -> Iterator[str]:
+    """Which parts of a configuration of a task another one holds, in words."""
+    for component in plan.components:
+        for other in strangers(history, component, agent):
+            yield f"{component.short} is held by {other}"
 
 
 def strangers(history: History, component: IRI, agent: TaskRunner) -> Iterator[str]:
