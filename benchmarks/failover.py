@@ -10,7 +10,7 @@ one put-to-callback round trip is measured over the same router, after the same 
 With `--kill` the process of the sensor in use is ended by kill -9 instead, and started again after the trial.
 
     detect   FAIL raised, or the process killed -> the component is given up by the configurator
-    decide   the search for the next configuration
+    decide   the search for the next configuration, or the look at what was found out beforehand
     deploy   the rest, until the first message has arrived
 """
 

@@ -191,7 +191,7 @@ class Lab:
         still: bool = False,
     ) -> None:
         """`still`: no file changes while the sites live, so that they read what is advertised once."""
-        self._still = still
+        self._still, self._foresees = still, seed % 2 == 1
         self.network = Network(seed, faults)
         self.advertised = advertised
         self.folder = folder
@@ -251,8 +251,10 @@ class Lab:
     ) -> TaskRunner:
         """A configurator that has begun with act 1; its clock is ahead by `clock` seconds.
 
-        `wishes` are further fields of its `RunRequest`.
+        `wishes` are further fields of its `RunRequest`. Where the seed is odd, it finds out beforehand what to do if a
+        component is lost.
         """
+        wishes.setdefault("at_leisure", (lambda work: work()) if self._foresees else (lambda work: None))
         task = task_of(template, bound)
         composer = Composer(task)
         order = RunRequest(

@@ -106,7 +106,7 @@ def request_of(
 ) -> RunRequest:
     """The request by which a site runs a task that it keeps. Raises SelfconfError for what cannot be read.
 
-    `at_leisure` does what nothing waits for: it finds out what else a refusal can tell.
+    `at_leisure` does what nothing waits for: while the task waits, it finds out what else a refusal can tell.
     """
     task, method, composer = recorded_task(record)
     options = record.options
@@ -134,6 +134,7 @@ def request_of(
         upgrade=_upgrade(options),
         believed=believed,
         aside=aside,
+        at_leisure=at_leisure,
         explain=explain,
         record=record,
     )

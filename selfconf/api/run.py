@@ -116,6 +116,7 @@ class Run:
             priority=record.priority,
             upgrade=upgrade,
             aside=partial(self._work.work, owner=OF_TASK),
+            at_leisure=partial(self._work.at_leisure, owner=OF_TASK),
             abandon=partial(self._work.abandon, OF_TASK),  # and not what explains how the task has ended
             record=record,
             report=self._work.report,

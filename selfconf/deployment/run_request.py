@@ -84,6 +84,9 @@ class RunRequest:
     """For each role of a configuration, the candidates that came before the chosen ones."""
     aside: Aside = at_once
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
+    at_leisure: Callable[[Callable[[], None]], None] = lambda work: None
+    """Does what nothing waits for, apart from the bus like `aside`, in place of what it was given before; where it is
+    interrupted, it does that once more. By default it is not done."""
     abandon: Callable[[], None] = lambda: None
     """Called once when the task has ended: what still runs aside for it may end, as no caller waits for it."""
     explain: Callable[[Refusal, Callable[[Refusal], None]], None] = lambda refusal, found: None

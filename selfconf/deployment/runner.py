@@ -207,6 +207,7 @@ class TaskRunner:
             self._carry_out(effect)
         if isinstance(event, Appeared) and self.state.phase is Phase.RUNNING and self.state.target is not None:
             self._retries.settle()
+            self._search.prepare()
             if event.lives:
                 self._stand_by(self.state.target)
         if isinstance(event, Composed) and self.state.phase is Phase.RUNNING and self.state.taken:
@@ -331,6 +332,7 @@ class TaskRunner:
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())
                 self._report(TaskRunning(effect.configuration, self.state.epoch))
                 self._stand_by(effect.configuration)
+                self._search.prepare()
                 self._retries.settle()
             case Finish():
                 self._finish(effect)

@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from selfconf.bus.port import Undo
-from selfconf.configurator import Compose, Composed, Event, Phase, State
+from selfconf.configurator import Compose, Composed, Event, Phase, Policy, State
+from selfconf.deployment.contingencies import Contingencies
 from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.run_request import EventListener, RunRequest
 from selfconf.discovery import EcologyView
@@ -18,6 +19,7 @@ from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import ComponentLeftOut, SearchEnded
 from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
 
 log = logging.getLogger(__name__)
 
@@ -38,14 +40,21 @@ class TaskSearch:
         """`give_up` ends the task where it cannot be searched for."""
         self._bus, self._ecology, self._request, self._liveness = ecology.bus, ecology, request, liveness
         self._state, self._step, self._report, self._give_up = state, step, report, give_up
+        self._contingencies = Contingencies(ecology.bus, request)
         self._left_out: set[IRI] = set()
         """The components that were reported to play no role, as they cannot be judged."""
         self._outdated: Undo = lambda: None
         """Abandons the search that was begun last."""
 
     def begin(self, effect: Compose) -> None:
-        """Search elsewhere, so that a search keeps this configurator from nothing."""
-        found = {component: f.advertisement for component, f in self._ecology.discovery.found.items()}
+        """Search elsewhere, as a search must keep this configurator from nothing; unless its answer is known."""
+        self._outdated()  # the answer of an earlier search is not looked at any more
+        found, began = self._advertised(), time.monotonic()
+        known = self._contingencies.answer(found, effect.lost, effect.running)
+        if known is not None:
+            composed = Composed(effect.attempt, known.configuration)
+            self._composed(composed, time.monotonic() - began, known.not_judged)
+            return
         taken, refused = self._state().taken.keys(), self._state().refusal if self._state().despite else None
 
         def work() -> None:
@@ -70,8 +79,17 @@ class TaskSearch:
             composed = Composed(effect.attempt, outcome, frozenset(usable))
             self._bus.wake_up(lambda: self._composed(composed, seconds, not_judged))
 
-        self._outdated()  # the answer of an earlier search is not looked at any more
         self._outdated = self._request.aside(work)
+
+    def prepare(self) -> None:
+        """Find out, when there is time, what the search will answer if one of the components that run is lost."""
+        state = self._state()
+        if state.policy is Policy.REPAIR and state.target is not None:
+            lost = frozenset(state.lost) | frozenset(state.taken)
+            self._contingencies.prepare(self._advertised(), lost, state.target)
+
+    def _advertised(self) -> Mapping[IRI, Advertisement]:
+        return {component: found.advertisement for component, found in self._ecology.discovery.found.items()}
 
     def _composed(self, composed: Composed, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
         for component in sorted(not_judged.keys() - self._left_out):

@@ -1,0 +1,111 @@
+"""Contingencies: to what a task is configured again if a component is lost, found out before that happens.
+
+While a task runs, its configurator has time. So it searches for the configuration without one component, for each of
+those that play in turn. If that component is lost, and nothing else is other than was supposed, the answer is there,
+and the repair begins at once, however long the search has taken. It is the answer that the search would give then, as
+that depends on nothing but what it is asked.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from selfconf.bus.port import Bus
+from selfconf.deployment.run_request import RunRequest
+from selfconf.errors import SelfconfError
+from selfconf.model.configuration import Configuration
+from selfconf.model.obstacle import NotJudged
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.deadline import TimeUp, deadline
+
+log = logging.getLogger(__name__)
+
+MOST_SECONDS = 0.5
+"""Seconds for the contingencies of one configuration; a component that there is no time for is searched for when it is
+lost."""
+REST = 10
+"""How many times as long as they have taken it is until they are found out anew, while the ecology changes."""
+
+
+class Contingency(NamedTuple):
+    """What the search has answered to a question that may come."""
+
+    configuration: Configuration
+    not_judged: Mapping[IRI, NotJudged]
+    """The components that were left out because they cannot be judged."""
+
+
+class _Supposed(NamedTuple):
+    """What a search is about, but for the component that is lost besides."""
+
+    found: Mapping[IRI, Advertisement]
+    lost: frozenset[IRI]
+    running: Configuration
+
+
+class Contingencies:
+    """Those of the one task that a configurator runs."""
+
+    def __init__(self, bus: Bus, request: RunRequest) -> None:
+        self._bus, self._request = bus, request
+        self._supposed: _Supposed | None = None
+        """That for which they are found out now, or have been."""
+        self._known: dict[IRI, Contingency | None] = {}
+        """By the component that is lost, None where there is no configuration; replaced with what is supposed, and
+        filled by another thread."""
+        self._next: _Supposed | None = None
+        """That for which they are to be found out next."""
+        self._rested = 0.0
+        """When they may be found out anew, by the clock of the bus."""
+
+    def prepare(self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration) -> None:
+        """Find out, when there is time, what comes after `running` if one more component than the `lost` is lost.
+
+        The inside of a composite has none, as its search also depends on what is outside, which may change unnoticed.
+        """
+        if self._request.outside is not None:
+            return
+        waits, self._next = self._next is not None, _Supposed(found, lost, running)
+        if not waits:
+            self._bus.later(max(0.0, self._rested - self._bus.now()), self._begin)
+
+    def _begin(self) -> None:
+        supposed, self._next = self._next, None
+        if supposed is not None and supposed != self._supposed:
+            self._supposed, self._known = supposed, {}
+            known = self._known
+            self._request.at_leisure(lambda: self._find_out(supposed, known))
+
+    def _find_out(self, supposed: _Supposed, known: dict[IRI, Contingency | None]) -> None:
+        """Search without each component that is not known about; interrupted, it goes on with the next one."""
+        began = self._bus.now()
+        try:
+            with deadline(MOST_SECONDS):
+                for component in supposed.running.components:
+                    if component not in known:
+                        lost = supposed.lost | {component}
+                        outcome = self._request.compose(supposed.found, lost, supposed.running)
+                        if isinstance(outcome, Configuration):
+                            known[component] = Contingency(outcome, dict(self._request.not_judged()))
+                        else:
+                            known[component] = None
+        except (TimeUp, SelfconfError):
+            pass  # the search is made when it is needed, and what is wrong with it is reported then
+        except Exception:  # as a task that runs must go on
+            log.exception("the search for a contingency broke")
+        finally:
+            now = self._bus.now()
+            self._rested = now + REST * (now - began)
+
+    def answer(
+        self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Contingency | None:
+        """What the search answers if it is asked this, where that is known and is a configuration."""
+        supposed = self._supposed
+        if supposed is None or supposed.running is not running or not supposed.lost < lost or supposed.found != found:
+            return None
+        more = lost - supposed.lost
+        return self._known.get(next(iter(more))) if len(more) == 1 else None
