@@ -45,7 +45,7 @@ class Quality:
 
 
 QUALITIES = {
-    "draft": Quality((720, 456), 1, 100.0, film_size=(380, 220), film_samples=1, film_density=60.0, frames=10),
+    "draft": Quality((600, 380), 1, 80.0, film_size=(300, 174), film_samples=1, film_density=50.0, frames=6),
     "fine": Quality(),
 }
 
