@@ -7,7 +7,7 @@ from functools import partial
 
 from selfconf.bus.port import Undo
 from selfconf.configurator import Appeared, Event, Improvable, Loss, Phase, State
-from selfconf.deployment.calls import Calls
+from selfconf.deployment.components import HeldLives
 from selfconf.discovery import EcologyView
 from selfconf.model.term import IRI
 
@@ -23,14 +23,14 @@ class Retries:
     def __init__(
         self,
         ecology: EcologyView,
+        lives: HeldLives,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        calls: Calls,
         upgrade: float | None,
     ) -> None:
         """`upgrade`: after how many seconds what has appeared may be rather had; None: what runs is kept."""
-        self._bus, self._ecology = ecology.bus, ecology
-        self._state, self._step, self._calls, self._upgrade = state, step, calls, upgrade
+        self._bus, self._ecology, self._lives = ecology.bus, ecology, lives
+        self._state, self._step, self._upgrade = state, step, upgrade
         self._look_again: Undo = lambda: None
         self._pause = TRY_AGAIN
         self._chance_at: float | None = None
@@ -84,7 +84,7 @@ class Retries:
 
     def _may_be_able(self, component: IRI, loss: Loss) -> bool:
         """Whether a component lives, or its site can start it, and it obeys what it received last."""
-        if component in self._calls.out_of_control(self._state().owed) and not loss.busy:
+        if component in self._lives.out_of_control(self._state().owed) and not loss.busy:
             return False
         found = self._ecology.discovery.found.get(component)
         return self._ecology.life(component) is not None or (found is not None and found.startable)

@@ -45,9 +45,7 @@ from selfconf.configurator import (
     Watch,
     step,
 )
-from selfconf.deployment.calls import Calls
-from selfconf.deployment.component_messages import ComponentMessages
-from selfconf.deployment.liveness import Liveness
+from selfconf.deployment.components import Calls, ComponentMessages, HeldLives, Liveness, PortEnds, Waking
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import Retries
@@ -111,21 +109,26 @@ class TaskRunner:
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
+        self._lives = HeldLives(self.ecology)
+        self._waking = Waking(self.ecology, self._lives, self._step, self._report)
+        self._ends = PortEnds(self.ecology, request.outside)
         self._calls = Calls(
             self.ecology,
             self.identity,
             self.supervisor,
+            self._lives,
+            self._waking,
+            self._ends,
             self._now,
             self._step,
             self._report,
-            request.outside,
         )
-        self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls)
+        self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls, self._waking)
         self._discovery = TaskDiscovery(self.ecology, self.name, self._liveness, self._now, self._step, self._report)
         self._search = TaskSearch(
             self.ecology, request, self._liveness, self._now, self._step, self._report, self._give_up
         )
-        self._retries = Retries(self.ecology, self._now, self._step, self._calls, request.upgrade)
+        self._retries = Retries(self.ecology, self._lives, self._now, self._step, request.upgrade)
         self._record = DeploymentRecord(bus, self.keys, self.name, self.identity, request, self.status, self.stop)
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self._events: deque[Event] = deque()
@@ -133,7 +136,7 @@ class TaskRunner:
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
-        self._messages = ComponentMessages(self.ecology, task, self._now, self._step, self._calls)
+        self._messages = ComponentMessages(self.ecology, task, self._lives, self._ends, self._now, self._step)
         self._subscriptions = [
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
             bus.subscribe(self.keys.reopens(), lambda _: self._liveness.reopens(), Urgency.EVENT),
@@ -175,11 +178,11 @@ class TaskRunner:
 
     def issued_outside(self) -> dict[str, tuple[Wire, ...]]:
         """Which outputs stand behind those of the composite of which the task is the inside."""
-        return {} if self.state.target is None else self._calls.issued_outside(self.state.target)
+        return {} if self.state.target is None else self._ends.issued_outside(self.state.target)
 
     def calling_outside(self) -> dict[str, tuple[IRI, ...]]:
         """Which components call what the composite needs of which the task is the inside."""
-        return {} if self.state.target is None else self._calls.calling_outside(self.state.target)
+        return {} if self.state.target is None else self._ends.calling_outside(self.state.target)
 
     def _step(self, event: Event) -> None:
         """Feed the machine; an event that an effect brings about comes after the other effects."""
@@ -267,7 +270,7 @@ class TaskRunner:
     @property
     def _out_of_control(self) -> tuple[IRI, ...]:
         """The components that have not obeyed their release and may still act, sorted."""
-        return self._calls.out_of_control(self.state.owed)
+        return self._lives.out_of_control(self.state.owed)
 
     @property
     def losses(self) -> Mapping[IRI, str]:
@@ -278,7 +281,7 @@ class TaskRunner:
         """Record and report every component that the machine has just given up, whatever the cause."""
         for component, loss in self.state.lost.items():
             if known.get(component) is not loss:
-                self._calls.abandon(component)
+                self._waking.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self._report(ComponentLost(component, loss.cause.value, loss.detail))
 
@@ -314,7 +317,7 @@ class TaskRunner:
             case Unwatch():
                 self._messages.unwatch(effect.component)
             case WakeUp():
-                self._calls.wake(effect)
+                self._waking.wake(effect)
             case ReserveOf():
                 self._calls.reserve(effect)
             case QueueFor():

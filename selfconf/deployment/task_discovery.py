@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from selfconf.configurator import Discovered, Event, State
+from selfconf.deployment.components import Liveness
 from selfconf.deployment.holders import ask_holders
-from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.holder import Holder

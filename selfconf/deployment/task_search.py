@@ -9,8 +9,8 @@ from dataclasses import replace
 
 from selfconf.bus.port import Undo
 from selfconf.configurator import Compose, Composed, Event, Phase, Policy, State
+from selfconf.deployment.components import Liveness
 from selfconf.deployment.contingencies import Contingencies
-from selfconf.deployment.liveness import Liveness
 from selfconf.deployment.run_request import EventListener, RunRequest
 from selfconf.discovery import EcologyView
 from selfconf.errors import ProgrammerError, SelfconfError

@@ -9,7 +9,7 @@ import pytest
 from selfconf.bus.port import Replies
 from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Phase, Policy
-from selfconf.deployment.liveness import AUDIT
+from selfconf.deployment.components.liveness import AUDIT
 from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, TooFewEligible

@@ -16,7 +16,7 @@ from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import ReleaseFrom
 from selfconf.configurator.events import Answered, Call
 from selfconf.configurator.state import Loss, State
-from selfconf.deployment.calls import Calls
+from selfconf.deployment.components.calls import Calls
 from selfconf.model.run_event import ComponentLost, RunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import ActivationPhase, ActivationStep
@@ -112,7 +112,7 @@ class Mutation(NamedTuple):
 
 
 INPUTS = "selfconf.sdk.inputs.Inputs"
-CALLS, LIVENESS = "selfconf.deployment.calls", "selfconf.deployment.liveness"
+CALLS, LIVENESS = "selfconf.deployment.components.calls", "selfconf.deployment.components.liveness"
 RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
 SHARES_ALL = {
@@ -153,7 +153,7 @@ MUTATIONS = {
     "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
     "nobody waits in vain": Mutation(
         {
-            "selfconf.deployment.component_messages.ComponentMessages._received_free": nothing,
+            "selfconf.deployment.components.component_messages.ComponentMessages._received_free": nothing,
             "selfconf.deployment.retries.Retries._forgive": nothing,
         },
         (SECOND, Action(4.0, "stop_task", "task-1")),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.deployment.calls import WAKING
+from selfconf.deployment.components.waking import WAKING
 from selfconf.site.restart_limit import CRASH_WINDOW, FIRST_PAUSE, LONGEST_RESTART_PAUSE, PAUSE_FACTOR, RestartLimit
 
 

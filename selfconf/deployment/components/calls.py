@@ -1,4 +1,4 @@
-"""The calls that a configurator makes to components: wake, reserve, activate and connect, turn off, stand by.
+"""The calls that a configurator makes to components: reserve, activate and connect, turn off, stand by.
 
 Every call names the task, and the life of the component that it means. A time-out is not an outcome: after one the
 component is asked for its actual state, and that decides. A call is made again if the state shows that it never
@@ -8,20 +8,18 @@ arrived.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import TypedDict
 
-from selfconf.bus.port import Replies, Undo
+from selfconf.bus.port import Replies
 from selfconf.configurator import (
     Answered,
     Appeared,
     ApplyTo,
     AwaitRelease,
     Call,
-    Caller,
-    Callers,
     Decline,
     Event,
     Failed,
@@ -31,17 +29,18 @@ from selfconf.configurator import (
     Rewired,
     State,
     WaitedLong,
-    WakeUp,
     callers,
     parameter_values,
     wiring,
 )
-from selfconf.deployment.run_request import EventListener, Outside, Standby, TaskIdentity
-from selfconf.discovery import EcologyView, FoundAdvertisement
+from selfconf.deployment.components.held_lives import HeldLives
+from selfconf.deployment.components.port_ends import PortEnds
+from selfconf.deployment.components.waking import Waking
+from selfconf.deployment.run_request import EventListener, Standby, TaskIdentity
+from selfconf.discovery import EcologyView
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.holder import Holder
-from selfconf.model.profile import CALL_MARK
 from selfconf.model.run_event import (
     ActivationSent,
     CallDeclined,
@@ -49,7 +48,6 @@ from selfconf.model.run_event import (
     ComponentAwaited,
     ComponentReleased,
     ComponentUnreachable,
-    ComponentWoken,
     InputConnected,
     ParametersSet,
 )
@@ -61,13 +59,10 @@ from selfconf.protocol.messages import (
     CallAnswer,
     Cause,
     End,
-    Fail,
     Release,
     Reserve,
     StateOf,
     Verdict,
-    Wake,
-    Wire,
 )
 
 log = logging.getLogger(__name__)
@@ -84,12 +79,6 @@ CALL_ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
 GONE = 2.5
 """Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
-WAKING = 15.0
-"""Seconds that a component that a site starts may take to live."""
-SITE_BACK = 3.0
-"""Seconds that a site may be away before what it was starting is given up."""
-LEFT_BEHIND = 8
-"""How many lives of a component are remembered at most that may only be frozen."""
 RESERVE_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
 
@@ -113,129 +102,29 @@ class Calls:
         ecology: EcologyView,
         identity: TaskIdentity,
         supervisor: str,
+        lives: HeldLives,
+        waking: Waking,
+        ends: PortEnds,
         state: Callable[[], State],
         step: Callable[[Event], None],
         report: EventListener,
-        outside: Outside | None = None,
     ) -> None:
-        """`outside` is what is outside of the task, if it is the inside of a composite."""
-        self._outside = outside
-        self._issuing: dict[IRI, Mapping[str, tuple[Wire, ...]]] = {}
-        """For each composite that acts for the task, what stands behind its outputs."""
-        self._calling: dict[IRI, Mapping[str, tuple[IRI, ...]]] = {}
-        """For each composite that acts for the task, which components inside of it call what it needs."""
         self.bus, self.ecology, self.keys, self.identity = ecology.bus, ecology, ecology.keys, identity
         self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
-        self._waking: dict[IRI, tuple[WakeUp, Undo]] = {}
+        self._lives, self._waking, self._ends = lives, waking, ends
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""
-        self._lives: dict[IRI, str] = {}
-        """The life of each component that has obeyed a call of this task, and not yet a release."""
-        self._left_behind: dict[IRI, tuple[str, ...]] = {}
-        """The lives that have obeyed a call of this task, and ended, or seemed to, before they obeyed a release."""
-        self._lost_lives: dict[IRI, str] = {}
-        """The life of each component that counts as lost when it is woken again: one that was started for this task,
-        was left behind, or was to be ended, as it did not obey a release."""
-        self._called: set[IRI] = set()
-        """The components that were asked to be held, or to act, whatever has come of it."""
-        self._unborn: set[IRI] = set()
-        """The components that had no life when they were to be woken, and have had none since."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
-        self.gone: set[IRI] = set()
-        """The components without a life for so long that what is left of an earlier one acts for no task, if it is not
-        only frozen, and those whose sites have said that their processes have ended; what is owed to them stays owed,
-        as one that was frozen goes on with what it did."""
 
-    # Waking and reserving.
-
-    def wake(self, effect: WakeUp) -> None:
-        """Have a component live: one that is dormant is started by its site."""
-        found = self.ecology.discovery.found.get(effect.component)
-        held = self._lives.get(effect.component)
-        if held is not None and not self.ecology.lives_on(effect.component, held):
-            self._leave_behind(effect.component)
-        if self.ecology.life(effect.component) is not None:
-            self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
-        elif found is not None and found.startable:
-            self._start_by_site(effect, found)
-        else:
-            self._unborn.add(effect.component)
-            detail = "it is advertised, but it does not run" if found is None or not found.unable else found.unable
-            self._unreachable(effect.component, Call.WAKE, effect.epoch, detail)
-
-    def woken(self, component: IRI, life: str) -> None:
-        """A component lives; perhaps it was started for this task, or it was frozen and has not been released."""
-        if life in self._left_behind.get(component, ()):
-            self._release_left_behind(component, life)
-        self._unborn.discard(component)
-        self.gone.discard(component)
-        waiting = self._waking.pop(component, None)
-        if waiting is not None:
-            waiting[1]()
-            self._lost_lives[component] = life
-            self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
-
-    def heard_fail(self, fail: Fail) -> None:
-        """Handle a FAIL that a site sends for a crashed component: its process has ended, or is being ended."""
-        if fail.cause is Cause.CRASH and fail.component in (self._state().held.keys() | self._state().owed.keys()):
-            self.gone.add(fail.component)
-
-    def out_of_control(self, owed: Iterable[IRI]) -> tuple[IRI, ...]:
-        """Those of the components that are owed a release which may still act, sorted."""
-        return tuple(sorted(one for one in owed if one not in self.gone or self._lives_on(one)))
-
-    def abandon(self, component: IRI) -> None:
-        """A component was lost: it is not waited for any more if it was started for this task."""
-        waiting = self._waking.pop(component, None)
-        if waiting is not None:
-            waiting[1]()
-
-    def site_began(self, site: str) -> None:
-        """A site lives a new life: what it was starting in another one it is asked to start again."""
-        for effect, _ in list(self._waking.values()):
-            found = self.ecology.discovery.found.get(effect.component)
-            if found is not None and found.site == site:
-                self._start_by_site(effect, found)
-
-    def site_ended(self, site: str) -> None:
-        """The life of a site has ended: what it was starting is given up, unless the site is back in time."""
-        for effect, _ in list(self._waking.values()):
-            found = self.ecology.discovery.found.get(effect.component)
-            if found is not None and found.site == site:
-                self.bus.later(SITE_BACK, partial(self._give_up, self._waking[effect.component], "its site has ended"))
-
-    def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
-        """Have the site start the process; that is done when the component lives."""
-        self._report(ComponentWoken(effect.component, found.site))
-        self.abandon(effect.component)
-        self._unborn.add(effect.component)
-        too_late = f"it was started, but does not live after {WAKING:.0f} s"
-        waking = effect, self.bus.later(WAKING, lambda: self._give_up(waking, too_late))
-        self._waking[effect.component] = waking
-
-        def answered(replies: Replies) -> None:
-            if replies.errors:
-                self.gone.add(effect.component)  # its site can tell that no process of it runs
-            if not replies.samples:
-                self._give_up(waking, replies.errors[0] if replies.errors else "its site does not answer")
-
-        wake = Wake(effect.component, self._lost_lives.get(effect.component, ""))
-        self.bus.ask(self.keys.wake(found.site), encode(wake), CALL, answered)
-
-    def _give_up(self, waking: tuple[WakeUp, Undo], detail: str) -> None:
-        """Do without a component that was to be started, unless it lives by now or is being started anew."""
-        component = waking[0].component
-        if self._waking.get(component) is waking:
-            self.abandon(component)
-            self._unreachable(component, Call.WAKE, waking[0].epoch, detail)
+    # Reserving.
 
     def reserve(self, effect: ReserveOf) -> None:
         """Have a component held for this task."""
         component = effect.component
         message = Reserve(
             **self._claim(component, effect.epoch),
-            inputs=self._with_promises(effect.inputs),
+            inputs=self._ends.wires(effect.inputs),
             values=dict(effect.values),
         )
         self._call(component, Call.RESERVE, message)
@@ -268,13 +157,13 @@ class Calls:
 
     def apply(self, effect: ApplyTo) -> None:
         """Activate a component with its parameters, and connect its inputs."""
-        life = self._life(effect.component)
+        life = self._lives.life(effect.component)
         if life is None or not self.ecology.lives_on(effect.component, life):
             self._ended(effect.component, life or "")
             return
-        inputs = self._with_promises(effect.inputs)
+        inputs = self._ends.wires(effect.inputs)
         claim = self._claim(effect.component, effect.epoch)
-        calling = self._who_call(effect.callers)
+        calling = self._ends.callers(effect.callers)
         message = Apply(**claim, inputs=inputs, values=dict(effect.values), callers=calling, gently=effect.gently)
         self._call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
@@ -301,8 +190,8 @@ class Calls:
         wires, values, calling = wiring(configuration), parameter_values(configuration), callers(configuration)
         for component, outputs in standby.items():
             claim = self._claim(component, self._state().epoch)
-            inputs, spare = self._with_promises(wires[component]), self._with_promises(outputs)
-            who = self._who_call(calling[component])
+            inputs, spare = self._ends.wires(wires[component]), self._ends.wires(outputs)
+            who = self._ends.callers(calling[component])
             message = Apply(**claim, inputs=inputs, standby=spare, values=values[component], callers=who)
             self.bus.ask(self.keys.call(component, Call.APPLY.value), encode(message), CALL, lambda replies: None)
 
@@ -314,9 +203,9 @@ class Calls:
         self._connections.pop(component, None)
         self._awaited.discard(component)
         message = Release(**self._claim(component, effect.epoch))
-        if not self._lives_on(component):
-            self._leave_behind(component)
-            never_acted = component in self._unborn - self._called
+        if not self._lives.lives_on(component):
+            self._lives.leave_behind(component)
+            never_acted = self._lives.never_acted(component)
             off = Answered(component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE if never_acted else None)
             self.bus.wake_up(lambda: self._step(off))
             if not never_acted:
@@ -341,26 +230,30 @@ class Calls:
                 self.bus.later(CALL, partial(self._release_again, effect))
 
         self.bus.ask(self.keys.call(component, Call.RELEASE.value), encode(message), CALL, answered)
-        self.bus.later(GONE, partial(self._is_gone, component))
 
-    def _leave_behind(self, component: IRI) -> None:
-        """Remember the life of a component that is held and does not live any more: it may only be frozen."""
-        life = self._lives.pop(component, None)
-        if life is not None:
-            self._lost_lives[component] = life
-            self._left_behind[component] = (*self._left_behind.get(component, ()), life)[-LEFT_BEHIND:]
+        def gone() -> None:
+            """A life that has been gone for longer than its grace acts for no task, unless this node is cut off."""
+            if self.bus.link and not self._lives.lives_on(component):
+                self._lives.gone(component)
+
+        self.bus.later(GONE, gone)
+
+    def woken(self, component: IRI, life: str) -> None:
+        """A component lives; perhaps it was frozen and has not been released."""
+        if self._lives.was_left_behind(component, life):
+            self._release_left_behind(component, life)
 
     def _release_left_behind(self, component: IRI, life: str) -> None:
         """Tell a life that was frozen that it is released, whatever other lives of the component have received since.
 
         Unless it is wanted again: then it hears that.
         """
-        left = life in self._left_behind.get(component, ()) and self.ecology.lives_on(component, life)
+        left = self._lives.was_left_behind(component, life) and self.ecology.lives_on(component, life)
         if not left or self._state().ended:
             return
         again = partial(self._release_left_behind, component, life)
         wanted = component in self._waking or component in self._state().held
-        if wanted and self._life(component) == life:
+        if wanted and self._lives.life(component) == life:
             self.bus.later(CALL, again)
             return
         message = replace(Release(**self._claim(component, self._state().epoch)), life=life)
@@ -368,32 +261,21 @@ class Calls:
         def answered(replies: Replies) -> None:
             answer = self._answer_in(replies, life)
             if answer is not None and answer.life == life:
-                self._caught_up(component, life)
+                self._lives.caught_up(component, life)
             else:
                 self.bus.later(CALL, again)
 
         self.bus.ask(self.keys.call(component, Call.RELEASE.value), encode(message), CALL, answered)
 
-    def _caught_up(self, component: IRI, life: str) -> None:
-        """A life has answered a call: it has been left behind no longer."""
-        left = tuple(one for one in self._left_behind.pop(component, ()) if one != life)
-        if left:
-            self._left_behind[component] = left
-
     def _release_again(self, effect: ReleaseFrom) -> None:
         if not self._state().ended and self._state().owed.get(effect.component) == effect.epoch:
             self.release(effect)
-
-    def _is_gone(self, component: IRI) -> None:
-        """A life that has been gone for longer than its grace acts for no task, unless this node is cut off."""
-        if self.bus.link and not self._lives_on(component):
-            self.gone.add(component)
 
     def _end(self, component: IRI, life: str) -> None:
         """Have the site end a life of a component that does not obey its release: it may act on without a task."""
         found = self.ecology.discovery.found.get(component)
         if found is not None and found.startable and life:
-            self._lost_lives[component] = life
+            self._lives.lost(component, life)
             message = encode(End(component, life))
             self.bus.ask(self.keys.end(found.site), message, CALL, lambda replies: None)
 
@@ -403,7 +285,7 @@ class Calls:
         """Ask a component for its actual state; `seen` receives None if it does not answer."""
 
         def answered(replies: Replies) -> None:
-            answer = self._answer_in(replies, self._life(component))
+            answer = self._answer_in(replies, self._lives.life(component))
             if answer is None and not replies.complete and attempts > 1:
                 self.look(component, seen, attempts - 1)
             else:
@@ -425,8 +307,7 @@ class Calls:
         began = self.bus.now()
         since = began if first is None else first
         if call is not Call.RELEASE:
-            self._called.add(component)
-            self.gone.discard(component)
+            self._lives.called(component)
 
         def said(replies: Replies) -> CallAnswer | None:
             """What the life that is meant has answered; what another one says does not count while it may answer."""
@@ -503,18 +384,16 @@ class Calls:
             if call is Call.APPLY:
                 self._report(CallDeclined(component, detail))
         elif call is Call.RELEASE:
-            self._lives.pop(component, None)
-            self._lost_lives.pop(component, None)
+            self._lives.released(component)
             self._report(ComponentReleased(component, detail))
         elif isinstance(message, Apply):
             if message.values:
                 self._report(ParametersSet(component, detail))
             self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
-            self._lives[component] = answer.life
-            self._caught_up(component, answer.life)
+            self._lives.obeyed(component, answer.life)
         applied = answer.verdict is Verdict.DONE and call is Call.APPLY
-        if applied and self.moved(component, answer.outputs, answer.callers):
+        if applied and self._ends.moved(component, answer.outputs, answer.callers):
             self._step(Rewired(component))  # before the answer: those that it calls hear of it, then all is complete
         holder = None
         if answer.verdict is Verdict.BUSY:
@@ -542,79 +421,10 @@ class Calls:
             "epoch": epoch,
             "supervisor": self.supervisor,
             "task": self.identity.task,
-            "life": self._life(component) or "",
+            "life": self._lives.life(component) or "",
             "priority": self.identity.priority,
             "beginning": self.identity.beginning,
         }
-
-    def _life(self, component: IRI) -> str | None:
-        """The life of a component that calls mean: the one that is held, else the one that it lives."""
-        return self._lives.get(component) or self.ecology.life(component)
-
-    def _lives_on(self, component: IRI) -> bool:
-        """Whether the life that is held lives; where none is, whether the component lives at all."""
-        held = self._lives.get(component)
-        return self.ecology.life(component) is not None if held is None else self.ecology.lives_on(component, held)
-
-    def _with_promises(self, wires: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
-        """Wires with what stands behind them: outputs inside of a composite, or outside of this one."""
-        found = {port: tuple(one for wire in some for one in self._behind(wire)) for port, some in wires.items()}
-        return {port: some for port, some in found.items() if some}
-
-    def _behind(self, wire: Wire) -> tuple[Wire, ...]:
-        if self._outside is not None and wire.component == self._outside.composite:
-            return self._outside.received().get(wire.output, ())
-        inside = self._issuing.get(wire.component, {}).get(wire.output)
-        return (self._promised(wire),) if inside is None else inside
-
-    def _who_call(self, some: Callers) -> dict[str, tuple[IRI, ...]]:
-        """The components that may call each operation: those behind composites, and behind what is outside of this."""
-        return {
-            name: tuple(dict.fromkeys(c for one in found for c in self._behind_caller(one)))
-            for name, found in some.items()
-        }
-
-    def _behind_caller(self, caller: Caller) -> tuple[IRI, ...]:
-        if self._outside is not None and caller.component == self._outside.composite:
-            return self._outside.calling(caller.operation)
-        return self._calling.get(caller.component, {}).get(caller.operation, (caller.component,))
-
-    def moved(
-        self, component: IRI, outputs: Mapping[str, tuple[Wire, ...]], calling: Mapping[str, tuple[IRI, ...]]
-    ) -> bool:
-        """Note what stands behind a component now; returns whether others call what it needs than before."""
-        before = self._calling.get(component, {})
-        self._issuing[component], self._calling[component] = outputs, calling
-        return before != calling
-
-    def issued_outside(self, configuration: Configuration) -> dict[str, tuple[Wire, ...]]:
-        """Which outputs stand behind those of the composite of which a configuration is the inside."""
-        ends: dict[str, tuple[Wire, ...]] = {}
-        for one in configuration.connections:
-            if self._outside is not None and one.sink == self._outside.composite:
-                ends[one.input] = (*ends.get(one.input, ()), Wire(one.source, one.output))
-        return self._with_promises(ends)
-
-    def calling_outside(self, configuration: Configuration) -> dict[str, tuple[IRI, ...]]:
-        """Which components call what the composite needs of which a configuration is the inside."""
-        ends: dict[str, tuple[Caller, ...]] = {}
-        for one in configuration.connections:
-            if self._outside is not None and one.source == self._outside.composite and one.output.endswith(CALL_MARK):
-                ends[one.output] = (*ends.get(one.output, ()), Caller(one.sink, one.input))
-        return self._who_call(ends)
-
-    def composite_around(self, component: IRI) -> IRI | None:
-        """The composite behind whose outputs a component stands, if it does."""
-        for composite, outputs in self._issuing.items():
-            if any(wire.component == component for wires in outputs.values() for wire in wires):
-                return composite
-        return None
-
-    def _promised(self, wire: Wire) -> Wire:
-        """A wire with the longest pause that the output's advertisement promises."""
-        found = self.ecology.discovery.found.get(wire.component)
-        output = found.advertisement.profile.output(wire.output) if found else None
-        return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
 
     def _answer_in(self, replies: Replies, life: str | None) -> CallAnswer | None:
         """The answer of the life that was meant, if it has answered; else that of another."""

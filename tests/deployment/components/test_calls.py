@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from selfconf.bus.memory_bus import MemoryBus
-from selfconf.bus.port import Replies, Request, Urgency
+from selfconf.bus.port import Replies, Request
 from selfconf.configurator.state import Phase
-from selfconf.deployment import calls
-from selfconf.deployment.calls import CALL, GONE, SITE_BACK, STARTING, WAKING
-from selfconf.deployment.liveness import SETTLING
-from selfconf.deployment.runner import TaskRunner
-from selfconf.model.configuration import Configuration
+from selfconf.deployment.components import calls
+from selfconf.deployment.components.calls import CALL, STARTING
+from selfconf.deployment.components.liveness import SETTLING
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk
-from selfconf.protocol.messages import CallAnswer, Cause, End, Fail, Page, Release, Reserve, Verdict, Wake
+from selfconf.protocol.messages import CallAnswer, Cause, End, Page, Release, Reserve, Verdict, Wake
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk.component import Refused
-from selfconf.sdk.runtime import LIFE_ENDS, ComponentRuntime
+from selfconf.sdk.runtime import LIFE_ENDS
 from selfconf.sdk.supervision import GRACE
+from tests.deployment.simulated import home, living_room, slow_code
 from tests.deployment.tasks import TASK
-from tests.faults.simulated_code import SimulatedCodeThread, SimulatedComponentCode
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
 
 
@@ -59,19 +55,6 @@ def test_a_component_that_takes_long_to_start_is_waited_for_as_long_as_it_lives(
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, STARTING + CALL)
     assert lab.active() == TASK | {"tracker"}
     assert lab.components["tracker"].said == [("started",)]
-
-
-def slow_code(lab: Lab, name: str) -> SimulatedCodeThread:
-    """Have a component begin again, with code on a thread of its own; what hangs there is told, and goes on."""
-    lab.crash(name)
-    node, recorder = lab.network.node(), Recorder()
-    thread = SimulatedCodeThread(node, lambda what, limit: runtime.hung(what, limit))
-    runtime = ComponentRuntime(node, lab.keys, lab.profile(name), recorder, f"{name}-slow", thread)
-    SimulatedComponentCode.simulate(runtime.code, node, thread)
-    recorder.spend = thread.spend
-    lab.runtimes[name], lab.components[name] = runtime, recorder
-    lab.let_pass(1.0)
-    return thread
 
 
 @pytest.mark.parametrize(
@@ -146,165 +129,6 @@ def test_a_component_that_hangs_is_replaced(lab: Lab) -> None:
     agent = lab.agent()
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, STARTING + 2 * CALL)
     assert lab.active() == TASK | {"odometry"}
-
-
-def test_a_component_that_is_advertised_but_does_not_run_is_passed_over(tmp_path: Path) -> None:
-    lab = Lab(tmp_path)
-    lab.site("home", *TASK, "odometry", "tracker")
-    for name in TASK | {"odometry"}:
-        lab.component(name)
-    agent = lab.agent()
-    assert lab.running(agent)
-    assert lab.active() == TASK | {"odometry"}
-    assert agent.state.lost[iri("person-tracker")].detail == "it is advertised, but it does not run"
-    assert agent.status().owed == ()  # what never ran is not out of control
-
-
-def living_room(
-    lab: Lab, life: str, wake: Callable[[MemoryBus], object], name: str = "living-room", refusal: str = ""
-) -> MemoryBus:
-    """A site that can start the tracker, as `wake` does, unless it refuses to for a reason; its node."""
-    tracker, node = iri("person-tracker"), lab.network.node()
-    page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
-
-    def advertise(request: Request) -> None:
-        payload = (PREFIXES + ADVERTISEMENTS["tracker"]).encode()
-        request.reply(lab.keys.advertisement(name, tracker), payload, page)
-        request.finish()
-
-    def asked(request: Request) -> None:
-        if refusal:
-            request.refuse(refusal)
-        else:
-            request.reply(lab.keys.wake(name), b"started")
-        request.finish()
-        wake(node)
-
-    node.announce(lab.keys.site_life(name, life))
-    node.serve(lab.keys.advertisements(name), advertise)
-    node.serve(lab.keys.wake(name), asked)
-    return node
-
-
-def home(folder: Path, *more: str) -> Lab:
-    """A lab in which one site has the components of the task, but for the tracker, and some more; all of them live."""
-    lab = Lab(folder)
-    lab.site("astrid", *TASK, *more)
-    for name in (*TASK, *more):
-        lab.component(name)
-    return lab
-
-
-def test_a_component_that_has_ended_unseen_is_started_again_by_a_site_that_can(tmp_path: Path) -> None:
-    """It ended, with its site, while the configurator was cut off; another site can start it, and nothing else will."""
-    lab = Lab(tmp_path)
-    lab.site("astrid", *TASK)
-    for name in (*TASK, "tracker"):
-        lab.component(name)
-    first = living_room(lab, "1", lambda node: None)
-    living_room(lab, "2", lambda node: lab.component("tracker"), "attic")
-    agent = lab.agent()
-    assert lab.running(agent)
-    lab.isolate(agent)
-    lab.crash("tracker")
-    first.close()
-    lab.let_pass(0.3)
-    lab.rejoin(agent)
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING and lab.active() == TASK | {"tracker"}, 10.0)
-
-
-def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_component_again(tmp_path: Path) -> None:
-    lab = home(tmp_path)
-    living_room(lab, "1", lambda _: lab.component("tracker"))
-    asked: list[Wake] = []
-
-    def listen(request: Request) -> None:
-        asked.append(decode(request.payload, Wake))
-        request.finish()
-
-    lab.network.node().serve(lab.keys.wake("living-room"), listen)
-    agent = lab.agent()
-    assert lab.running(agent)
-    life, tracker = lab.runtimes["tracker"].life, iri("person-tracker")
-    lab.crash("tracker")
-    assert lab.until(lambda: len(asked) == 2)
-    assert asked == [Wake(tracker), Wake(tracker, life)]
-
-
-def test_a_site_hears_of_a_life_that_it_has_started_and_that_ended_before_it_obeyed_anything(tmp_path: Path) -> None:
-    lab, lives, asked = Lab(tmp_path), list[str](), list[Wake]()
-    lab.site("astrid", *TASK)
-    for name in TASK:
-        lab.component(name)
-
-    def begin(node: object) -> None:
-        lab.component("tracker")
-        runtime = lab.runtimes["tracker"]
-        lives.append(runtime.life)
-        runtime._served()
-        runtime.bus.later(0.05, lambda: lab.crash("tracker"))
-
-    def listen(request: Request) -> None:
-        asked.append(decode(request.payload, Wake))
-        request.finish()
-
-    living_room(lab, "1", begin)
-    lab.network.node().serve(lab.keys.wake("living-room"), listen)
-    lab.agent()
-    assert lab.until(lambda: len(asked) == 3)
-    assert [wake.after for wake in asked] == ["", *lives[:2]]
-
-
-def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:
-    """A site ends that has been asked to start the tracker; and the configurator that has asked."""
-    lab = home(folder, "odometry")
-    asked: list[MemoryBus] = []
-    site = living_room(lab, "1", asked.append)
-    agent = lab.agent()
-    assert lab.until(lambda: asked)
-    site.close()
-    return lab, agent
-
-
-def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
-    lab = home(tmp_path, "odometry")
-    tracker = iri("person-tracker")
-    crash = encode(Fail(tracker, "", 0, Cause.CRASH, "code 1"))
-    living_room(lab, "1", lambda node: node.publisher(lab.keys.fail(tracker), Urgency.EVENT).put(crash))
-    agent = lab.agent()
-    assert lab.running(agent)
-    assert agent.state.lost[tracker].detail == "code 1"
-    lab.let_pass(2 * WAKING)
-    assert lab.acts("unreachable") == []
-
-
-def test_what_a_site_was_starting_it_is_asked_to_start_again_in_its_next_life(tmp_path: Path) -> None:
-    lab, agent = asked_of_a_site_that_ends(tmp_path)
-    lab.let_pass(SITE_BACK / 2)
-    living_room(lab, "2", lambda _: lab.component("tracker"))
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK)
-    lab.let_pass(2 * SITE_BACK)
-    assert lab.active() == TASK | {"tracker"}
-
-
-def test_what_a_site_was_starting_is_given_up_if_the_site_does_not_come_back(tmp_path: Path) -> None:
-    lab, agent = asked_of_a_site_that_ends(tmp_path)
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK + 1.0)
-    assert lab.active() == TASK | {"odometry"}
-    assert [event.detail for event in lab.acts("unreachable")] == ["its site has ended"]
-
-
-def test_that_nothing_is_found_without_what_a_site_starts_again_is_not_reported(tmp_path: Path) -> None:
-    lab = home(tmp_path)
-    living_room(lab, "1", lambda _: lab.component("tracker"))
-    agent = lab.agent()
-    assert lab.running(agent)
-    lab.crash("tracker")
-    assert lab.until(lambda: agent.state.phase is not Phase.RUNNING)
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING)
-    lab.let_pass(0.1)
-    assert len(lab.acts("running")) == 2
-    assert all(isinstance(event.outcome, Configuration) for event in lab.acts("composed"))
 
 
 def test_a_component_held_by_another_living_configurator_is_not_taken(lab: Lab) -> None:
@@ -496,89 +320,6 @@ def test_a_component_that_hangs_is_started_again_each_time_that_its_site_does_so
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 4 * (STARTING + 2 * CALL))
     assert lab.active() == TASK | {"tracker"}
     assert [wake.after for wake in woken] == lives[:2]  # so that the site counts them
-
-
-def test_a_component_that_hears_but_is_not_heard_is_released_though_it_seems_to_be_dead(lab: Lab) -> None:
-    agent = lab.agent()
-    assert lab.running(agent)
-    assert isinstance(agent.bus, MemoryBus)
-    lab.network.mute(lab.node_of("tracker"), agent.bus)
-    assert lab.until(lambda: lab.active() == TASK | {"odometry"}, 1.0)
-    lab.let_pass(2 * GONE)
-    assert agent.status().owed == ()  # it is not known to have obeyed, but nobody has to see to it
-
-
-@pytest.mark.parametrize("told_first", [True, False], ids=["the site is heard first", "the end is seen first"])
-def test_a_component_whose_site_has_seen_it_end_is_not_out_of_control(lab: Lab, told_first: bool) -> None:
-    agent, tracker = lab.agent(), iri("person-tracker")
-    assert lab.running(agent)
-    publisher = lab.network.node().publisher(lab.keys.fail(tracker), Urgency.EVENT)
-    crash = encode(Fail(tracker, "", 0, Cause.CRASH, "its process has ended with code -9"))
-    if told_first:
-        publisher.put(crash)
-        lab.crash("tracker")
-    else:
-        lab.crash("tracker")
-        assert lab.until(lambda: agent.status().owed == (tracker,), 1.0)
-        publisher.put(crash)
-    lab.let_pass(0.1)
-    assert agent.status().owed == ()
-    assert tracker in agent.state.owed  # should it be heard of again, it is released
-
-
-def test_a_component_that_lives_may_be_out_of_control_though_a_process_of_it_has_ended(lab: Lab) -> None:
-    """A component that a person has started lives on when the process ends that its site has started as well."""
-    thread, drive = slow_code(lab, "drive"), iri("astrid-drive")
-    agent = lab.agent()
-    assert lab.running(agent)
-    thread.spend(60.0)
-    ended = encode(Fail(drive, "", 0, Cause.CRASH, "its process has ended with code 2"))
-    lab.network.node().publisher(lab.keys.fail(drive), Urgency.EVENT).put(ended)
-    assert lab.until(lambda: agent.status().owed == (drive,), 1.0)
-    lab.let_pass(2 * GONE)
-    assert agent.status().owed == (drive,)
-
-
-def test_a_component_that_its_site_does_not_start_again_is_not_out_of_control(tmp_path: Path) -> None:
-    lab = Lab(tmp_path)
-    lab.site("astrid", *TASK)
-    for name in (*TASK, "tracker"):
-        lab.component(name)
-    living_room(lab, "1", lambda node: None, refusal="it has crashed too often")
-    agent, tracker = lab.agent(), iri("person-tracker")
-    assert lab.running(agent)
-    lab.crash("tracker")
-    assert lab.until(lambda: bool(lab.ended), 1.0)
-    assert agent.state.lost[tracker].detail == "it has crashed too often"
-    assert lab.acts("refused")[0].owed == ()
-    assert tracker in agent.state.owed
-
-
-def test_a_component_that_goes_on_after_it_was_frozen_for_long_is_released(lab: Lab) -> None:
-    agent = lab.agent()
-    assert lab.running(agent)
-    lab.network.pause(lab.node_of("tracker"))
-    assert lab.until(lambda: agent.status().owed == (iri("person-tracker"),), 2.0)
-    lab.let_pass(2 * GONE)
-    assert agent.status().owed == ()
-    assert lab.active() == {*TASK, "odometry", "tracker"}
-    lab.network.resume(lab.node_of("tracker"))
-    assert lab.until(lambda: lab.active() == TASK | {"odometry"}, 0.5)
-    assert lab.until(lambda: not agent.state.owed, 0.1)
-
-
-def test_a_component_that_was_frozen_is_released_whatever_another_life_of_it_has_answered(lab: Lab) -> None:
-    agent = lab.agent()
-    assert lab.running(agent)
-    frozen, runtime = lab.node_of("tracker"), lab.runtimes["tracker"]
-    lab.network.pause(frozen)
-    lab.let_pass(2 * GONE)
-    lab.component("tracker")
-    assert lab.until(lambda: not agent.state.owed, 0.5)  # the other life owes nothing, and has said so
-    lab.crash("tracker")
-    assert runtime.active
-    lab.network.resume(frozen)
-    assert lab.until(lambda: not runtime.active, 0.5)
 
 
 def test_a_component_that_speaks_another_protocol_is_replaced(lab: Lab) -> None:

@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 from selfconf.bus.port import Sample, Urgency
 from selfconf.configurator import Event, Failed, Freed, Rewired, State, WaitedLong
-from selfconf.deployment.calls import Calls
+from selfconf.deployment.components.held_lives import HeldLives
+from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.discovery import EcologyView
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
@@ -25,12 +26,13 @@ class ComponentMessages:
         self,
         ecology: EcologyView,
         task: str,
+        lives: HeldLives,
+        ends: PortEnds,
         state: Callable[[], State],
         step: Callable[[Event], None],
-        calls: Calls,
     ) -> None:
         self._keys, self._task = ecology.keys, task
-        self._state, self._step, self._calls = state, step, calls
+        self._lives, self._ends, self._state, self._step = lives, ends, state, step
         self._watched: set[IRI] = set()
         bus = ecology.bus
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
@@ -63,11 +65,15 @@ class ComponentMessages:
         reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
         if not self._heeds(fail):
             return
-        if own:
-            self._calls.heard_fail(fail)
+        if (
+            own
+            and fail.cause is Cause.CRASH
+            and fail.component in (self._state().held.keys() | self._state().owed.keys())
+        ):
+            self._lives.gone(fail.component)  # its site has told: its process has ended, or is being ended
         if fail.cause is Cause.LET_GO and fail.component in self._state().held:
             log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
-        around = self._calls.composite_around(fail.component) if reported else None
+        around = self._ends.composite_around(fail.component) if reported else None
         if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
         elif around is not None and around in self._watched:
@@ -91,7 +97,7 @@ class ComponentMessages:
             return
         mine = sample.key == self._keys.moved(moved.component) and moved.component in self._state().held
         if mine and self._state().held[moved.component].life in ("", moved.life):
-            self._calls.moved(moved.component, moved.outputs, moved.callers)
+            self._ends.moved(moved.component, moved.outputs, moved.callers)
             self._step(Rewired(moved.component))
 
     def _received_free(self, sample: Sample) -> None:

@@ -14,7 +14,8 @@ from functools import partial
 
 from selfconf.bus.port import Undo
 from selfconf.configurator import Appeared, Event, Failed, Phase, Reconnected, State
-from selfconf.deployment.calls import Calls
+from selfconf.deployment.components.calls import Calls
+from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.run_event import EcologyReachable, EcologyUnreachable
@@ -60,9 +61,10 @@ class Liveness:
         step: Callable[[Event], None],
         report: EventListener,
         calls: Calls,
+        waking: Waking,
     ) -> None:
         self.bus, self.ecology = ecology.bus, ecology
-        self._state, self._step, self._report, self._calls = state, step, report, calls
+        self._state, self._step, self._report, self._calls, self._waking = state, step, report, calls, waking
         self._sites: set[str] = set()
         """The liveliness keys of the sites that answered last, or are news: one that was started again has another."""
         self._shown_sites: set[str] = set()
@@ -140,6 +142,7 @@ class Liveness:
             component = self._component(chunk)
             if component is not None:
                 self._calls.woken(component, life)
+                self._waking.woken(component, life)
             self._step(Appeared({component: life} if component is not None else {}))
 
     def _note_news(self, chunk: str, life: str) -> None:
@@ -275,13 +278,13 @@ class Liveness:
             self._shown_sites.discard(key)
         if alive and key not in self._sites:
             self._sites.add(key)
-            self._calls.site_began(owner_of(key))
+            self._waking.site_began(owner_of(key))
             self._step(Appeared({}))
         elif not alive:
             self._site_ended = self.bus.now()
             self._sites.discard(key)
             if owner_of(key) not in map(owner_of, self._sites | self._shown_sites):
-                self._calls.site_ended(owner_of(key))
+                self._waking.site_ended(owner_of(key))
 
     def reopens(self) -> None:
         """A hub is about to be opened anew: lives seem to end, one after the other, and sites among the last.

@@ -12,8 +12,8 @@ from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.events import Appeared, Event
 from selfconf.configurator.state import Phase, Policy
-from selfconf.deployment import liveness
-from selfconf.deployment.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, MOST_REOPENINGS, SETTLING
+from selfconf.deployment.components import liveness
+from selfconf.deployment.components.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, MOST_REOPENINGS, SETTLING
 from selfconf.discovery import ecology_view
 from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal

@@ -1,0 +1,85 @@
+"""Where connections really end: behind a port of a composite stand ports inside of it, or outside of this task."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from selfconf.configurator import Caller, Callers
+from selfconf.deployment.run_request import Outside
+from selfconf.discovery import EcologyView
+from selfconf.model.configuration import Configuration
+from selfconf.model.profile import CALL_MARK
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Wire
+
+
+class PortEnds:
+    """The ends of what one task connects: of components that are no composites, the ports themselves."""
+
+    def __init__(self, ecology: EcologyView, outside: Outside | None) -> None:
+        """`outside` is what is outside of the task, if it is the inside of a composite."""
+        self._ecology, self._outside = ecology, outside
+        self._issuing: dict[IRI, Mapping[str, tuple[Wire, ...]]] = {}
+        """For each composite that acts for the task, what stands behind its outputs."""
+        self._calling: dict[IRI, Mapping[str, tuple[IRI, ...]]] = {}
+        """For each composite that acts for the task, which components inside of it call what it needs."""
+
+    def moved(
+        self, component: IRI, outputs: Mapping[str, tuple[Wire, ...]], calling: Mapping[str, tuple[IRI, ...]]
+    ) -> bool:
+        """Note what stands behind a component now; returns whether others call what it needs than before."""
+        before = self._calling.get(component, {})
+        self._issuing[component], self._calling[component] = outputs, calling
+        return before != calling
+
+    def wires(self, connected: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
+        """The outputs behind those that feed each input, each with the longest pause that it promises."""
+        found = {port: tuple(one for wire in some for one in self._behind(wire)) for port, some in connected.items()}
+        return {port: some for port, some in found.items() if some}
+
+    def _behind(self, wire: Wire) -> tuple[Wire, ...]:
+        if self._outside is not None and wire.component == self._outside.composite:
+            return self._outside.received().get(wire.output, ())
+        inside = self._issuing.get(wire.component, {}).get(wire.output)
+        return (self._promised(wire),) if inside is None else inside
+
+    def _promised(self, wire: Wire) -> Wire:
+        """A wire with the longest pause that the output's advertisement promises."""
+        found = self._ecology.discovery.found.get(wire.component)
+        output = found.advertisement.profile.output(wire.output) if found else None
+        return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
+
+    def callers(self, connected: Callers) -> dict[str, tuple[IRI, ...]]:
+        """The components behind those that may call each operation."""
+        return {
+            name: tuple(dict.fromkeys(c for one in found for c in self._behind_caller(one)))
+            for name, found in connected.items()
+        }
+
+    def _behind_caller(self, caller: Caller) -> tuple[IRI, ...]:
+        if self._outside is not None and caller.component == self._outside.composite:
+            return self._outside.calling(caller.operation)
+        return self._calling.get(caller.component, {}).get(caller.operation, (caller.component,))
+
+    def issued_outside(self, configuration: Configuration) -> dict[str, tuple[Wire, ...]]:
+        """Which outputs stand behind those of the composite of which a configuration is the inside."""
+        ends: dict[str, tuple[Wire, ...]] = {}
+        for one in configuration.connections:
+            if self._outside is not None and one.sink == self._outside.composite:
+                ends[one.input] = (*ends.get(one.input, ()), Wire(one.source, one.output))
+        return self.wires(ends)
+
+    def calling_outside(self, configuration: Configuration) -> dict[str, tuple[IRI, ...]]:
+        """Which components call what the composite needs of which a configuration is the inside."""
+        ends: dict[str, tuple[Caller, ...]] = {}
+        for one in configuration.connections:
+            if self._outside is not None and one.source == self._outside.composite and one.output.endswith(CALL_MARK):
+                ends[one.output] = (*ends.get(one.output, ()), Caller(one.sink, one.input))
+        return self.callers(ends)
+
+    def composite_around(self, component: IRI) -> IRI | None:
+        """The composite behind whose outputs a component stands, if it does."""
+        for composite, outputs in self._issuing.items():
+            if any(wire.component == component for wires in outputs.values() for wire in wires):
+                return composite
+        return None

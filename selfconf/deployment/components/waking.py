@@ -1,0 +1,116 @@
+"""How the components of a task come to live: those that are dormant are started by their sites."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from selfconf.bus.port import Replies, Undo
+from selfconf.configurator import Answered, Call, Event, WakeUp
+from selfconf.deployment.components.held_lives import HeldLives
+from selfconf.deployment.run_request import EventListener
+from selfconf.discovery import EcologyView, FoundAdvertisement
+from selfconf.model.run_event import ComponentUnreachable, ComponentWoken
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Verdict, Wake
+
+WAKE_CALL = 2.0
+"""Seconds that a site may take to answer."""
+WAKING = 15.0
+"""Seconds that a component that a site starts may take to live."""
+SITE_BACK = 3.0
+"""Seconds that a site may be away before what it was starting is given up."""
+
+
+class Waking:
+    """Has components started for one task, and feeds its machine with what becomes of that."""
+
+    def __init__(
+        self,
+        ecology: EcologyView,
+        lives: HeldLives,
+        step: Callable[[Event], None],
+        report: EventListener,
+    ) -> None:
+        self._bus, self._ecology, self._lives = ecology.bus, ecology, lives
+        self._step, self._report = step, report
+        self._waiting: dict[IRI, tuple[WakeUp, Undo]] = {}
+        """Those that are being started, each with the end of its time."""
+
+    def __contains__(self, component: IRI) -> bool:
+        """Whether a component is being started."""
+        return component in self._waiting
+
+    def wake(self, effect: WakeUp) -> None:
+        """Have a component live: one that is dormant is started by its site."""
+        found = self._ecology.discovery.found.get(effect.component)
+        self._lives.leave_behind_if_ended(effect.component)
+        if self._ecology.life(effect.component) is not None:
+            self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
+        elif found is not None and found.startable:
+            self._start_by_site(effect, found)
+        else:
+            self._lives.awaited(effect.component)
+            detail = "it is advertised, but it does not run" if found is None or not found.unable else found.unable
+            self._fail(effect, detail)
+
+    def woken(self, component: IRI, life: str) -> None:
+        """A component lives; perhaps it was started for this task."""
+        self._lives.born(component)
+        waiting = self._waiting.pop(component, None)
+        if waiting is not None:
+            waiting[1]()
+            self._lives.lost(component, life)
+            self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
+
+    def abandon(self, component: IRI) -> None:
+        """A component was lost: it is not waited for any more if it was started for this task."""
+        waiting = self._waiting.pop(component, None)
+        if waiting is not None:
+            waiting[1]()
+
+    def site_began(self, site: str) -> None:
+        """A site lives a new life: what it was starting in another one it is asked to start again."""
+        for effect, _ in list(self._waiting.values()):
+            found = self._ecology.discovery.found.get(effect.component)
+            if found is not None and found.site == site:
+                self._start_by_site(effect, found)
+
+    def site_ended(self, site: str) -> None:
+        """The life of a site has ended: what it was starting is given up, unless the site is back in time."""
+        for effect, _ in list(self._waiting.values()):
+            found = self._ecology.discovery.found.get(effect.component)
+            if found is not None and found.site == site:
+                waiting = self._waiting[effect.component]
+                self._bus.later(SITE_BACK, partial(self._give_up, waiting, "its site has ended"))
+
+    def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
+        """Have the site start the process; that is done when the component lives."""
+        self._report(ComponentWoken(effect.component, found.site))
+        self.abandon(effect.component)
+        self._lives.awaited(effect.component)
+        too_late = f"it was started, but does not live after {WAKING:.0f} s"
+        waiting = effect, self._bus.later(WAKING, lambda: self._give_up(waiting, too_late))
+        self._waiting[effect.component] = waiting
+
+        def answered(replies: Replies) -> None:
+            if replies.errors:
+                self._lives.gone(effect.component)  # its site can tell that no process of it runs
+            if not replies.samples:
+                self._give_up(waiting, replies.errors[0] if replies.errors else "its site does not answer")
+
+        wake = Wake(effect.component, self._lives.lost_life(effect.component))
+        self._bus.ask(self._ecology.keys.wake(found.site), encode(wake), WAKE_CALL, answered)
+
+    def _give_up(self, waiting: tuple[WakeUp, Undo], detail: str) -> None:
+        """Do without a component that was to be started, unless it lives by now or is being started anew."""
+        effect, _ = waiting
+        if self._waiting.get(effect.component) is waiting:
+            self.abandon(effect.component)
+            self._fail(effect, detail)
+
+    def _fail(self, effect: WakeUp, detail: str) -> None:
+        self._report(ComponentUnreachable(effect.component, Call.WAKE.value, detail))
+        answer = Answered(effect.component, Call.WAKE, effect.epoch, None, detail=detail)
+        self._bus.wake_up(lambda: self._step(answer))

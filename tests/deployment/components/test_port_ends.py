@@ -1,0 +1,80 @@
+"""Where connections end: at the ports themselves, inside of a composite, or outside of the one that a task is in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from selfconf.configurator import Caller
+from selfconf.deployment import Outside
+from selfconf.deployment.components import PortEnds
+from selfconf.discovery import EcologyView
+from selfconf.model.configuration import Configuration, Connection
+from selfconf.protocol.messages import Wire
+from tests.lab import ADVERTISEMENTS, Lab, iri
+
+CAMERA, FILTER, LOOKOUT, DISPLAY = map(iri, ("camera", "filter", "lookout", "display"))
+
+
+def ends(lab: Lab, outside: Outside | None = None) -> PortEnds:
+    """Those of a task in an ecology in which nothing was discovered."""
+    return PortEnds(EcologyView(lab.network.node(), "lab"), outside)
+
+
+def test_the_output_of_a_component_is_its_own_end(lab: Lab) -> None:
+    found = ends(lab)
+    assert found.wires({"in": (Wire(CAMERA, "out"),)}) == {"in": (Wire(CAMERA, "out"),)}
+    assert found.callers({"show()": (Caller(CAMERA, "show()"),)}) == {"show()": (CAMERA,)}
+    assert found.composite_around(CAMERA) is None
+
+
+def test_a_promised_rate_is_the_longest_pause_of_a_wire(tmp_path: Path) -> None:
+    rate = "sc:rate [ sc:value 4 ; sc:unit unit:HZ ] ;"
+    rated = ADVERTISEMENTS["tracker"].replace('sc:name "pose" ;', f'sc:name "pose" ; {rate}')
+    lab = Lab(tmp_path, advertised={**ADVERTISEMENTS, "tracker": rated})
+    lab.navigation()
+    agent = lab.agent()
+    assert lab.running(agent)
+    tracker, odometry = iri("person-tracker"), iri("absolute-odometry")
+    found = PortEnds(agent.ecology, None).wires({"in": (Wire(tracker, "pose"), Wire(odometry, "pose"))})
+    assert found == {"in": (Wire(tracker, "pose", 0.25), Wire(odometry, "pose"))}
+
+
+def test_what_stands_behind_a_composite_is_in_its_place(lab: Lab) -> None:
+    found = ends(lab)
+    inside = {"picture": (Wire(CAMERA, "out"), Wire(FILTER, "out"))}
+    assert found.moved(LOOKOUT, inside, {"show()": (FILTER,)})
+    assert not found.moved(LOOKOUT, inside, {"show()": (FILTER,)}), "the same components call as before"
+    assert found.wires({"in": (Wire(LOOKOUT, "picture"),)}) == {"in": inside["picture"]}
+    assert found.callers({"show()": (Caller(LOOKOUT, "show()"), Caller(FILTER, "show()"))}) == {"show()": (FILTER,)}
+    assert found.composite_around(FILTER) == LOOKOUT
+    assert found.moved(LOOKOUT, {"picture": ()}, {})
+    assert found.wires({"in": (Wire(LOOKOUT, "picture"),)}) == {}, "nothing issues it now"
+
+
+def test_the_inside_of_a_composite_is_fed_and_called_by_what_is_outside(lab: Lab) -> None:
+    outside = Outside(
+        LOOKOUT,
+        lambda: {"light": (Wire(CAMERA, "lux"),)},
+        lambda operation: (DISPLAY,) if operation == "look()" else (),
+    )
+    found = ends(lab, outside)
+    assert found.wires({"in": (Wire(LOOKOUT, "light"),), "other": (Wire(LOOKOUT, "dark"),)}) == {
+        "in": (Wire(CAMERA, "lux"),)
+    }
+    assert found.callers({"look()": (Caller(LOOKOUT, "look()"),)}) == {"look()": (DISPLAY,)}
+
+
+def test_what_a_composite_issues_and_calls_outside_is_that_of_its_inside(lab: Lab) -> None:
+    configuration = Configuration(
+        iri("look"),
+        (),
+        (
+            Connection(FILTER, "out", LOOKOUT, "picture"),
+            Connection(LOOKOUT, "show()", FILTER, "show()"),
+            Connection(CAMERA, "out", FILTER, "in"),
+        ),
+    )
+    found = ends(lab, Outside(LOOKOUT))
+    assert found.issued_outside(configuration) == {"picture": (Wire(FILTER, "out"),)}
+    assert found.calling_outside(configuration) == {"show()": (FILTER,)}
+    assert ends(lab).issued_outside(configuration) == {}

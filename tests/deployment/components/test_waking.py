@@ -1,0 +1,141 @@
+"""How components come to live: dormant ones, sites that end, components that end before they act."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.port import Request, Urgency
+from selfconf.configurator.state import Phase
+from selfconf.deployment.components.waking import SITE_BACK, WAKING
+from selfconf.deployment.runner import TaskRunner
+from selfconf.model.configuration import Configuration
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import Cause, Fail, Wake
+from tests.deployment.simulated import home, living_room
+from tests.deployment.tasks import TASK
+from tests.lab import Lab, iri
+
+
+def test_a_component_that_is_advertised_but_does_not_run_is_passed_over(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("home", *TASK, "odometry", "tracker")
+    for name in TASK | {"odometry"}:
+        lab.component(name)
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert lab.active() == TASK | {"odometry"}
+    assert agent.state.lost[iri("person-tracker")].detail == "it is advertised, but it does not run"
+    assert agent.status().owed == ()  # what never ran is not out of control
+
+
+def test_a_component_that_has_ended_unseen_is_started_again_by_a_site_that_can(tmp_path: Path) -> None:
+    """It ended, with its site, while the configurator was cut off; another site can start it, and nothing else will."""
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    first = living_room(lab, "1", lambda node: None)
+    living_room(lab, "2", lambda node: lab.component("tracker"), "attic")
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.isolate(agent)
+    lab.crash("tracker")
+    first.close()
+    lab.let_pass(0.3)
+    lab.rejoin(agent)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING and lab.active() == TASK | {"tracker"}, 10.0)
+
+
+def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_component_again(tmp_path: Path) -> None:
+    lab = home(tmp_path)
+    living_room(lab, "1", lambda _: lab.component("tracker"))
+    asked: list[Wake] = []
+
+    def listen(request: Request) -> None:
+        asked.append(decode(request.payload, Wake))
+        request.finish()
+
+    lab.network.node().serve(lab.keys.wake("living-room"), listen)
+    agent = lab.agent()
+    assert lab.running(agent)
+    life, tracker = lab.runtimes["tracker"].life, iri("person-tracker")
+    lab.crash("tracker")
+    assert lab.until(lambda: len(asked) == 2)
+    assert asked == [Wake(tracker), Wake(tracker, life)]
+
+
+def test_a_site_hears_of_a_life_that_it_has_started_and_that_ended_before_it_obeyed_anything(tmp_path: Path) -> None:
+    lab, lives, asked = Lab(tmp_path), list[str](), list[Wake]()
+    lab.site("astrid", *TASK)
+    for name in TASK:
+        lab.component(name)
+
+    def begin(node: object) -> None:
+        lab.component("tracker")
+        runtime = lab.runtimes["tracker"]
+        lives.append(runtime.life)
+        runtime._served()
+        runtime.bus.later(0.05, lambda: lab.crash("tracker"))
+
+    def listen(request: Request) -> None:
+        asked.append(decode(request.payload, Wake))
+        request.finish()
+
+    living_room(lab, "1", begin)
+    lab.network.node().serve(lab.keys.wake("living-room"), listen)
+    lab.agent()
+    assert lab.until(lambda: len(asked) == 3)
+    assert [wake.after for wake in asked] == ["", *lives[:2]]
+
+
+def asked_of_a_site_that_ends(folder: Path) -> tuple[Lab, TaskRunner]:
+    """A site ends that has been asked to start the tracker; and the configurator that has asked."""
+    lab = home(folder, "odometry")
+    asked: list[MemoryBus] = []
+    site = living_room(lab, "1", asked.append)
+    agent = lab.agent()
+    assert lab.until(lambda: asked)
+    site.close()
+    return lab, agent
+
+
+def test_a_dormant_component_whose_process_ends_at_once_is_not_given_up_a_second_time(tmp_path: Path) -> None:
+    lab = home(tmp_path, "odometry")
+    tracker = iri("person-tracker")
+    crash = encode(Fail(tracker, "", 0, Cause.CRASH, "code 1"))
+    living_room(lab, "1", lambda node: node.publisher(lab.keys.fail(tracker), Urgency.EVENT).put(crash))
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert agent.state.lost[tracker].detail == "code 1"
+    lab.let_pass(2 * WAKING)
+    assert lab.acts("unreachable") == []
+
+
+def test_what_a_site_was_starting_it_is_asked_to_start_again_in_its_next_life(tmp_path: Path) -> None:
+    lab, agent = asked_of_a_site_that_ends(tmp_path)
+    lab.let_pass(SITE_BACK / 2)
+    living_room(lab, "2", lambda _: lab.component("tracker"))
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK)
+    lab.let_pass(2 * SITE_BACK)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_what_a_site_was_starting_is_given_up_if_the_site_does_not_come_back(tmp_path: Path) -> None:
+    lab, agent = asked_of_a_site_that_ends(tmp_path)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, SITE_BACK + 1.0)
+    assert lab.active() == TASK | {"odometry"}
+    assert [event.detail for event in lab.acts("unreachable")] == ["its site has ended"]
+
+
+def test_that_nothing_is_found_without_what_a_site_starts_again_is_not_reported(tmp_path: Path) -> None:
+    lab = home(tmp_path)
+    living_room(lab, "1", lambda _: lab.component("tracker"))
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.crash("tracker")
+    assert lab.until(lambda: agent.state.phase is not Phase.RUNNING)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING)
+    lab.let_pass(0.1)
+    assert len(lab.acts("running")) == 2
+    assert all(isinstance(event.outcome, Configuration) for event in lab.acts("composed"))
