@@ -31,7 +31,8 @@ an input has let go of an output that had issued signals, for others that have i
 def starves(history: History) -> Iterator[str]:
     """An input that was fed before an upgrade is fed while it goes on, if what fed it, and what is to, have not failed.
 
-    An input without any of these is told of; not one that follows an output which has failed since it delivered.
+    An input without any of these is told of; not one that follows an output which has failed since it delivered, nor
+    one that a composite feeds which is being repaired inside.
     """
     for agent in history.agents:
         before = agent.state.fallback
@@ -45,10 +46,18 @@ def _starving(history: History, agent: TaskRunner, before: Configuration, life: 
     for port in life.runtime.profile.signal_inputs:
         old = sources(before, life.component, port.name)
         followed = [wire.component for name, wire in life.followed if name == port.name]
-        if not old or not all(feeds(history, source, life) for source in old):
+        if not old or not all(delivers(history, source, life) for source in old):
             continue
         if not any(feeds(history, source, life) or _is_lost(history, agent, source, life) for source in followed):
             yield f"{life.name} follows {[one.short for one in followed]} by {port.name} during an upgrade"
+
+
+def delivers(history: History, source: IRI, sink: Life) -> bool:
+    """Whether a component feeds an input; a composite does not while its inside is configured again."""
+    insides = [inside.runner for inside in history.insides() if inside.profile.component == source]
+    return feeds(history, source, sink) and all(
+        runner is not None and runner.state.phase is Phase.RUNNING for runner in insides
+    )
 
 
 def _is_lost(history: History, agent: TaskRunner, component: IRI, sink: Life) -> bool:
