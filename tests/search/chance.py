@@ -55,6 +55,10 @@ def by_chance(draw: st.DrawFn, make: Callable[[Chance], T], choices: int = 400) 
     return make(Chance(draw(st.binary(min_size=choices, max_size=choices))))
 
 
-def chances(choices: int = 20) -> st.SearchStrategy[Chance]:
-    """For what has to be chosen later, among what is not known before, by so many choices at most."""
-    return by_chance(lambda chance: chance, choices)
+def with_chance(make: Callable[[Chance], T], choices: int = 420) -> st.SearchStrategy[tuple[T, Chance]]:
+    """Values, each with chances for what has to be chosen later, among what is not known before.
+
+    Both are of one string: of two strings Hypothesis copies one onto the other for every second example, so that half
+    of the values were there before.
+    """
+    return by_chance(lambda chance: (make(chance), chance), choices)

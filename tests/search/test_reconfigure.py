@@ -16,10 +16,10 @@ from selfconf.search import explain, reconfigure
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
 from tests.effort import NIGHTLY
-from tests.search.chance import Chance, chances
+from tests.search.chance import Chance, with_chance
 from tests.search.oracle import World
 from tests.search.without_solvers import without_solvers
-from tests.search.worlds import agreement, component, explained_once, problem, problems
+from tests.search.worlds import a_problem, agreement, component, explained_once, problem
 
 
 def _score(after: Configuration, before: Configuration) -> tuple[int, int]:
@@ -59,9 +59,10 @@ def _fixed(problem: Problem) -> Problem:
     return Problem(replace(problem.task, template=template), problem.partition, problem.hierarchy)
 
 
-@given(problems(), chances())
+@given(with_chance(a_problem))
 @agreement(0.9)
-def test_a_reconfiguration_keeps_the_most_and_is_the_first_that_does(problem: Problem, chance: Chance) -> None:
+def test_a_reconfiguration_keeps_the_most_and_is_the_first_that_does(drawn: tuple[Problem, Chance]) -> None:
+    problem, chance = drawn
     running = first.search(problem)
     if not isinstance(running, Configuration) or not running.components:
         return
@@ -71,12 +72,11 @@ def test_a_reconfiguration_keeps_the_most_and_is_the_first_that_does(problem: Pr
     assert (answer if isinstance(answer, Configuration) else None) == expected
 
 
-@given(problems(), chances())
+@given(with_chance(a_problem))
 @agreement(0.75)
-def test_clause_learning_finds_the_configuration_that_depth_first_search_finds(
-    problem: Problem, chance: Chance
-) -> None:
+def test_clause_learning_finds_the_configuration_that_depth_first_search_finds(drawn: tuple[Problem, Chance]) -> None:
     pytest.importorskip("pysat")
+    problem, chance = drawn
     running = first.search(_fixed(problem))
     if not isinstance(running, Configuration) or not running.components:
         return
@@ -104,10 +104,11 @@ def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(
     unproved: list[bool] = []
     """For each answer without a proof whether there is a nearer one."""
 
-    @given(problems(), chances())
-    @agreement(1.5 if NIGHTLY else 13.5)  # so many that ten answers and more lack a proof
-    def search(drawn: Problem, chance: Chance) -> None:
-        whole = _fixed(drawn) if aided else drawn
+    @given(with_chance(a_problem))
+    @agreement(1.5 if NIGHTLY else 7.0)  # so many that ten answers and more lack a proof
+    def search(drawn: tuple[Problem, Chance]) -> None:
+        problem, chance = drawn
+        whole = _fixed(problem) if aided else problem
         running = next(first.answers(whole))  # where there is none, nobody looks at the reasons
         if not isinstance(running, Configuration) or not running.components:
             return
@@ -199,9 +200,10 @@ def test_what_runs_stays_where_it_is_enough_by_itself_though_many_could_come_bef
     assert set(found.configuration.components) == {c for c in running.components if c.short != "c00"}
 
 
-@given(problems(), chances())
+@given(with_chance(a_problem))
 @agreement(0.6)
-def test_more_steps_never_find_a_configuration_farther_away(problem: Problem, chance: Chance) -> None:
+def test_more_steps_never_find_a_configuration_farther_away(drawn: tuple[Problem, Chance]) -> None:
+    problem, chance = drawn
     running = first.search(problem)
     if not isinstance(running, Configuration) or not running.components:
         return

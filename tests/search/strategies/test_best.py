@@ -21,7 +21,7 @@ from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
 from tests.effort import NIGHTLY
-from tests.search.chance import Chance, by_chance, chances
+from tests.search.chance import Chance, by_chance, with_chance
 from tests.search.oracle import Players, World
 from tests.search.worlds import a_problem, agreement, component, explained_once, iri, problem
 
@@ -45,7 +45,7 @@ def priced_problems(plain_ports: bool = False) -> st.SearchStrategy[Problem]:
     return by_chance(lambda chance: _priced_problem(chance, plain_ports), 440)
 
 
-def _priced_problem(chance: Chance, plain_ports: bool) -> Problem:
+def _priced_problem(chance: Chance, plain_ports: bool = False) -> Problem:
     """A problem with a cost of up to two levels over properties that some components have."""
     plain = a_problem(chance, plain=plain_ports)
     known = {
@@ -100,9 +100,10 @@ def test_the_best_is_the_first_of_least_cost(problem: Problem) -> None:
     assert answer.configuration == world.configuration(least)
 
 
-@given(priced_problems(), chances())
+@given(with_chance(_priced_problem, 460))
 @agreement(0.75)
-def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(problem: Problem, chance: Chance) -> None:
+def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(drawn: tuple[Problem, Chance]) -> None:
+    problem, chance = drawn
     running = first.search(problem)
     if not isinstance(running, Configuration) or not running.components:
         return
