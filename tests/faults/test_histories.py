@@ -11,7 +11,7 @@ import pytest
 
 from tests.effort import NIGHTLY, examples
 from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
-from tests.faults.histories import History
+from tests.faults.histories import SETTLED, History
 from tests.faults.replay import account, played, shrink, told
 from tests.faults.script import KINDS, Action, Recipe, Script, write
 from tests.faults.watch import ENDS, STEPS
@@ -87,6 +87,18 @@ def test_a_history_is_replayed_by_its_seed(folder: Path) -> None:
     one, other = (played(write(7), folder) for _ in range(2))
     assert account(one) == account(other)
     assert [life.recorder.said for life in one.lives] == [life.recorder.said for life in other.lives]
+
+
+def test_a_history_lasts_until_all_that_waits_has_come_and_each_fifth_to_the_end(folder: Path) -> None:
+    quiet, late, fifth = (History(Script(seed, tasks=write(0).tasks), folder) for seed in (1, 1, 5))
+    came: list[float] = []
+    late.network.after(SETTLED - 1.0, lambda: came.append(late.network.time))
+    for history in (quiet, late, fifth):
+        history.run()
+        assert not history.broken
+    assert quiet.network.time < SETTLED / 2
+    assert came
+    assert min(late.network.time, fifth.network.time) > SETTLED
 
 
 def test_every_kind_of_action_can_be_done_and_some_of_them_are_in_the_first_scripts(folder: Path) -> None:

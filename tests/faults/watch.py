@@ -65,7 +65,7 @@ class Watch:
         """How much each of these lives had written down at the last look."""
         self._followed: list[set[tuple[str, Wire]]] = []
         """What their inputs followed when the conditions were looked at last, which was at a time."""
-        self._compared_at = -math.inf
+        self._compared_at = self._changed_at = -math.inf
         self._threads: list[SimulatedCodeThread] = []
         self.broken: list[str] = []
         self.names: set[str] = set()
@@ -82,6 +82,7 @@ class Watch:
         """Look at the ecology as it is now; conditions need a second look only if something has changed."""
         changed, heard = self._is_changed(), self._heard()
         if changed or heard:
+            self._changed_at = self._history.network.time
             with self._history.standing_still():
                 matters = changed or self._matters(heard)
                 if matters:
@@ -102,6 +103,10 @@ class Watch:
         """Note when to look again at the conditions that are present, a little early, as sums of times are rounded."""
         lasting = (since + self._bounds[one[0]] for one, since in self._since.items() if one not in self._noted)
         self._overdue = min(lasting, default=math.inf) - ROUNDING
+
+    def is_quiet(self, seconds: float) -> bool:
+        """Whether nothing has changed for so long, and no condition is present that may not last."""
+        return not self._since and self._history.network.time - self._changed_at >= seconds
 
     def all_decided(self) -> bool:
         """Whether every task is running or refused."""
