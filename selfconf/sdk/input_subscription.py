@@ -193,6 +193,8 @@ class InputSubscription:
             return  # late, doubled, or a latched signal that was issued again for another input
         if lost and stamp.life == self._over[0] and stamp.sequence <= self._over[1]:
             return
+        if lost and not self._lives:  # it was on its way when the life of its source ended, or the source is cut off
+            self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
         self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
         self._events.deliver(
             self._port, Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
@@ -234,6 +236,18 @@ class InputSubscription:
         if not self._ended and not self._lives and self._heard_at < began:
             self._lose(self._heard_at)
 
+    def _look_for_sign(self, heard: float) -> None:
+        """An output that was lost and has issued a signal since, as of some time, is lost again without a further sign.
+
+        That is a life of its component, or another signal, and so on.
+        """
+        if self._ended or self._lives or self.lost:
+            return
+        if self._heard_at > heard:
+            self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
+        else:
+            self._lose(heard)
+
     def _failed(self, sample: Sample) -> None:
         try:
             fail = decode(sample.payload, Fail)
@@ -242,19 +256,20 @@ class InputSubscription:
         if fail.component != self._wire.component or not fail.life or fail.cause is Cause.YIELD:
             return
         if fail.cause is Cause.LET_GO and not self.muted:
-            self._look_whether_it_acts(self._heard_at)
+            self._look_whether_it_acts(fail)
         else:
             self._over = fail.life, fail.sequence
             self._lose(self._heard_at)
 
-    def _look_whether_it_acts(self, heard: float) -> None:
+    def _look_whether_it_acts(self, fail: Fail) -> None:
         """The component has let go of a task: it may act for another one, and then it answers with its last signal."""
 
         def answered(replies: Replies) -> None:
             if not replies.complete and not self._ended:
-                self._look_whether_it_acts(heard)
-            elif not replies.samples:
-                self._lose(heard)
+                self._look_whether_it_acts(fail)
+            elif not replies.samples and (self._life != fail.life or self._sequence <= fail.sequence):
+                self._over = fail.life, fail.sequence
+                self._be_lost()  # also where a signal has come meanwhile: it was on its way when the task was let go of
 
         self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, answered)
 
@@ -263,7 +278,10 @@ class InputSubscription:
         if self.lost or self._heard_at > heard:
             return
         self._queue.keep(0)  # before the input hears of it: what comes after that is news, and feeds it
-        if not self.muted:
+        self._be_lost()
+
+    def _be_lost(self) -> None:
+        if not self.lost and not self.muted:
             self.lost = True
             self._report_lost(self._port)
 

@@ -13,15 +13,17 @@ from selfconf.bus.port import Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Stamp
+from selfconf.protocol.messages import Cause, Fail, Stamp
+from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.input_subscription import BEGINNING, PATIENCE, InputEvents
+from selfconf.sdk.input_subscription import BEGINNING, PATIENCE, UNSEEN, InputEvents
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.signal_queue import EVENTS
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,
     CAP_PROFILE,
+    DRIVE_PROFILE,
     KEYS,
     TRACKER,
     US,
@@ -29,6 +31,7 @@ from tests.sdk.stage import (
     apply,
     follow,
     release,
+    reserve,
     silence,
 )
 
@@ -235,3 +238,98 @@ def test_what_waits_when_an_output_is_lost_is_not_delivered_after_its_loss_and_f
     slow.issue(1)
     slow.code.poll()
     assert slow.heard == [11]
+
+
+# Signals that come after the end of what has issued them, as what is more urgent may overtake them.
+
+
+class Late:
+    """An actuator that follows a tracker whose every message is given by hand."""
+
+    def __init__(self) -> None:
+        self.stage = Stage(profile=DRIVE_PROFILE)
+        self.tracker = self.stage.others
+        self.leave = self.tracker.announce(KEYS.life(TRACKER, "t"))
+        self._asked: list[Request] = []
+        self.tracker.serve(KEYS.outputs(TRACKER), self._asked.append)
+        self.stage.call(reserve())
+        self.stage.call(follow())
+        self.stage.let_pass(0.1)
+        self.answer_nothing()
+        self.issue(1)
+
+    def issue(self, sequence: int) -> None:
+        """A signal comes."""
+        stamp = encode(Stamp(TRACKER, "t", sequence, 0.0))
+        self.tracker.publisher(KEYS.output(TRACKER, "pose"), Urgency.SIGNAL).put(b"%d" % sequence, stamp)
+        self.stage.let_pass(0.01)
+
+    def let_go(self, sequence: int) -> None:
+        """The tracker says that it has let go of a task, after that signal."""
+        fail = Fail(TRACKER, "t", 1, Cause.LET_GO, "it was released", sequence=sequence)
+        self.tracker.publisher(KEYS.fail(TRACKER), Urgency.EVENT).put(encode(fail))
+        self.stage.let_pass(0.01)
+
+    def answer_nothing(self) -> None:
+        """The tracker is not on: it has no last signal."""
+        for request in self._asked:
+            request.finish()
+        self._asked.clear()
+        self.stage.let_pass(0.01)
+
+    def came_to_rest(self) -> bool:
+        """Whether the actuator is at rest, after the time that it may be blind."""
+        self.stage.let_pass(TOLERATES + UNSEEN + 0.1)
+        return self.stage.recorder.said[-1] == ("stopped",)
+
+
+@pytest.mark.parametrize("before_the_answer", [True, False])
+def test_a_signal_from_before_its_source_let_go_of_its_task_feeds_nothing(before_the_answer: bool) -> None:
+    late = Late()
+    late.let_go(3)
+    if before_the_answer:
+        late.issue(2)
+        late.answer_nothing()
+    else:
+        late.answer_nothing()
+        assert late.came_to_rest()
+        late.issue(2)
+    assert late.came_to_rest()
+    late.issue(4)
+    assert late.stage.recorder.said[-2:] == [("started",), ("position", 4)], "it acts again"
+
+
+def test_a_signal_from_after_its_source_let_go_of_a_task_is_news() -> None:
+    late = Late()
+    late.let_go(3)
+    late.issue(4)
+    late.answer_nothing()
+    assert not late.came_to_rest()
+
+
+def test_a_signal_from_before_the_end_of_the_life_of_its_source_feeds_for_a_moment() -> None:
+    """It may also be a sign that the source was only cut off: then more of them come, or its life shows again."""
+    late = Late()
+    late.leave()
+    assert late.came_to_rest()
+    late.issue(2)
+    assert late.stage.recorder.said[-2:] == [("started",), ("position", 2)]
+    assert late.came_to_rest()
+
+
+@pytest.mark.parametrize("sign", ["signals", "a life"])
+def test_a_source_that_was_only_cut_off_feeds_again(sign: str) -> None:
+    late = Late()
+    late.leave()
+    assert late.came_to_rest()
+    for number in range(2, 9):
+        late.issue(number)
+        if sign == "a life" and number == 3:
+            late.tracker.announce(KEYS.life(TRACKER, "t"))
+            break
+        late.stage.let_pass(UNSEEN - 0.1)
+        assert late.stage.recorder.said[-1] == ("position", number)
+    if sign == "a life":
+        assert not late.came_to_rest()
+    else:
+        assert late.came_to_rest()
