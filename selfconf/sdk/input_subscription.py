@@ -22,7 +22,7 @@ from selfconf.errors import PeerError
 from selfconf.model.immutable import immutable
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Cause, Fail, Wire
+from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.protocol.stamps import StampReader
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
@@ -187,11 +187,7 @@ class InputSubscription:
         self._understood_at = self._heard_at
         if stamp.component != self._wire.component:
             return
-        if self.muted or (self.lost and not lost):  # while it was read
-            return
-        if stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE:
-            return  # late, doubled, or a latched signal that was issued again for another input
-        if lost and stamp.life == self._over[0] and stamp.sequence <= self._over[1]:
+        if self.muted or (self.lost and not lost) or self._is_old(stamp):  # muted or lost while it was read
             return
         if lost and not self._lives:  # it was on its way when the life of its source ended, or the source is cut off
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
@@ -199,6 +195,12 @@ class InputSubscription:
         self._events.deliver(
             self._port, Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
         )
+
+    def _is_old(self, stamp: Stamp) -> bool:
+        """Whether a signal is late, doubled, or a latched one that was issued again for another input."""
+        if self.lost and stamp.life == self._over[0] and stamp.sequence <= self._over[1]:
+            return True
+        return stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE
 
     # What is noticed of the output, on the bus's thread.
 
