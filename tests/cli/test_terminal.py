@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from io import StringIO
+from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
 
+from selfconf.cli.main import main
 from selfconf.cli.terminal import Terminal, display, guard, in_colour, paint, plain
+from tests.frozen import nothing_frozen
 from tests.lab import PREFIXES
 
 pytestmark = pytest.mark.process
@@ -50,22 +52,33 @@ def test_what_nobody_reads_ends_nothing_and_what_cannot_be_encoded_is_escaped(mo
             display("nothing", nowhere)
 
 
-def test_what_programs_read_is_utf_8_whatever_the_terminal_would_have(tmp_path: Path) -> None:
+def test_what_programs_read_is_utf_8_whatever_the_terminal_would_have(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, asked_here: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "lamp.ttl").write_text(PREFIXES + ":lämp a sc:Component, :Lamp .", encoding="utf-8")
     role = ":r a sc:Role ; sh:class :Lamp ."
     (tmp_path / "t.ttl").write_text(f"{PREFIXES} :t a sc:Template ; sc:roles ( :r ) . {role}", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
     lamps = "query", "SELECT ?c WHERE { ?c a sc:Component }", "--ads", "lamp.ttl"
     configured = "configure", "t.ttl", "--ads", "lamp.ttl"
 
     def written(*command: str) -> bytes:
-        environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
-        started = [sys.executable, "-m", "selfconf", *command]
-        return subprocess.run(started, cwd=tmp_path, env=environment, capture_output=True, check=True).stdout
+        """What a command writes where Python writes ASCII."""
+        buffer = BytesIO()
+        with monkeypatch.context() as patch, nothing_frozen():
+            patch.setattr(sys, "stdout", TextIOWrapper(buffer, encoding="ascii"))
+            assert main(command) == 0
+            sys.stdout.flush()
+            return buffer.getvalue()
 
     for command, forms in ((lamps, ("json", "csv", "tsv")), (configured, ("json", "turtle", "mermaid"))):
         for form in forms:
             assert "lämp" in written(*command, "--format", form).decode(), form
         assert b"l\\xe4mp" in written(*command)
+    for form, name in ((("--format", "json"), "lämp".encode()), ((), b"l\\xe4mp")):
+        started, environment = [sys.executable, "-m", "selfconf", *configured, *form], {"PYTHONIOENCODING": "ascii"}
+        done = subprocess.run(started, env={**os.environ, **environment}, capture_output=True, check=True)
+        assert name in done.stdout, "a process writes the same"
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
