@@ -34,7 +34,7 @@ class DeploymentRecord:
         self._status, self._stop = status, stop
         self._deployed: tuple[IRI, Configuration, int, float] | None = None
         self._revises: tuple[IRI, Configuration] | None = None
-        """The configuration before the deployed one; earlier ones are not kept."""
+        """The configuration before the deployed one, or the last one if none is deployed; earlier ones are not kept."""
         self._failures: dict[IRI, tuple[IRI, str, str, float]] = {}
         """The newest failure of each component, the newest last: a task that runs for months has many of each."""
         self._heard = False
@@ -53,10 +53,14 @@ class DeploymentRecord:
 
     def deployed(self, configuration: Configuration, epoch: int, time: float) -> None:
         """Note a configuration that is complete."""
-        if self._deployed is not None:
-            self._revises = self._deployed[:2]
+        self.taken_down()
         self._deployed = configuration_iri(configuration, epoch), configuration, epoch, time
         self._tell()
+
+    def taken_down(self) -> None:
+        """Note that what was deployed is deployed no more; what comes after it revises it."""
+        if self._deployed is not None:
+            self._revises, self._deployed = self._deployed[:2], None
 
     def lost(self, component: IRI, cause: str, detail: str, time: float) -> None:
         """Note a component that was lost."""

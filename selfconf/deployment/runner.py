@@ -206,6 +206,8 @@ class TaskRunner:
         self.state, effects = step(self.state, event)
         if self.state.lost is not known:
             self._notice(known)
+        if self.state.target is None:
+            self._record.taken_down()
         for effect in effects:
             self._carry_out(effect)
         if isinstance(event, Appeared) and self.state.phase is Phase.RUNNING and self.state.target is not None:

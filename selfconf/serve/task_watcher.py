@@ -157,7 +157,7 @@ class TaskWatcher:
         event = task.hear(notice)
         if event is not None:
             self._happened(event)
-            if event["act"] == "waiting":  # what was deployed is taken down, though its configurator still tells it
+            if event["act"] == "waiting":  # what was deployed is taken down, which no configuration tells
                 self._put_graph(task.configurator, b"")
         if notice.event.get("act") == "running":
             self._ask(self.keys.configuration(task.configurator), self._take_deployed)

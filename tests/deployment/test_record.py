@@ -76,6 +76,22 @@ def test_what_is_deployed_is_rdf_with_what_it_revises_and_why(lab: Lab) -> None:
     assert bound[iri("robot")] == iri("Astrid")
 
 
+def test_what_was_taken_down_is_told_no_more_and_is_revised_by_what_comes_after_it(lab: Lab) -> None:
+    agent = lab.agent(patient=True)
+    lab.running(agent)
+    (sample,) = ask(lab, lab.keys.configuration()).samples
+    (name,) = turtle.parse(sample.payload, "first").instances(SC.Configuration)
+    lab.crash("drive")
+    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
+    assert ask(lab, lab.keys.configuration()).samples == ()
+    lab.component("drive")
+    lab.running(agent)
+    (sample,) = ask(lab, lab.keys.configuration()).samples
+    again = turtle.parse(sample.payload, "again")
+    (revision,) = again.instances(SC.Configuration)
+    assert again.values(revision, PROV.wasRevisionOf) == [name]
+
+
 def test_what_is_deployed_names_the_newest_failure_of_each_component_and_keeps_no_other(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
