@@ -170,7 +170,7 @@ class Component:
         self._attached().operations.call(operation, request, seconds, answered, media)
 
     def fail(self, reason: str) -> None:
-        """Raise FAIL: the component cannot act in its role any more. The configurator will turn it off."""
+        """Raise FAIL: the component cannot act in its role any more, or not begin to. The configurator turns it off."""
         self._attached().fail(reason)
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:

@@ -71,6 +71,11 @@ class ComponentCode:
         return self._acting_turn == self.turn
 
     @property
+    def wanted(self) -> bool:
+        """Whether the component is to act, if only once its parameters are set; ended as `active` is."""
+        return self._wanted_turn == self.turn
+
+    @property
     def started(self) -> bool:
         """Whether the component acts, and `started` has returned."""
         return self.active and self._started_turn == self.turn
@@ -83,12 +88,8 @@ class ComponentCode:
     # What the runtime asks for.
 
     def end_acting(self) -> None:
-        """Be inactive at once; may be called from any thread."""
-        self._acting_turn = -1
-
-    def give_up(self) -> None:
-        """Do not go on with a start that has not come to its end."""
-        self.turn += 1
+        """Be inactive at once, and do not go on with a start; may be called from any thread."""
+        self._wanted_turn = self._acting_turn = -1
 
     def start(self, values: Mapping[str, Term], done: Done) -> None:
         """Set the parameters, then start."""
@@ -135,7 +136,7 @@ class ComponentCode:
 
         It may have lost it while its code is about to start.
         """
-        if self._wanted_turn == self.turn and self._blindness.begin(port):
+        if self.wanted and self._blindness.begin(port):
             self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
 
     def connection_changed(self, operation: str, connected: bool) -> None:
@@ -223,7 +224,9 @@ class ComponentCode:
             self._fail(trouble)
 
     def _over(self, turn: int) -> str | None:
-        return None if turn == self.turn else "it was turned off again"
+        if turn != self.turn:
+            return "it was turned off again"
+        return None if self.wanted else "it has failed"
 
     def _start(self, turn: int) -> str | None:
         self._on = True

@@ -24,7 +24,7 @@ from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
 from selfconf.protocol import activation as table
-from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
+from selfconf.protocol.activation import Activation, ActivationStep
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of, owner_of, task_name
 from selfconf.protocol.messages import (
@@ -170,24 +170,15 @@ class ComponentRuntime:
     # What the component does.
 
     def fail(self, reason: str, cause: Cause = Cause.FAIL) -> None:
-        """Raise FAIL, at once; may be called from any thread."""
-        if self.active:
+        """Raise FAIL, at once, also on the way to a start; may be called from any thread."""
+        if self.code.wanted:
             self.code.end_acting()
             self._put_fail(cause, reason)
             self.bus.wake_up(self._failed)
 
     def hung(self, what: str, limit: float) -> None:
-        """Raise FAIL for code that has not returned; called on the bus's thread.
-
-        Code that is to start, but hangs in a parameter, is not active yet and fails all the same.
-        """
-        detail = f"`{what}` has not returned within {limit:g} s"
-        if self.active:
-            self.fail(detail, Cause.HUNG)
-        elif self.activation.phase is ActivationPhase.ACTIVE:
-            self.code.give_up()
-            self._put_fail(Cause.HUNG, detail)
-            self._failed()
+        """Raise FAIL for code that has not returned."""
+        self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` at that interval until the component stops or fails; a call that is late is not made up for.

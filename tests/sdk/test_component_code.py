@@ -282,6 +282,26 @@ def test_code_that_hangs_is_a_failure_within_half_a_second_of_its_deadline(livin
     assert not state[0].active
 
 
+def test_a_failure_that_another_thread_raises_while_a_parameter_is_set_is_heard_and_nothing_starts(
+    living: LivingStage,
+) -> None:
+    class Watched(Hanging):
+        on = False
+
+        def started(self) -> None:
+            self.on = True
+
+    lamp = living.component(living.advertised(Watched, LAMP)(living, "parameter goal"))
+    answers = living.apply("urn:c:lamp", inputs={"level": (Wire(SOURCE, "level"),)}, values={"goal": Literal("x")})
+    assert lamp.begun.wait(PATIENCE)
+    lamp.fail("the bulb is broken")
+    living.release_code.set()
+    assert until(lambda: answers)
+    assert (answers[0].verdict, answers[0].detail) == (Verdict.REFUSED, "it has failed")
+    assert [(fail.cause, fail.detail) for _, fail in living.fails] == [(Cause.FAIL, "the bulb is broken")]
+    assert not lamp.on
+
+
 def test_starting_may_take_longer_where_no_deadline_is_stated(
     living: LivingStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:

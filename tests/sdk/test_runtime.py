@@ -285,6 +285,24 @@ def test_a_component_may_fail_as_it_is_started() -> None:
     assert [fail.detail for fail in stage.fails] == ["at once"]
 
 
+def test_a_component_that_fails_as_a_parameter_is_set_says_so_and_is_not_started() -> None:
+    class Unable(Recorder):
+        def parameter_set(self, name: str, value: Any) -> None:
+            super().parameter_set(name, value)
+            if value == "x":
+                self.fail("cannot take it")
+                self.fail("once more")
+
+    stage = Stage(Unable())
+    answer = stage.call(apply(1, US, values={"goal": Literal("x")}))
+    assert (answer.verdict, answer.detail) == (Verdict.REFUSED, "it has failed")
+    assert stage.fails == [Fail(CAP, "life-1", 1, Cause.FAIL, "cannot take it")]
+    assert stage.recorder.said == [("goal", "x")]
+    assert not stage.state().active
+    assert stage.call(apply(2, US, values={"goal": Literal("y")})).active
+    assert stage.recorder.said == [("goal", "x"), ("goal", "y"), ("started",)]
+
+
 def test_a_component_that_failed_is_started_again_when_it_is_applied_to_again() -> None:
     stage = Stage()
     stage.call(apply(1, US))
