@@ -10,7 +10,7 @@ import pytest
 
 from tests.faults import test_histories
 from tests.faults.ecologies import ECOLOGIES, PAPER
-from tests.faults.replay import PROGRAM, account, command, main, options, played, recipe_of
+from tests.faults.replay import PROGRAM, command, main, options, played, recipe_of
 from tests.faults.script import Recipe
 
 LIFE = re.compile(r"\b[0-9a-f]{8}\b")
@@ -41,11 +41,11 @@ def test_the_command_that_a_test_prints_as_it_fails_plays_its_history(
         test_histories.play_well(recipe, tmp_path)
     printed, _, happened = str(failure.value).partition("\n")
     assert re.fullmatch(r"python -m tests\.faults\.replay \d+ --ecology paper --busy --large --shrink", printed)
-    once = lines(account(played(recipe.script, tmp_path / PAPER.name)))
-    assert once <= lines(happened)  # pytest adds why that is so
     arguments = printed.removeprefix(PROGRAM).split()
     assert main(arguments[:-1]) == 1
-    assert lines(capsys.readouterr().out) == once
+    once = lines(capsys.readouterr().out)
+    assert "nobody acts for nobody" in "".join(once)
+    assert once <= lines(happened)  # pytest adds why that is so
     assert main(arguments) == 1
     assert "nobody acts for nobody" in capsys.readouterr().out
 
