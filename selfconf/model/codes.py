@@ -446,6 +446,13 @@ CODES: tuple[Code, ...] = (
         ("Recruits", "RecruitsDescribed"),
     ),
     Code(
+        "SC-T19", "A parameter stands in shapes, for what sc:sets sets, and for the sc:property of a cost.",
+        "How many components play a role, what a port is called and what a cost weighs is the same for all tasks of a "
+        "template.",
+        f"{_BOUND}:sink sc:recruits :room .", f"{_BOUND}:sink sc:recruits true .",
+        ("FixedValue", "TemplatePortFixed"),
+    ),
+    Code(
         "SC-C01", "A configuration has exactly one template, and at most one task, epoch and time.",
         "These say which question it answers, and when it was the answer.",
         ":now a sc:Configuration ; sc:epoch 3 .", ":now a sc:Configuration ; sc:template :radio ; sc:epoch 3 .",

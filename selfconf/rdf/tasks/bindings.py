@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -93,6 +94,9 @@ def _writable(name: str, value: str | Term) -> None:
 def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
     """The task with defaults filled in and every value checked against its parameter. Raises BindingError.
 
+    In what roles set and in the cost of the template, the types of parameters and the properties that are parameters
+    themselves are replaced by their values; those in shapes are replaced by the readers of the shapes.
+
     The parameters that are named in `later` get their values when the task begins. Until then those stay free that
     stand in shapes, those that are only set stand for their values themselves, and those that cannot be free have
     defaults.
@@ -117,16 +121,49 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
                 )
         if parameter.iri in bindings:
             _check(parameter, bindings[parameter.iri], document)
-    return TaskDocument(replace(task, bindings=bindings), document)
+    return TaskDocument(replace(task, template=_with_values(task.template, bindings), bindings=bindings), document)
+
+
+def _with_values(template: Template, bindings: Mapping[IRI, Term]) -> Template:
+    """A template with parameters replaced that stand for a type that a role sets or a property that a cost counts.
+
+    Raises BindingError where a value is no IRI, or where a role would set the parameters of one type to two values.
+    """
+    names = {parameter.iri: parameter.name for parameter in template.parameters}
+
+    def value_of(iri: IRI, predicate: IRI) -> IRI:
+        value = bindings.get(iri, iri)
+        if not isinstance(value, IRI):
+            problem = f"it stands for a sc:{predicate.short}, which is an IRI"
+            raise BindingError(f"{in_full([value])} cannot stand for the parameter {names[iri]!r}: {problem}")
+        return value
+
+    roles = []
+    for role in template.roles:
+        replaced = (replace(one, type=value_of(one.type, SC.parameterType)) for one in role.settings)
+        settings = tuple(dict.fromkeys(replaced))
+        for kind, times in Counter(one.type for one in settings).items():
+            if times > 1:
+                raise BindingError(f"with these values the role {role.iri!r} sets {kind!r} to {times} different values")
+        roles.append(replace(role, settings=settings))
+    cost = tuple(
+        tuple(replace(term, property=value_of(term.property, SC.property)) for term in level) for level in template.cost
+    )
+    return replace(template, roles=tuple(roles), cost=cost)
 
 
 def _rigid(given: TaskDocument, parameter: Parameter) -> str | None:
     """The property by which a parameter stands where no value is searched, as it is written; None if there is none.
 
-    These are those properties of a role's shape that ask for a literal, paths, and `sc:recruits`.
+    These are those properties of a role's shape that ask for a literal, paths, `sc:recruits`, the types of what roles
+    set, and the properties that a cost counts.
     """
-    document = given.document
-    for role in given.task.template.roles:
+    document, template = given.document, given.task.template
+    if any(term.property == parameter.iri for level in template.cost for term in level):
+        return "sc:property"
+    for role in template.roles:
+        if any(setting.type == parameter.iri for setting in role.settings):
+            return "sc:parameterType"
         for predicate, value in shape_statements(document, role.iri):
             if predicate in LITERAL and value == parameter.iri:
                 return f"sh:{predicate.short}"

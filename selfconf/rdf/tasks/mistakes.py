@@ -81,6 +81,14 @@ def worded(term: Term) -> str:
     return "a blank node" if isinstance(term, BlankNode) else f'"{term.lexical}"'
 
 
+def misplaced(parameter: Term, predicate: IRI) -> str:
+    """The sentence about a parameter that stands for something that is the same for all tasks of a template."""
+    return (
+        f"the parameter {worded(parameter)} cannot stand for sc:{predicate.short}, which is the same for all tasks of "
+        "a template; parameters stand in shapes, for what sc:sets sets, and for the sc:property of a cost"
+    )
+
+
 def placed(error: TemplateError, text: str, base: str) -> TemplateError:
     """The error with the line and column of what it speaks of, where that can be found in the text of the file."""
     from selfconf.rdf.positions import NotTurtleError, parse_with_positions  # loads rdflib

@@ -20,7 +20,7 @@ from selfconf.model.setting_names import setting
 from selfconf.model.template import MOST_PRIORITY, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.tasks.interactions import interactions_of
-from selfconf.rdf.tasks.mistakes import DocumentReader, worded
+from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
 from selfconf.rdf.tasks.parameters import parameters_of
 from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.tasks.template_ports import template_ports
@@ -34,6 +34,10 @@ _SAID_OF = {
     SC.priority: (SC.Template, SC.Task),
 }
 """What is said only of instances of a class, or of one of two."""
+_FIXED = frozenset(
+    SC[name] for name in ("minCount", "maxCount", "recruits", "output", "input", "weight", "otherwise", "priority")
+)
+"""What is the same for all tasks of a template, so that no parameter can stand there."""
 _BROKEN = {
     ListFault.NO_LIST: "{head} is no list of roles",
     ListFault.CELL: "each cell of the list sc:roles has exactly one rdf:first and one rdf:rest",
@@ -106,6 +110,7 @@ class _Reader(DocumentReader):
             raise self.mistake("a template needs an IRI", template)
         names = self._listed(template)
         self._said_of_others()
+        self._without_parameters()
         head = self.only(template, SC.roles, "")
         roles = roles_of(self.document, head, names)
         return Template(
@@ -160,6 +165,13 @@ class _Reader(DocumentReader):
                     words = " or a ".join(f"sc:{kind.short}" for kind in kinds)
                     what = f"has sc:{predicate.short}, but is not described as a {words}"
                     raise self.mistake(f"{worded(subject)} {what}", subject)
+
+    def _without_parameters(self) -> None:
+        """Raises where a parameter stands for something that is the same for all tasks."""
+        parameters = frozenset[Term](self.document.instances(SC.Parameter))
+        for subject, predicate, value in self.document.triples() if parameters else ():
+            if predicate in _FIXED and value in parameters:
+                raise self.mistake(misplaced(value, predicate), subject, predicate, value)
 
     def _label(self, subject: IRI) -> str | None:
         label = self.document.value(subject, LABEL)

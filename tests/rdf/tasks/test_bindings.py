@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.errors import BindingError
+from selfconf.model.cost import CostTerm
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
@@ -188,3 +189,37 @@ def test_a_shape_of_recruits_has_the_default_of_its_parameter_until_that_has_ano
     )
     task = templates.read_task(turtle.parse(text, "t.ttl"))
     assert list(bindings.complete(task, ("x",)).task.bindings) == ["urn:x:x"]
+
+
+PREFERRED = """
+:t a sc:Template ; sc:roles ( :r ) ; sc:parameter :k ; sc:cost ( [ sc:term [ sc:property :k ] ] ) .
+:k a sc:Parameter ; sc:name "k" . :r a sc:Role ; sh:class :X .
+"""
+SETTING = """
+:t a sc:Template ; sc:roles ( :r ) ; sc:parameter :k . :k a sc:Parameter ; sc:name "k" .
+:r a sc:Role ; sh:class :X ; sc:sets [ sc:parameterType :k ; sc:value 1 ] , [ sc:parameterType :G ; sc:value 2 ] .
+"""
+
+
+def test_the_property_that_a_cost_counts_and_the_type_that_a_role_sets_are_replaced_by_their_values() -> None:
+    counted = templates.read_task(turtle.parse(PREFIXES + PREFERRED, "t.ttl"))
+    template = bindings.complete(bindings.bind(counted, [("k", ":price")])).task.template
+    assert template.cost == ((CostTerm(iri("price")),),)
+    sets = templates.read_task(turtle.parse(PREFIXES + SETTING, "t.ttl"))
+    (role,) = bindings.complete(bindings.bind(sets, [("k", ":H")])).task.template.roles
+    assert [setting.type for setting in role.settings] == [iri("H"), iri("G")]
+
+
+@pytest.mark.parametrize(("text", "place"), [(PREFERRED, "sc:property"), (SETTING, "sc:parameterType")])
+def test_what_a_cost_counts_or_a_role_sets_is_an_iri_and_cannot_be_left_free(text: str, place: str) -> None:
+    task = templates.read_task(turtle.parse(PREFIXES + text, "t.ttl"))
+    with pytest.raises(BindingError, match=rf"'k' cannot be left free, for it stands in {place};"):
+        bindings.complete(task)
+    with pytest.raises(BindingError, match=f"^3 cannot stand for the parameter 'k': it stands for a {place}, which"):
+        bindings.complete(bindings.bind(task, [("k", "3")]))
+
+
+def test_values_that_make_a_role_set_one_type_twice_are_refused() -> None:
+    task = templates.read_task(turtle.parse(PREFIXES + SETTING, "t.ttl"))
+    with pytest.raises(BindingError, match=r"the role <.*#r> sets <.*#G> to 2 different values"):
+        bindings.complete(bindings.bind(task, [("k", ":G")]))

@@ -215,3 +215,27 @@ def test_a_weight_is_exact() -> None:
 def test_what_is_no_cost_is_one_sentence(stated: str, sentence: str) -> None:
     with pytest.raises(TemplateError, match=sentence):
         cost(f":t sc:cost {stated} .")
+
+
+@pytest.mark.parametrize("default", ["", "; sh:defaultValue 1"])
+@pytest.mark.parametrize(
+    ("stated", "place"),
+    [
+        (":r sc:minCount :p", "minCount"),
+        (":r sc:maxCount :p", "maxCount"),
+        (":r sc:recruits :p", "recruits"),
+        (":t sc:priority :p", "priority"),
+        (":t sc:cost ( [ sc:term [ sc:property :v ; sc:weight :p ] ] )", "weight"),
+        (":t sc:cost ( [ sc:term [ sc:property :v ; sc:otherwise :p ] ] )", "otherwise"),
+        ("[] a sc:Interaction ; sc:from :r ; sc:to :r ; sc:output :p", "output"),
+        ("[] a sc:Interaction ; sc:from :r ; sc:to :r ; sc:input :p", "input"),
+        (':t sc:hasOutput [ sc:name "o" ; sc:of :r ; sc:signalType :p ]', "signalType"),
+        (':t sc:hasOperation [ sc:name "o" ; sc:of :r ; sc:request :p ]', "request"),
+    ],
+)
+def test_a_parameter_that_stands_for_what_is_the_same_for_all_tasks_is_named(
+    stated: str, place: str, default: str
+) -> None:
+    text = f":t a sc:Template ; sc:parameter :p ; sc:roles ( :r ) . :p a sc:Parameter ; sc:name 'p' {default} ."
+    with pytest.raises(TemplateError, match=rf"the parameter <.*#p> cannot stand for sc:{place}, which is the same "):
+        read(f"{text} {ROLE} {stated} .")
