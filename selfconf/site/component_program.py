@@ -5,10 +5,11 @@
 
 A process that ends with 0 has wanted to, and one that ends with 2 has said why it cannot run (its component lives
 already, for one); every other end is a crash. So is each end after which a task that held a component of the process
-has it started again, or that would go on for ever. After a crash the program is started again with a pause, until it
-has crashed too often (`selfconf.site.restart_limit`). The pause after a first crash ends when the program is asked for,
-as a task may stand still without it; further ones do not, else a task that asks at once would leave no pauses. What
-still runs of the process is ended first: there is never more than one.
+has it started again, and each before any of its components has lived: both would go on for ever. After a crash the
+program is started again with a pause, until it has crashed too often (`selfconf.site.restart_limit`); after an end by 0
+or 2 only when it is asked for, and then not before the pause is over. The pause after a first crash ends when the
+program is asked for, as a task may stand still without it; further ones do not, else a task that asks at once would
+leave no pauses. What still runs of the process is ended first: there is never more than one.
 """
 
 from __future__ import annotations
@@ -114,18 +115,20 @@ class ComponentProgram:
         if self.running:
             self._follow_lives()
             return
-        counted = self._count_lost(after)
+        self._count_lost(after)
         wait = self._limit.wait(self._bus.now(), self._restarts())
         if wait > 0:
             crashed = f"has ended more than {self._restarts()} times within {CRASH_WINDOW:.0f} s"
             raise PeerError(f"the command of {profile.component} {crashed}; it can be started in {wait:.0f} s")
-        if self.group is None:
-            if counted and not self._limit.first(self._bus.now()):
-                self._start_again()
-            elif self._pause is None or self._limit.first(self._bus.now()):
-                self._launch()
-        else:
+        if self.group is not None:
             self._again = True  # one process at a time; the end of this one is near
+        elif self._limit.first(self._bus.now()):
+            self._launch()
+        elif self._pause is None:
+            if self._counted:
+                self._start_again()
+            else:
+                self._launch()
 
     def end(self, gone: Callable[[], None], again: bool = False) -> None:
         """End the process: TERM, after `TERMINATION` seconds KILL; then call `gone`. It can be started again."""
@@ -148,13 +151,11 @@ class ComponentProgram:
         watch = self._watches.get(component)
         return life == self._life or (watch is not None and watch.is_life(life))
 
-    def _count_lost(self, life: str) -> bool:
-        """Count the end of the process in which a task has lost a life, unless it has counted; whether it does now."""
+    def _count_lost(self, life: str) -> None:
+        """Count the end of the process in which a task has lost a life, unless it has counted."""
         watches = (*self._watches.values(), *self._last_watches)
-        counts = bool(life) and not self._counted and any(watch.was_life(life) for watch in watches)
-        if counts:
+        if life and not self._counted and any(watch.was_life(life) for watch in watches):
             self._count_crash()
-        return counts
 
     def _count_crash(self) -> None:
         self._counted = True

@@ -38,7 +38,7 @@ class RestartLimit:
         pause = FIRST_PAUSE
         for _ in range(crashes - 1):  # no power: of many crashes that is no number any more
             pause = min(pause * PAUSE_FACTOR, LONGEST_RESTART_PAUSE)
-        return pause
+        return pause if crashes == 0 else max(0.0, self._crashes[-1] + pause - now)
 
     def first(self, now: float) -> bool:
         """Whether it has crashed once at most within the window."""

@@ -108,10 +108,11 @@ def test_a_program_that_crashes_is_started_again_and_that_is_said(
     ] * 2
 
 
+@pytest.mark.parametrize("code", [0, 2, 3])
 def test_whoever_asks_for_a_program_again_and_again_leaves_it_its_pauses_after_the_first(
-    network: Network, tmp_path: Path, site: Callable[..., Site]
+    network: Network, tmp_path: Path, site: Callable[..., Site], code: int
 ) -> None:
-    made, heard = site(python(NUMBERED + "; raise SystemExit(3)")), fails(network)
+    made, heard = site(python(f"{NUMBERED}; raise SystemExit({code})")), fails(network)
 
     def crashed(times: int) -> bool:
         return live(network, lambda: len(heard) == times and program(made).group is None)

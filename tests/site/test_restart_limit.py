@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,7 +16,15 @@ def test_the_first_pause_is_short_and_each_further_one_longer() -> None:
     for now in range(3):
         limit.crashed(now)
         pauses.append(limit.pause(now, 3))
-    assert pauses == [FIRST_PAUSE, FIRST_PAUSE * PAUSE_FACTOR, FIRST_PAUSE * PAUSE_FACTOR**2]
+    assert pauses == pytest.approx([FIRST_PAUSE, FIRST_PAUSE * PAUSE_FACTOR, FIRST_PAUSE * PAUSE_FACTOR**2])
+
+
+def test_a_pause_begins_with_the_crash() -> None:
+    limit = RestartLimit()
+    limit.crashed(1.0)
+    limit.crashed(2.0)
+    assert limit.pause(2.25, 3) == pytest.approx(FIRST_PAUSE * PAUSE_FACTOR - 0.25)
+    assert limit.pause(10.0, 3) == 0.0
 
 
 def test_a_pause_is_no_longer_than_a_configurator_waits_however_many_crashes_are_allowed() -> None:
