@@ -1,13 +1,15 @@
-"""Which components the other tasks of an ecology hold, as their configurators say."""
+"""Which components the other tasks of an ecology hold, as their configurators say, or what is kept of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from selfconf.bus.port import Bus, Replies
 from selfconf.errors import PeerError
+from selfconf.model.configuration import Wants
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
@@ -17,21 +19,42 @@ STATUS = 1.0
 """Seconds that the configurators may take to say what they hold; a component itself knows better, when it is asked."""
 
 
-def ask_holders(bus: Bus, keys: Keys, own: str, done: Callable[[Mapping[IRI, Holder]], None]) -> None:
+@immutable
+class Holding:
+    """What one task holds, each component with what is wanted of it by those that would share it."""
+
+    holder: Holder
+    components: Mapping[IRI, Wants]
+
+
+def ask_holders(
+    bus: Bus,
+    keys: Keys,
+    own: str,
+    done: Callable[[Mapping[IRI, Holder]], None],
+    without_configurator: Callable[[], Sequence[Holding]] = tuple,
+) -> None:
     """Ask all configurators but the `own` one what they hold; `done` receives the holder of each component.
 
-    Of several holders of one component the one of the highest priority counts, then the one that began first.
+    Of several holders of one component the one of the highest priority counts, then the one that began first. What
+    tasks hold `without_configurator` counts for those of them for which none has answered.
     """
 
     def answered(replies: Replies) -> None:
-        done(holders_in(replies, keys, own))
+        holdings = _holdings(replies, keys, own)
+        known = {one.holder.task for one in holdings}
+        done(_first_holders([*holdings, *(one for one in without_configurator() if one.holder.task not in known)]))
 
     bus.ask(keys.configurator_call("*", "status"), b"", STATUS, answered)
 
 
 def holders_in(replies: Replies, keys: Keys, own: str = "") -> Mapping[IRI, Holder]:
     """The holder of each component by the answers of configurators; an answer that is none is passed over."""
-    found: dict[IRI, Holder] = {}
+    return _first_holders(_holdings(replies, keys, own))
+
+
+def _holdings(replies: Replies, keys: Keys, own: str) -> list[Holding]:
+    found: list[Holding] = []
     for sample in replies.samples:
         try:
             status = decode(sample.payload, Status)
@@ -39,10 +62,16 @@ def holders_in(replies: Replies, keys: Keys, own: str = "") -> Mapping[IRI, Hold
             continue
         if status.configurator == own or sample.key != keys.configurator_call(status.configurator, "status"):
             continue
-        alone = Holder(status.task, status.priority, status.beginning, status.configurator)
-        for component in status.components:
-            holder = replace(alone, wants=status.wants[component]) if component in status.wants else alone
-            known = found.get(component)
+        holder = Holder(status.task, status.priority, status.beginning, status.configurator)
+        found.append(Holding(holder, {one: status.wants.get(one, Wants()) for one in status.components}))
+    return found
+
+
+def _first_holders(holdings: Iterable[Holding]) -> Mapping[IRI, Holder]:
+    found: dict[IRI, Holder] = {}
+    for holding in holdings:
+        for component, wants in holding.components.items():
+            holder, known = replace(holding.holder, wants=wants), found.get(component)
             if known is None or (-known.priority, known.beginning) > (-holder.priority, holder.beginning):
                 found[component] = holder
     return found

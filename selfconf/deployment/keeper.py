@@ -18,8 +18,10 @@ from typing import TYPE_CHECKING
 
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
+from selfconf.deployment.holders import Holding
 from selfconf.deployment.task_folder import TaskFolder
 from selfconf.errors import PeerError, SelfconfError, reason
+from selfconf.model.holder import Holder
 from selfconf.model.run_event import RunEvent, TaskRunning
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of
@@ -35,6 +37,9 @@ KEEPER_LOOK = 1.0
 """Seconds between two looks at which tasks this site is to run."""
 OTHERS = 2.0
 """Seconds that the other sites may take to say what they keep."""
+ADOPTED = 3.0
+"""Seconds after a site has come or gone in which a task that none runs is about to be run by the next: what it held
+then counts as held, or another task, which has lost something, would take it just before."""
 RESPITE = 60.0
 """Seconds after which a task is tried again that could not be read for want of room, or whose search broke."""
 MOST_REJECTIONS = 100
@@ -67,6 +72,8 @@ class Keeper:
         """Until when each task is left alone that has given trouble."""
         self._complaints: set[str] = set()
         self._living: dict[str, set[str]] = {site: {""}}
+        self._changed = bus.now()
+        """When a site has come or gone."""
         self._to_ask: set[str] = set()
         """The sites that have come and were not asked once more since: they may not have been reached at first."""
         bus.serve(self.keys.keep(site), self._keep)
@@ -159,6 +166,7 @@ class Keeper:
         site, lives = owner_of(key), self._living
         if site == self.site:
             return
+        self._changed = self.bus.now()
         if alive:
             lives.setdefault(site, set()).add(key)
             # When this site began it may have been cut off from that one, and no other site says what that one keeps.
@@ -191,6 +199,22 @@ class Keeper:
             elif runner is None and mine and not record.ended and not self._has_respite(task):
                 self._run(record)
 
+    def _without_configurator(self, task: str) -> list[Holding]:
+        """What each other task holds that is to be run, by its record, while it may be without a configurator."""
+        found: list[Holding] = []
+        if self.bus.now() - self._changed > ADOPTED:
+            return found
+        for record in self.folder.records.values():
+            if record.task == task or record.ended or not record.configuration or not self._requests.get(record.task):
+                continue
+            try:
+                configuration = recorded_configuration(record.configuration)
+            except PeerError:
+                continue  # it begins anew
+            holder = Holder(record.task, record.priority, record.beginning)
+            found.append(Holding(holder, {one: configuration.wants(one) for one in configuration.components}))
+        return found
+
     def _has_respite(self, task: str) -> bool:
         return self._respites.get(task, 0.0) > self.bus.now()
 
@@ -209,7 +233,7 @@ class Keeper:
         runner = TaskRunner(
             self.bus,
             self.ecology,
-            replace(request, ended=ended),
+            replace(request, ended=ended, without_configurator=partial(self._without_configurator, record.task)),
             clock=self._clock,
             task=record.task,
             beginning=record.beginning,

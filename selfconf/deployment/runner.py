@@ -124,7 +124,15 @@ class TaskRunner:
             self._report,
         )
         self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls, self._waking)
-        self._discovery = TaskDiscovery(self.ecology, self.name, self._liveness, self._now, self._step, self._report)
+        self._discovery = TaskDiscovery(
+            self.ecology,
+            self.name,
+            self._liveness,
+            self._now,
+            self._step,
+            self._report,
+            request.without_configurator,
+        )
         self._search = TaskSearch(
             self.ecology, request, self._liveness, self._now, self._step, self._report, self._give_up
         )

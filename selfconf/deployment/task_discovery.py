@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from selfconf.configurator import Discovered, Event, State
 from selfconf.deployment.components import Liveness
-from selfconf.deployment.holders import ask_holders
+from selfconf.deployment.holders import Holding, ask_holders
 from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.holder import Holder
@@ -25,9 +25,11 @@ class TaskDiscovery:
         state: Callable[[], State],
         step: Callable[[Event], None],
         report: EventListener,
+        without_configurator: Callable[[], Sequence[Holding]] = tuple,
     ) -> None:
-        """`name` is that of the configurator."""
+        """`name` is that of the configurator; `without_configurator` that of the `RunRequest`."""
         self._bus, self._ecology, self._name, self._liveness = ecology.bus, ecology, name, liveness
+        self._without_configurator = without_configurator
         self._state, self._step, self._report = state, step, report
         self._asked = 0
         """How often the ecology was asked."""
@@ -55,7 +57,7 @@ class TaskDiscovery:
             held.append(holders)
             both()
 
-        ask_holders(self._bus, self._ecology.keys, self._name, answered)
+        ask_holders(self._bus, self._ecology.keys, self._name, answered, self._without_configurator)
         self._ecology.discover(discovered)
 
     def _discovered(self, discovery: Discovery, holders: Mapping[IRI, Holder]) -> None:

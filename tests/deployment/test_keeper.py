@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from selfconf.bus.memory import Faults
 from selfconf.bus.port import Bus, Urgency
 from selfconf.composition import Composer
 from selfconf.configurator.state import Phase
@@ -17,7 +19,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.tasks import bind, complete, read_task
-from tests.deployment.tasks import TASK
+from tests.deployment.tasks import DRIVEN, SPARE, TASK
 from tests.lab import NAVIGATE, Lab
 
 RECORD = TaskRecord("patrol~1", 1, priority=1, beginning=5.0)
@@ -32,8 +34,8 @@ def request_for(record: TaskRecord) -> RunRequest:
 class Keepers:
     """The paper's ecology, with a keeper at each of three more sites."""
 
-    def __init__(self, lab: Lab, folder: Path) -> None:
-        self.lab, self.folder = lab, folder
+    def __init__(self, lab: Lab, folder: Path, request_for: Callable[[TaskRecord], RunRequest] = request_for) -> None:
+        self.lab, self.folder, self.request_for = lab, folder, request_for
         self.buses: dict[str, Bus] = {}
         self.keepers: dict[str, Keeper] = {}
         self.ahead: dict[str, float] = {}
@@ -46,7 +48,7 @@ class Keepers:
         """Start a site that keeps tasks, with the disk that it had."""
         bus = self.buses[name] = self.lab.network.node()
         kept, ahead = TaskFolder(self.folder / name), self.ahead.get(name, 0.0)
-        self.keepers[name] = Keeper(bus, "lab", name, kept, request_for, lambda: self.lab.network.time + ahead)
+        self.keepers[name] = Keeper(bus, "lab", name, kept, self.request_for, lambda: self.lab.network.time + ahead)
         bus.announce(self.lab.keys.site_life(name, f"{name}{len(self.lab.network.nodes)}"))
 
     def end(self, name: str) -> None:
@@ -160,6 +162,54 @@ def test_after_all_sites_were_restarted_the_task_comes_back_from_their_disks(kee
         keepers.begin(name)
     assert keepers.lab.until(lambda: bool(keepers.running()))
     assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"tracker"})
+
+
+def drives(record: TaskRecord) -> RunRequest:
+    """A task for which either of two components will do."""
+    task = complete(read_task(turtle.parse(DRIVEN, "t")))
+    composer = Composer(task)
+    return RunRequest(
+        task=task.task, compose=composer.compose, usable=composer.usable, patient=True, priority=record.priority
+    )
+
+
+def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
+    """Which site is to run a task, and which one after its end."""
+    first = keeper_of(task, sites)
+    return first, keeper_of(task, {*sites} - {first})
+
+
+@pytest.mark.parametrize("keepers_are", ["one", "two"])
+@pytest.mark.parametrize("priority", [0, 2])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_task_that_has_lost_something_takes_nothing_from_one_that_changes_hands_with_it(
+    tmp_path: Path, keepers_are: str, priority: int, seed: int
+) -> None:
+    """A site ends that runs both, and with it a component of the one that has begun first."""
+    lab = Lab(tmp_path, seed, Faults(most_delay=0.1), SPARE)
+    lab.site("shared", *SPARE)
+    lab.component("right")
+    keepers = Keepers(lab, tmp_path / "disks", drives)
+    named = {task: keepers_in_turn(task, "shared", *"abc") for task in (f"task~{number}" for number in range(99))}
+    (first, (ended, next_of_first)), *rest = ((t, sites) for t, sites in named.items() if "shared" not in sites)
+    second = next(
+        task for task, (keeper, then) in rest if keeper == ended and (then == next_of_first) == (keepers_are == "one")
+    )
+    keepers.hand_over(TaskRecord(first, 1, beginning=5.0))
+    assert lab.until(lambda: lab.active() == {"right"})
+    lab.component("left")
+    keepers.hand_over(TaskRecord(second, 1, beginning=6.0, priority=priority))
+    assert lab.until(lambda: lab.active() == {"left", "right"})
+    lab.let_pass(5.0)
+    keepers.end(ended)
+    lab.crash("right")
+    lab.let_pass(10.0)
+    assert lab.components["left"].said == [("started",)]
+    tasks = {task: runner for keeper in keepers.keepers.values() for task, runner in keeper.runners.items()}
+    assert tasks[second].state.phase is Phase.RUNNING
+    assert tasks[first].state.phase is Phase.REFUSED
+    tasks[second].stop()
+    assert lab.until(lambda: tasks[first].state.phase is Phase.RUNNING), "it has waited for what the other has held"
 
 
 def test_a_task_that_was_ended_comes_to_rest_and_does_not_come_back(keepers: Keepers) -> None:

@@ -117,7 +117,7 @@ RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
 SHARES_ALL = {
     "selfconf.protocol.activation._blocked": lambda *_: False,
-    "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered: answered({}),
+    "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered, kept: answered({}),
 }
 SILENT = {f"{LIVENESS}.Liveness.audit": nothing, f"{RUNTIME}._let_go": lets_go_silently}
 """Nobody tells, and nobody asks, whether a component has let go."""
@@ -141,7 +141,7 @@ MUTATIONS = {
     "no actuator acts on part": Mutation(
         {
             **SILENT,
-            "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered: answered({}),
+            "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered, kept: answered({}),
         },
         (Action(2.0, "begin", "task-3"), Action(4.0, "mute", "task-1", "control"), LATER),
     ),
