@@ -73,7 +73,17 @@ def fault_of(
     if wanted.accepts is not None and wanted.accepts not in output.conforms:
         index = composer.gathered(ecology)
         unaccepted = composer.partitioner.unaccepted(index, component, output.name, wanted.accepts)
-    return UnfitOutput(output.name, units, frames, unaccepted) if units or frames or unaccepted else None
+    requests = untaken_request(output, wanted)
+    if units or frames or unaccepted or requests:
+        return UnfitOutput(output.name, units, frames, unaccepted, requests)
+    return None
+
+
+def untaken_request(operation: Output, wanted: Condition) -> tuple[IRI | None, IRI | None] | None:
+    """The request that an operation takes and the one that it would be sent, where it does not take that."""
+    if wanted.sent is None or wanted.sent.taken_by(operation):
+        return None
+    return operation.request, wanted.sent.type
 
 
 def _sources(problem: Problem, sink: IRI) -> tuple[int, ...]:
@@ -110,17 +120,19 @@ class _Question:
     def feeding_nothing(self, unfed: Sequence[InputFed]) -> Iterator[NearMiss]:
         """The candidates that feed none of some inputs, but issue what is akin to it, or the same in other units."""
         for candidate in self._problem.candidates[self._number] if unfed and self._ports else ():
-            obstacle = self._unfit(candidate.profile, unfed) or self._unlike(candidate.profile)
+            obstacle = self._unfit(candidate.profile, unfed) or self._unlike(candidate.profile, unfed)
             if obstacle is not None:
                 yield NearMiss(self._role, candidate.profile.component, obstacle)
 
-    def _unlike(self, profile: Profile) -> UnlikePorts | None:
+    def _unlike(self, profile: Profile, unfed: Sequence[InputFed]) -> UnlikePorts | None:
         """What the ports of a component lack that issues something akin to what is wanted; None if nothing."""
         if self._ports is None:
             return None
         _, lacking = self._ports.of(profile.ports)
         akin = any(match.likeness for match in lacking.issued)
-        return lacking if akin and not all(match.exact for match in (*lacking.issued, *lacking.given)) else None
+        if not akin or all(match.exact for match in (*lacking.issued, *lacking.given)):
+            return None
+        return replace(lacking, unfit=tuple(_untaken(profile, lacking, unfed)))
 
     def _unfit(self, profile: Profile, unfed: Sequence[InputFed]) -> UnfitOutput | None:
         """What is wrong with the first output that an unfed input would take by its type."""
@@ -141,6 +153,16 @@ class _Question:
             for near in ranked(profiles, self._ports, question)
         ]
         return sorted(found, key=lambda miss: isinstance(miss.obstacle, UnfitOutput) and miss.obstacle.hopeless)
+
+
+def _untaken(profile: Profile, lacking: UnlikePorts, unfed: Sequence[InputFed]) -> Iterator[UnfitOutput]:
+    """Yield the operations of a component, akin to those that are needed, that do not take what would be sent."""
+    for need in unfed:
+        akin = {match.offered for match in lacking.issued if match.wanted in need.wanted.signals}
+        nearest = [output for output in profile.outputs if not akin.isdisjoint(output.signals)]
+        untaken = [untaken_request(output, need.wanted.condition or Condition()) for output in nearest]
+        if untaken and untaken[0] is not None and None not in untaken:
+            yield UnfitOutput(nearest[0].name, requests=untaken[0])
 
 
 def ranked_exclusions(

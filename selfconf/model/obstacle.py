@@ -11,7 +11,7 @@ from enum import Enum
 from typing import ClassVar
 
 from selfconf.model.immutable import immutable
-from selfconf.model.profile import Operation, WantedSignal, port_in_words
+from selfconf.model.profile import CALL_MARK, Operation, WantedSignal, port_in_words
 from selfconf.model.setting_names import setting
 from selfconf.model.signal_match import Degree, SignalMatch
 from selfconf.model.term import IRI, Term
@@ -282,16 +282,21 @@ class UnlikePorts(_Predicate):
     """For each signal that it should issue the nearest that it does."""
     given: tuple[SignalMatch, ...] = ()
     """For each signal that it requires the nearest that it would be given."""
+    unfit: tuple[UnfitOutput, ...] = ()
+    """The operations among the nearest that do not take what would be sent, either."""
 
     def __str__(self) -> str:
         issued = [_issuing(one) for one in self.issued if not one.exact]
         given = [_taking(one) for one in self.given if not one.exact]
-        return " and ".join(dict.fromkeys((*issued, *given))) or "has other ports"
+        return " and ".join(dict.fromkeys((*issued, *map(str, self.unfit), *given))) or "has other ports"
 
 
 @immutable
 class UnfitOutput(_Predicate):
-    """The component issues the signal that an input wants, but in another unit or frame, or of another shape."""
+    """The component issues the signal that an input wants, but in another unit or frame, or of another shape.
+
+    Or it offers the operation that is needed, but takes another request than the one that would be sent.
+    """
 
     code: ClassVar[str] = "unfit-output"
     output: str
@@ -301,6 +306,8 @@ class UnfitOutput(_Predicate):
     """The frame that it refers to and the one that is wanted, where they differ."""
     unaccepted: Obstacle | None = None
     """What keeps the output from conforming to the shape of the input."""
+    requests: tuple[IRI | None, IRI | None] | None = None
+    """The request that the operation takes and the one that would be sent, where they do not match; None is nothing."""
 
     @property
     def hopeless(self) -> bool:
@@ -318,6 +325,11 @@ class UnfitOutput(_Predicate):
             said.append(f"is in the frame {in_words(self.frames[:1])}, not in {in_words(self.frames[1:])}")
         if self.unaccepted is not None:
             said.append(f"is not accepted: {self.unaccepted.clause}")
+        if self.requests is not None:
+            taken, sent = ("nothing" if one is None else one.short for one in self.requests)
+            said.append(f"takes {taken} and would be sent {sent}")
+        if self.output.endswith(CALL_MARK):
+            return f"offers what {' and '.join(said)} ({port_in_words(self.output).removeprefix('the ')})"
         return f"issues what {' and '.join(said)} (output {self.output!r})"
 
 

@@ -11,7 +11,7 @@ from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
 from selfconf.composition.near_misses import ranked_exclusions
 from selfconf.composition.time_limit import TimeLimit
-from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
@@ -39,10 +39,12 @@ advertised = lru_cache(maxsize=8)(lambda ads: tuple(read([ads])))
 """What a text advertises: many requests are made to one collection."""
 
 
-def near(template: str, ads: str, *below: tuple[str, str], others: str = "") -> list[NearMiss]:
+def near(
+    template: str, ads: str, *below: tuple[str, str], others: str = "", sees: Hierarchy = NOTHING_ABOVE
+) -> list[NearMiss]:
     """The near misses of a refusal, where the ontologies say that some classes lie below others."""
     task = bindings.complete(templates.read_task(turtle.parse(template, "t.ttl")))
-    composer, ecology = Composer(task), {one.component: one for one in (*advertised(ads), *read([others]))}
+    composer, ecology = Composer(task, sees), {one.component: one for one in (*advertised(ads), *read([others]))}
     refused = composer.compose(ecology, frozenset(), None)
     assert isinstance(refused, Refusal)
     return list(explained(composer, ecology, refused, known(*below), TimeLimit(None)).near_misses)
@@ -157,4 +159,44 @@ def test_of_an_output_that_is_not_accepted_it_is_told_why(shape: str, said: str)
     ads = QUDT + CLIENT % f" ; sc:accepts [ {shape} ]" + issuing("a", "Price", rate)
     assert [str(miss) for miss in near(PREFIXES + FEED, ads)] == [
         f"it issues what is not accepted: {said} (output 'o')"
+    ]
+
+
+BELOW_REQUESTS = ("Special", "General"), ("Fine", "Coarse")
+
+
+def requested(offered: str, response: str, mode: str) -> list[str]:
+    """The near misses, in words, where an operation is needed that takes a general request."""
+    needed = f'sc:needsOperation [ sc:name "n" ; sc:request :General ; sc:response :{response} ]'
+    ads = f"{PREFIXES} :k a sc:Component , :Client ; {needed} ."
+    ads += f' :a a sc:Component , :Service ; sc:hasOperation [ sc:name "o" ; {offered} ] .'
+    sees = known(*BELOW_REQUESTS) if mode == "subclass" else NOTHING_ABOVE
+    return [str(miss) for miss in near(PREFIXES + FEED, ads, *BELOW_REQUESTS, sees=sees)]
+
+
+@pytest.mark.parametrize("mode", ["syntactic", "subclass"])
+@pytest.mark.parametrize(
+    ("request_taken", "said"), [("sc:request :Special ;", "Special"), ("sc:request :Fine ;", "Fine"), ("", "nothing")]
+)
+def test_of_an_operation_that_answers_as_wanted_it_is_told_what_it_takes(
+    request_taken: str, said: str, mode: str
+) -> None:
+    assert requested(f"{request_taken} sc:response :Coarse", "Coarse", mode) == [
+        f"it offers what takes {said} and would be sent General (operation 'o')"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("answered", "wanted", "mode", "said"),
+    [
+        ("Fine", "Coarse", "subclass", ""),  # which is what the mode takes
+        ("Fine", "Coarse", "syntactic", "offers operation -> Fine, which lies below operation -> Coarse and "),
+        ("Coarse", "Fine", "subclass", "offers operation -> Coarse, which lies above operation -> Fine and "),
+    ],
+)
+def test_of_an_operation_its_request_is_told_beside_a_response_that_the_mode_does_not_take(
+    answered: str, wanted: str, mode: str, said: str
+) -> None:
+    assert requested(f"sc:request :Special ; sc:response :{answered}", wanted, mode) == [
+        f"it {said}offers what takes Special and would be sent General (operation 'o')"
     ]

@@ -30,6 +30,7 @@ from selfconf.model.obstacle import (
     WrongShareOfValues,
     WrongType,
 )
+from selfconf.model.profile import Operation
 from selfconf.model.signal_match import Degree, SignalMatch
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.rdf.vocabulary import UNIT
@@ -103,6 +104,20 @@ WORDED: list[tuple[Obstacle, str, str]] = [
         "it issues Sonar, which lies above Scan and needs Map, which it would not be given",
     ),
     (UnlikePorts(), "has other ports", "it has other ports"),
+    (
+        UnlikePorts(
+            (SignalMatch(Operation.of(IRI("urn:Map")), Operation.of(IRI("urn:Plan")), Degree.SUBSUMES, 0.6),),
+            unfit=(UnfitOutput("draw()", requests=(IRI("urn:Room"), None)),),
+        ),
+        (
+            "offers operation -> Plan, which lies above operation -> Map "
+            "and offers what takes Room and would be sent nothing (operation 'draw')"
+        ),
+        (
+            "it offers operation -> Plan, which lies above operation -> Map "
+            "and offers what takes Room and would be sent nothing (operation 'draw')"
+        ),
+    ),
     (
         UnlikePorts(given=(SignalMatch(IRI("urn:Map"), IRI("urn:Plan"), Degree.OVERLAP, 0.4),)),
         "needs Map and would be given Plan, which is akin to it",
