@@ -129,10 +129,11 @@ def obeys_two(history: History) -> Iterator[str]:
 def acts_on_part(history: History) -> Iterator[str]:
     """An actuator acts only while no other task holds a part of its configuration.
 
-    That is the one that ran before for as long as a better one is being prepared, of which parts may be held.
+    That is the one that ran before for as long as a better one is being prepared, of which parts may be held. One that
+    is at rest, as it is blind, does not act.
     """
     for life in acting(history):
-        if not life.runtime.profile.outputs:
+        if not life.runtime.profile.outputs and is_on(life):
             for agent in supervisors(history, life):
                 plans = [plan for plan in (agent.state.target, agent.state.fallback) if plan is not None]
                 amiss = [list(held_by_others(history, plan, agent)) for plan in plans]
@@ -197,11 +198,16 @@ def acts_blind(history: History) -> Iterator[str]:
         actuates = bool(life.runtime.profile.signal_inputs) and not life.runtime.profile.outputs
         if not actuates or life.thread.starting:
             continue
-        told = (said for said in reversed(life.recorder.said) if said in (("started",), ("stopped",)))
-        if next(told, None) == ("started",):
+        if is_on(life):
             sources = {wire.component for _, wire in life.followed}
             if not any(feeds(history, source, life) for source in sources):
                 yield f"{life.name} {life.runtime.life} is on, and nobody feeds it"
+
+
+def is_on(life: Life) -> bool:
+    """Whether the code of a component was started, and has not come to rest since."""
+    told = (said for said in reversed(life.recorder.said) if said in (("started",), ("stopped",)))
+    return next(told, None) == ("started",)
 
 
 def feeds(history: History, source: IRI, life: Life) -> bool:
