@@ -74,8 +74,10 @@ class Bench:
         return found
 
 
-def measure(bench: Bench, sizes: tuple[int, ...], rdflib_most: int, form_size: int, crowd: tuple[int, int]) -> str:
-    """Everything, as a page."""
+def measure(
+    bench: Bench, sizes: tuple[int, ...], rdflib_most: int, form_size: int, loadings: int, crowd: tuple[int, int]
+) -> str:
+    """Everything, as a page; each form of an ecology is loaded so many times."""
     rows = {}
     for size in sizes:
         path = bench.ecology(str(size), size)
@@ -93,9 +95,10 @@ def measure(bench: Bench, sizes: tuple[int, ...], rdflib_most: int, form_size: i
         "topical": bench.ecology("topical", form_size, topical),
         "unlike": bench.ecology("unlike", form_size, unlike),
     }
-    forms = {form: bench.measured("loading", path, 5) for form, path in paths.items()}
+    forms = {form: bench.measured("loading", path, loadings) for form, path in paths.items()}
     styles = {
-        name: bench.measured("loading", bench.styled(name, form_size, style), 5) for name, style in STYLES.items()
+        name: bench.measured("loading", bench.styled(name, form_size, style), loadings)
+        for name, style in STYLES.items()
     }
     few, unwanted = crowd
     bench.ecology("unwanted", unwanted, wanted=False)
@@ -122,8 +125,8 @@ def main() -> int:
         # Processes of their own are for what is measured: to see that they run, one of them is enough.
         bench = Bench(given.keep or Path(name), {"configure"} if given.smoke else ENGINES)
         bench.folder.mkdir(parents=True, exist_ok=True)
-        form_size, crowd = (200, (200, 1_000)) if given.smoke else (10_000, (10_000, 100_000))
-        text = measure(bench, sizes, SIZES[-1] if given.full else RDFLIB_MOST, form_size, crowd)
+        forms, crowd = ((50, 1), (200, 1_000)) if given.smoke else ((10_000, 5), (10_000, 100_000))
+        text = measure(bench, sizes, SIZES[-1] if given.full else RDFLIB_MOST, *forms, crowd)
     print(text)
     if given.write:
         PAGE.write_text(text)
