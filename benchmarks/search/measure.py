@@ -11,7 +11,7 @@ import multiprocessing
 import resource
 import time
 import tracemalloc
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
@@ -61,21 +61,23 @@ def measure(
     """The time from the problem to the answer, building a model of it included, importing a library not.
 
     What selfconf allocates is counted in a second run of it, if that is `traced`, as long again as the limit at most.
+    What is measured once is only to be seen to work, so its engine solves just one problem before.
     """
     traced = traced and engine == "selfconf"  # what it needs may fit into what making the problem has left free
-    found = _once(engine, problem, limit, engines, traced)
+    warming = WARMING[:1] if times == 1 else WARMING[:2] if engine in SMALL else WARMING
+    found = _once(engines[engine], problem, limit, warming, traced)
     for _ in range(times - 1):
         if found.answer is not None and found.seconds < QUICK:
-            again = _once(engine, problem, limit, engines, traced)
+            again = _once(engines[engine], problem, limit, warming, traced)
             found = min(found, again, key=lambda one: (one.answer is None, one.seconds))
     return found
 
 
-def _once(engine: str, problem: Problem, limit: float, engines: Mapping[str, Engine], traced: bool) -> Measured:
+def _once(solved: Engine, problem: Problem, limit: float, warming: Sequence[Problem], traced: bool) -> Measured:
     context = multiprocessing.get_context("fork")
     receiving, sending = context.Pipe(duplex=False)
     gc.freeze()  # so that the child does not copy the pages of the problem as it counts references to nothing
-    process = context.Process(target=_child, args=(engine, engines[engine], problem, sending, traced))
+    process = context.Process(target=_child, args=(solved, problem, sending, warming, traced))
     process.start()
     sending.close()
     found = Measured(limit, None)
@@ -90,9 +92,9 @@ def _once(engine: str, problem: Problem, limit: float, engines: Mapping[str, Eng
     return found
 
 
-def _child(engine: str, solved: Engine, problem: Problem, sending: Connection, traced: bool) -> None:
+def _child(solved: Engine, problem: Problem, sending: Connection, warming: Sequence[Problem], traced: bool) -> None:
     _own(problem)
-    for small in WARMING[:2] if engine in SMALL else WARMING:
+    for small in warming:
         solved(small)
     sending.send(True)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
