@@ -3,8 +3,8 @@
 A signal is a JSON object with a member for each field; further members are allowed, as a kind of signal below this one
 has more. A field holds one value of its datatype, or, if it is repeated, any number of them in order. JSON has numbers,
 truth values and text: numeric datatypes of XML Schema are checked as numbers (whole ones by their bounds, and as in
-JSON Schema 2.0 is a whole number), xsd:boolean as a truth value, every other datatype of XML Schema as text, and a
-datatype that is of none of these kinds is not checked.
+JSON Schema 2.0 is a whole number; floating ones by what a double holds), xsd:boolean as a truth value, every other
+datatype of XML Schema as text, and a datatype that is of none of these kinds is not checked.
 
 A signal that travels as bytes, or as an array, has no fields that could be checked; its kind says whether it may.
 
@@ -15,12 +15,13 @@ that run in C for a whole list, and words are looked for only where something is
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from reprlib import Repr
 from typing import Any, NamedTuple
 
-from selfconf.model.number import DATATYPES, WHOLE_NUMBERS
+from selfconf.model.number import DATATYPES, FLOATING, WHOLE_NUMBERS
 from selfconf.model.term import IRI, XSD_NAMESPACE
 
 _SHORT = Repr()
@@ -152,6 +153,8 @@ def _kind(datatype: IRI) -> _JsonKind:
         bounded = (least, greatest) != (None, None)
         low, high = -math.inf if least is None else least, math.inf if greatest is None else greatest
         return _JsonKind(frozenset((int,)), bounded, low, high, _is_whole)
+    if datatype in FLOATING:
+        return _JsonKind(frozenset((int, float)), True, -sys.float_info.max, sys.float_info.max, _is_number)
     unbounded = (False, -math.inf, math.inf)
     if datatype in DATATYPES:
         return _JsonKind(frozenset((int, float)), *unbounded, _is_number)

@@ -147,7 +147,8 @@ class Component:
 
         `time` is its time in seconds, now by default. Bytes and arrays, those of NumPy and whatever else has a buffer
         of numbers, travel as they are; `media` is their media type, such as `image/png`. What is emitted may be changed
-        afterwards. Raises ProgrammerError for an output that is not advertised, and for what no signal can carry.
+        afterwards. What no signal can carry, or is not of the type that is advertised, is a FAIL with the cause
+        `malformed`. Raises ProgrammerError for an output that is not advertised.
         """
         self._attached().outputs.emit(port, value, time, media)
 

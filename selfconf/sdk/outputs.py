@@ -19,6 +19,7 @@ from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import SignalEncoding
 from selfconf.protocol.stamps import PLAIN, StampWriter
 from selfconf.sdk.payloads import UnsayableError, as_bytes, as_json
 
@@ -70,9 +71,9 @@ class Outputs:
         self._served: Undo = bus.serve(keys.outputs(profile.component), self._answer) if self._names else lambda: None
 
     def emit(self, port: str, value: Any, moment: float | None, media: str = "") -> None:
-        """Issue a signal; may be called from any thread. Raises ProgrammerError for what no signal can carry.
+        """Issue a signal; may be called from any thread. Raises ProgrammerError for an output or a time that is none.
 
-        A signal that is not of the kind that the output promises is not issued.
+        A value that no signal can carry, or that is not of the kind that the output promises, is not issued.
         """
         if moment is not None and not math.isfinite(moment):
             raise ProgrammerError(f"{self._profile.component.short} cannot emit a signal of the time {moment!r}")
@@ -82,18 +83,13 @@ class Outputs:
         if not self._active():
             return
         try:
-            packed = as_bytes(value, media)
-            problem = self._problem(port, value, packed is not None)
-            if problem is not None:
-                self._malformed(f"what it emits on {port!r} {problem}")
-                return
-            payload, encoding = packed or (as_json(value), PLAIN)
+            payload, encoding, packed = self._packed(port, value, media)
         except UnsayableError as error:
-            name = self._profile.component.short
-            raise ProgrammerError(f"{name} cannot emit that on {port!r}: {error}") from None
+            self._malformed(f"what it emits on {port!r} {error}")
+            return
         self.newest = number = next(self._sequence)
         moment = time.time() if moment is None else moment
-        stamp = self._stamps[port].write(number, moment, packed is not None, encoding)
+        stamp = self._stamps[port].write(number, moment, packed, encoding)
         self._last[port] = payload, stamp
         self.issued[port] += 1  # a count for people: where two threads emit on one output, one may be missed
         output.put(payload, stamp)
@@ -101,16 +97,19 @@ class Outputs:
     def problem(self, port: str, value: Any) -> str | None:
         """What keeps a value from being a signal of an output, without its subject; None if nothing does."""
         try:
-            packed = as_bytes(value)
-            if packed is None:
-                as_json(value)
-            return self._problem(port, value, packed is not None)
+            self._packed(port, value)
         except UnsayableError as error:
-            return f"is no signal: {error}"
+            return str(error)
+        return None
 
-    def _problem(self, port: str, value: Any, packed: bool) -> str | None:
-        problems = (one.problem_of_bytes() if packed else one.problem(value) for one in self._fields[port])
-        return next(filter(None, problems), None)
+    def _packed(self, port: str, value: Any, media: str = "") -> tuple[bytes, SignalEncoding, bool]:
+        """The payload of a signal, its encoding, and whether it is none of JSON. Raises UnsayableError."""
+        packed = as_bytes(value, media)
+        for fields in self._fields[port]:
+            problem = fields.problem(value) if packed is None else fields.problem_of_bytes()
+            if problem is not None:
+                raise UnsayableError(problem)
+        return (as_json(value), PLAIN, False) if packed is None else (*packed, True)
 
     def forget(self) -> None:
         """Forget the last signals: a new activation begins."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 import time
 import timeit
 from functools import partial
@@ -13,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.model.number import DATATYPES, WHOLE_NUMBERS
+from selfconf.model.number import DATATYPES, FLOATING, WHOLE_NUMBERS
 from selfconf.model.signal_fields import SignalField, SignalFields
 from selfconf.model.term import IRI, XSD_NAMESPACE
 
@@ -59,6 +60,10 @@ def test_a_value_with_all_its_fields_is_right(more: dict[str, Any]) -> None:
         ({**GOOD, "ranges": [1.0, "far"]}, "has 'far' at 1 in 'ranges'"),
         ({**GOOD, "ranges": [1.0, True]}, "has True at 1 in 'ranges'"),
         ({**GOOD, "max_range": True}, "has True as 'max_range', which is xsd:double"),
+        ({**GOOD, "max_range": math.nan}, "has nan as 'max_range', which is xsd:double"),
+        ({**GOOD, "max_range": -math.inf}, "has -inf as 'max_range'"),
+        ({**GOOD, "max_range": 10**400}, "has 1000000"),
+        ({**GOOD, "ranges": [1.0, 10**400, 2.0]}, "at 1 in 'ranges'"),
         ({**GOOD, "count": 256}, "has 256 as 'count', which is xsd:unsignedByte"),
         ({**GOOD, "count": -1}, "has -1 as 'count'"),
         ({**GOOD, "count": 1.5}, "has 1.5 as 'count'"),
@@ -138,7 +143,7 @@ def is_of(value: object, datatype: IRI) -> bool:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     if datatype not in WHOLE_NUMBERS:
-        return True
+        return datatype not in FLOATING or abs(value) <= sys.float_info.max
     least, greatest = WHOLE_NUMBERS[datatype]
     whole = math.isfinite(value) and value == math.floor(value)
     return whole and (least is None or value >= least) and (greatest is None or value <= greatest)

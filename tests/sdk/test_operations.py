@@ -217,7 +217,7 @@ def test_what_cannot_be_called_or_sent_is_a_mistake_of_the_program() -> None:
     room = Darkroom(Camera())
     with pytest.raises(ProgrammerError, match="album advertises no need of an operation 'sound'"):
         room.album.call("sound", answered=room.album.answers.append)
-    with pytest.raises(ProgrammerError, match="JSON cannot say it"):
+    with pytest.raises(ProgrammerError, match="it is nothing that JSON can say"):
         room.album.ask(float("nan"))
     with pytest.raises(ProgrammerError, match=f"it has {MOST_PAYLOAD + 1} bytes, and {MOST_PAYLOAD} are allowed"):
         room.album.ask(bytes(MOST_PAYLOAD + 1))

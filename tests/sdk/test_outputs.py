@@ -13,7 +13,9 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Cause
 from selfconf.sdk.component import Signal
+from selfconf.sdk.payloads import LARGEST_JSON
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.lab import Recorder
 from tests.sdk.stage import CAP, CAP_PROFILE, KEYS, TRACKER, TRACKER_PROFILE, US, Stage, apply, follow, release
@@ -63,19 +65,30 @@ def test_an_image_arrives_with_its_encoding_and_is_what_it_was_when_it_was_emitt
     assert arrived[0].value.dtype == "uint16"
 
 
-def test_an_array_that_no_signal_can_carry_is_the_authors_mistake() -> None:
-    numpy = pytest.importorskip("numpy")
+def malformed(value: Any) -> str:
+    """What is said of a component that emits something that is no signal, and fails."""
     stage = Stage()
+    heard: list[Sample] = []
+    stage.others.subscribe(KEYS.output(CAP, "velocity"), heard.append)
     stage.call(apply(1, US))
-    with pytest.raises(ProgrammerError, match="cannot emit that on 'velocity': an array of '>f'"):
-        stage.component.emit("velocity", numpy.zeros(2, ">f4"))
+    stage.component.emit("velocity", value)
+    stage.let_pass(0.1)
+    assert (heard, stage.component.active) == ([], False)
+    (fail,) = stage.fails
+    assert (fail.component, fail.cause) == (CAP, Cause.MALFORMED)
+    return fail.detail
+
+
+def test_an_array_that_no_signal_can_carry_is_the_failure_of_the_component_that_emits_it() -> None:
+    numpy = pytest.importorskip("numpy")
+    assert "what it emits on 'velocity' is an array of '>f'" in malformed(numpy.zeros(2, ">f4"))
 
 
 def test_what_keeps_a_value_from_being_a_signal_is_told_without_a_failure() -> None:
     stage = Stage()
     stage.call(apply(1, US))
     assert stage.runtime.outputs.problem("velocity", {"x": 1}) is None
-    assert "is no signal: JSON cannot say it" in str(stage.runtime.outputs.problem("velocity", object()))
+    assert "is nothing that JSON can say" in str(stage.runtime.outputs.problem("velocity", object()))
     assert stage.component.active
 
 
@@ -111,12 +124,33 @@ def test_an_output_that_is_not_advertised_is_the_programmers_error() -> None:
         stage.component.emit("speed", 1)
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, {1, 2}, object()])
-def test_a_value_that_json_does_not_have_is_the_programmers_error(value: Any) -> None:
-    stage = Stage()
-    stage.call(apply(1, US))
-    with pytest.raises(ProgrammerError, match="velocity"):
-        stage.component.emit("velocity", value)
+def nested(depth: int) -> list[Any]:
+    """A list in a list, and so on."""
+    value: list[Any] = []
+    for _ in range(depth):
+        value = [value]
+    return value
+
+
+CIRCLE: list[Any] = []
+CIRCLE.append(CIRCLE)
+
+
+@pytest.mark.parametrize(
+    ("value", "why"),
+    [
+        (math.nan, "JSON can say: Out of range"),
+        ({"x": 1.0, "more": [math.inf]}, "JSON can say: Out of range"),
+        ({1, 2}, "JSON can say: an object of type set"),
+        (CIRCLE, "JSON can say: Circular reference"),
+        (nested(100_000), "JSON can say: maximum recursion depth"),
+        ({"name": "\ud800"}, r"JSON can say: 'utf-8' codec can't encode character '\ud800'"),
+        ("x" * LARGEST_JSON, f"has {LARGEST_JSON + 2} bytes as JSON"),
+    ],
+    ids=["nan", "infinity", "set", "circle", "nested", "surrogate", "large"],
+)
+def test_a_value_that_json_does_not_have_is_the_failure_of_the_component_that_emits_it(value: Any, why: str) -> None:
+    assert why in malformed(value)
 
 
 def test_a_new_connection_carries_the_last_signal_at_once_and_an_old_one_does_not_carry_it_twice() -> None:

@@ -42,7 +42,7 @@ def test_a_single_element_of_an_array_is_refused_with_what_makes_a_number_of_it(
     assert as_json(single.item())
 
 
-@pytest.mark.parametrize("value", [object(), float("nan"), numpy.float32(1), {1: {2}}])
+@pytest.mark.parametrize("value", [object(), float("nan"), numpy.float32(1), {1: {2}}, "\ud800", {"\udfff": 1}])
 def test_what_json_cannot_say_is_refused(value: Any) -> None:
     with pytest.raises(UnsayableError):
         as_json(value)

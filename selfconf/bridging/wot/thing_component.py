@@ -15,7 +15,6 @@ from typing import Any
 
 from selfconf.bridging.wot.interactions import ThingInput, ThingInteractions, ThingOperation, ThingOutput
 from selfconf.bridging.wot.thing_client import ThingAnswer, ThingClient, ThingError, ThingRefusal
-from selfconf.errors import ProgrammerError
 from selfconf.sdk import Component, Refused, Signal
 
 log = logging.getLogger(__name__)
@@ -95,7 +94,7 @@ class ThingComponent(Component):
     async def _guarded(self, work: Awaitable[None]) -> None:
         try:
             await work
-        except (ThingError, ProgrammerError) as error:  # the latter for a value that no signal can carry
+        except ThingError as error:
             self._lose(error)
 
     def _lose(self, error: Exception) -> None:
