@@ -14,7 +14,10 @@ from selfconf.model.term import IRI
 TRY_AGAIN = 5.0
 """After how many seconds a patient configurator that waits tries lost components again; the pause doubles each time."""
 LONGEST_PAUSE = 60.0
-"""The longest such pause, in seconds; after as many, a task that may change for the better looks what is free now."""
+"""The longest such pause, in seconds."""
+LET_GO_OF = 10.0
+"""After how many seconds a task that may change for the better looks again whether another has let go of something,
+which tells only tasks that wait."""
 
 
 class Retries:
@@ -58,7 +61,7 @@ class Retries:
         """Look again, after a while, for what would be rather had: only tasks that wait hear that it is free."""
         self._improve_later()
         if self._upgrade is not None:
-            self._improve_later = self._bus.later(LONGEST_PAUSE, partial(self._step, Improvable()))
+            self._improve_later = self._bus.later(LET_GO_OF, partial(self._step, Improvable()))
 
     def await_another_chance(self) -> None:
         """Set the time to try lost components again; one that is set stays, as a site that is silent is asked often."""

@@ -6,7 +6,7 @@ import itertools
 from pathlib import Path
 
 from selfconf.configurator.state import Phase
-from selfconf.deployment.retries import LONGEST_PAUSE, TRY_AGAIN
+from selfconf.deployment.retries import LET_GO_OF, LONGEST_PAUSE, TRY_AGAIN
 from selfconf.sdk.component import Refused
 from tests.deployment.tasks import TASK
 from tests.faults.ecologies import CHOICE
@@ -92,9 +92,9 @@ def test_a_task_that_changes_for_the_better_takes_in_the_end_what_another_has_le
     assert lab.running(second)
     others = TASK | {"tracker"}
     assert lab.active() == others | {"second-control", "second-drive"}
-    lab.let_pass(LONGEST_PAUSE)
+    lab.let_pass(LET_GO_OF)
     first.stop()
-    assert lab.until(lambda: lab.active() == others, LONGEST_PAUSE + 1.0)
+    assert lab.until(lambda: lab.active() == others, LET_GO_OF + 1.0)
     assert second.state.phase is Phase.RUNNING
 
 
