@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import field, fields, replace
 from pathlib import Path
 
@@ -221,6 +221,7 @@ class Inquiry:
             raise ProgrammerError(
                 f"an ecology is what selfconf.read() or selfconf.join() gives, not {type(ecology).__name__}"
             )
+        self._texts = (self.task.text, *ecology.texts)
         self.seconds: dict[str, float] = {}
         """How long each part took: load, partition, search."""
         began = time.perf_counter()
@@ -294,7 +295,8 @@ class Inquiry:
             free = {c: one for c, one in self.ecology.items() if c not in self.holders}
             usable = self.composer.usable(self.holders.keys(), found)
             found = replace(found.told_of_held(usable), held=self._held(usable, limit), left_out=self.left_out)
-            return refusal_with_places(self.composer, free if self.holders else self.ecology, found, self.method, limit)
+            able = free if self.holders else self.ecology
+            return refusal_with_places(self.composer, able, found, self.method, limit, texts=self._texts)
         optimum = found if isinstance(found, Optimum) else None
         plain = found.configuration if isinstance(found, Optimum) else found
         consequences = limit.within(lambda: self.composer.what_if(self.ecology, plain), None) if what_if else None
@@ -353,13 +355,15 @@ def refusal_with_places(
     method: Method,
     limit: TimeLimit,
     described: Mapping[IRI, Advertisement] | None = None,
+    texts: Sequence[str | None] = (),
 ) -> Refusal:
     """A refusal with all that the time allows to find out, and the place of each of its facts.
 
-    `described` are the advertisements as files of this machine have them, where the ecology's come from elsewhere.
+    `described` are the advertisements as files of this machine have them, where the ecology's come from elsewhere;
+    `texts` are those that the task and the ecology were read from and that are in no file.
     """
     refusal = explained(composer, ecology, refusal, method.wider(), limit)
-    placed = Places(composer.task.task.template, ecology if described is None else described).placed(refusal)
+    placed = Places(composer.task.task.template, ecology if described is None else described, texts).placed(refusal)
     return ExplainedRefusal.of(placed, composer.task)
 
 

@@ -101,6 +101,8 @@ class Ecology(ABC):
     """Whether only what a task may want is fetched."""
     read_seconds: float = 0.0
     """How long its advertisements took to be read, where that was before any task."""
+    texts: tuple[str, ...] = ()
+    """The texts that it was read from and that are in no file, in which lines are looked up."""
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
@@ -195,6 +197,7 @@ class LoadedEcology(Ecology):
     names: tuple[str, ...] = ()
     """What it was read from."""
     read_seconds: float = 0.0
+    texts: tuple[str, ...] = ()
 
     def __eq__(self, other: object) -> bool:
         return self is other

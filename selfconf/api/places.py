@@ -2,17 +2,19 @@
 
 Reading for speed forgets lines. So the files of the few that are named are read again, if they are files of this
 machine and not too long for that: first for the lines of their subjects alone (`selfconf.rdf.subject_lines`), and by
-the parser that knows every place (`selfconf.rdf.positions`) where that does not tell.
+the parser that knows every place (`selfconf.rdf.positions`) where that does not tell. Text that is in no file is kept
+by the task or the ecology that was read from it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from selfconf.api.reading import GRAPH, KEPT_TEXTS
 from selfconf.model.left_out import LeftOut
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Place
@@ -26,26 +28,26 @@ if TYPE_CHECKING:
     from selfconf.rdf.positions import Positions
 
 LARGEST_REREAD = 1 << 20
-"""Bytes of a file that is read again; of a larger one the name has to do."""
+"""Bytes of a file or text that is read again; of a larger one the name has to do."""
 MOST_REREAD = 20
 """Of how many files that something was left out of the lines are looked up; of the others the names have to do."""
 Fact = TypeVar("Fact", bound="Reason | Relaxation | NearMiss")
 
 
-class _FileReadAgain:
-    """The lines of a Turtle file in which named nodes are described."""
+class _TextReadAgain:
+    """The lines of a Turtle text in which named nodes are described."""
 
-    def __init__(self, path: Path, source: str) -> None:
-        """Raises OSError or UnicodeDecodeError."""
+    def __init__(self, text: str, source: str, base: str) -> None:
         from selfconf.rdf.subject_lines import subject_lines  # needed by refusals and complaints alone
 
-        self._text, self._source, self._base = path.read_text("utf-8"), source, path.resolve().as_uri()
-        self._subjects = subject_lines(self._text)
+        self._text, self._source, self._base = text, source, base
+        self.subjects = subject_lines(text)
+        """The line in which each named node is first described, where that is certain without a parser of RDF."""
 
     def line_of(self, named: IRI | BlankNode) -> int | None:
         """The line in which a node is first described, or else first spoken of."""
-        if named in self._subjects:
-            return self._subjects[named]
+        if named in self.subjects:
+            return self.subjects[named]
         return None if self._positions is None else self._positions.line_of(named)
 
     @cached_property
@@ -58,17 +60,21 @@ class _FileReadAgain:
             return None
 
 
-FilesRead = dict[str, _FileReadAgain | None]
+FilesRead = dict[str, _TextReadAgain | None]
 """Each file that was read again, if it could be."""
 
 
 class Places:
     """The places of the roles of a template and of the components of an ecology."""
 
-    def __init__(self, template: Template, ecology: Mapping[IRI, Advertisement]) -> None:
+    def __init__(
+        self, template: Template, ecology: Mapping[IRI, Advertisement], texts: Sequence[str | None] = ()
+    ) -> None:
+        """`texts` are those that the template and the ecology were read from and that are in no file."""
         self._roles = {role.iri: role.place for role in template.roles}
         self._ecology = ecology
         self._read: FilesRead = {}
+        self._texts = texts
 
     def of(self, named: IRI) -> Place | None:
         """Where a role or component is described; the line only where it is known."""
@@ -76,9 +82,23 @@ class Places:
             place = self._roles[named]
         else:
             place = self._ecology[named].profile.place if named in self._ecology else None
+        if place is not None and place.source in (*KEPT_TEXTS, GRAPH):
+            return Place(place.source, None if place.source == GRAPH else self._line_in_texts(named))
         if place is None or not Path(place.source).is_file():
             return None  # it comes from another machine, whose lines cannot be looked up here
         return _with_line(named, place, self._read)
+
+    @cached_property
+    def _texts_read(self) -> list[_TextReadAgain]:
+        kept = [text for text in self._texts if text is not None and len(text) <= LARGEST_REREAD]
+        return [_TextReadAgain(text, "", "file:///") for text in kept]
+
+    def _line_in_texts(self, named: IRI) -> int | None:
+        """The line in the first of the texts that describes what is named, or else speaks of it."""
+        told = next((one.subjects[named] for one in self._texts_read if named in one.subjects), None)
+        if told is not None:
+            return told
+        return next((line for one in self._texts_read if (line := one.line_of(named)) is not None), None)
 
     def placed(self, refusal: Refusal) -> Refusal:
         """The refusal with the place of each of its facts."""
@@ -117,9 +137,11 @@ def _spoken_of(fact: Reason | Relaxation | NearMiss) -> IRI:
     return fact.component if isinstance(fact, InputUnfed | NearMiss) else fact.role
 
 
-def _read_again(source: str) -> _FileReadAgain | None:
+def _read_again(source: str) -> _TextReadAgain | None:
     path = Path(source)
     try:
-        return None if path.stat().st_size > LARGEST_REREAD else _FileReadAgain(path, source)
+        if path.stat().st_size > LARGEST_REREAD:
+            return None
+        return _TextReadAgain(path.read_text("utf-8"), source, path.resolve().as_uri())
     except (OSError, UnicodeDecodeError):
         return None

@@ -65,8 +65,9 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
             raise AuthorError("a SPARQL endpoint is an ecology by itself; read the other sources by themselves")
         return EndpointEcology(endpoints[0])
     began = time.perf_counter()
-    index, left_out = gathered(_texts(given))
-    return LoadedEcology(index, left_out, tuple(map(_name, given)), time.perf_counter() - began)
+    kept: list[str] = []
+    index, left_out = gathered(_keeping(kept, _texts(given)))
+    return LoadedEcology(index, left_out, tuple(map(_name, given)), time.perf_counter() - began, tuple(kept))
 
 
 def _are_several(source: Source | Iterable[Source]) -> TypeGuard[Iterable[Source]]:
@@ -91,6 +92,27 @@ Text = tuple[bytes, str, "str | None"]
 """The octets of a document, its name, and the IRI against which its relative IRIs are resolved."""
 
 
+NO_FILE, PIPED, GRAPH = "<text>", "<stdin>", "<graph>"
+"""The names of documents that are no files."""
+KEPT_TEXTS = (NO_FILE, PIPED)
+"""Those of them whose lines can be looked up later only if the text is kept."""
+
+
+def kept_text(document: Text) -> str | None:
+    """The text of a document, where it is in no file that could be read again."""
+    octets, name, _ = document
+    return octets.decode() if name in KEPT_TEXTS else None
+
+
+def _keeping(kept: list[str], documents: Iterable[Text]) -> Iterator[Text]:
+    """Yield documents, and keep the texts of those that are in no file."""
+    for document in documents:
+        text = kept_text(document)
+        if text is not None:
+            kept.append(text)
+        yield document
+
+
 def _texts(sources: Iterable[object]) -> Iterator[Text]:
     paths: list[Path] = []
     for source in sources:
@@ -106,10 +128,10 @@ def text_of(source: object) -> Text:
     if _is_path(source):
         return file_text(_path(source))
     if isinstance(source, str):
-        return source.encode(), "<text>", None
+        return source.encode(), NO_FILE, None
     if not isinstance(source, _Graph):
         raise ProgrammerError(f"a source is a path, Turtle text, an rdflib graph or an endpoint, not {source!r}")
-    return _serialized(source).encode(), "<graph>", None
+    return _serialized(source).encode(), GRAPH, None
 
 
 def _serialized(graph: _Graph) -> str:
@@ -137,11 +159,11 @@ def file_text(path: Path) -> Text:
 
 def file_name(path: Path) -> str:
     """How a file is spoken of."""
-    return "<stdin>" if path == files.STDIN else str(path)
+    return PIPED if path == files.STDIN else str(path)
 
 
 def _name(source: object) -> str:
-    return str(source) if _is_path(source) else "<text>" if isinstance(source, str) else "<graph>"
+    return str(source) if _is_path(source) else NO_FILE if isinstance(source, str) else GRAPH
 
 
 def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, ...]]:

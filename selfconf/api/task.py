@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import field, replace
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf.api.arguments import checked_text
-from selfconf.api.reading import text_of
+from selfconf.api.reading import kept_text, text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, ProgrammerError, TemplateError
 from selfconf.model.immutable import immutable
@@ -44,6 +45,8 @@ class TaskSpecification(Tabular):
     """
 
     document: TaskDocument
+    text: str | None = field(default=None, repr=False, compare=False)
+    """What it was read from, if that is text in no file, in which lines are looked up."""
 
     @property
     def iri(self) -> IRI:
@@ -81,7 +84,7 @@ class TaskSpecification(Tabular):
         >>> template("examples/clock/tell-the-time.ttl").bind(room=":kitchen").bindings
         {'room': <https://example.org/my-home#kitchen>}
         """
-        return TaskSpecification(tasks.bind(self.document, [(n, _text(n, v)) for n, v in values.items()]))
+        return replace(self, document=tasks.bind(self.document, [(n, _text(n, v)) for n, v in values.items()]))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TaskSpecification):
@@ -96,7 +99,7 @@ class TaskSpecification(Tabular):
 
     def complete(self) -> TaskSpecification:
         """The task with defaults filled in and every value checked. Raises BindingError."""
-        return TaskSpecification(tasks.complete(self.document))
+        return replace(self, document=tasks.complete(self.document))
 
     def _head(self) -> Sequence[str]:
         return "", "name", "asks for, or is"
@@ -121,8 +124,9 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
     >>> [role.iri.short for role in template("examples/clock/tell-the-time.ttl").roles]
     ['source', 'screen']
     """
-    text, source_name, base = text_of(source)
-    document = turtle.parse(text, source_name, base)
+    read = text_of(source)
+    text, _, base = read
+    document = turtle.parse(*read)
     wanted = None
     if name is not None:
         checked_text(name, "the name of a template")
@@ -131,7 +135,7 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
             raise BindingError(f"a template is named by a CURIE or an <IRI>, not by {name!r}")
         wanted = term
     try:
-        return TaskSpecification(tasks.read_task(document, wanted))
+        return TaskSpecification(tasks.read_task(document, wanted), kept_text(read))
     except TemplateError as error:
         raise tasks.placed(error, text.decode(), base or "file:///") from None
 

@@ -167,11 +167,11 @@ def test_what_can_be_shared_is_free_for_those_that_want_the_same_of_it(
         assert str(answer.reasons[0]) == "no component that is free is eligible for the role screen"
 
 
-def test_a_refusal_of_what_has_no_file_has_no_places(clock: sc.TaskSpecification) -> None:
+def test_a_refusal_of_text_that_is_in_no_file_has_its_lines(clock: sc.TaskSpecification) -> None:
     ecology = sc.read(*(Path(f"examples/clock/{name}.ttl").read_text() for name in ("clock", "display")))
     refusal = sc.configure(clock.bind(room=":cellar"), ecology)
     assert isinstance(refusal, sc.Refusal)
-    assert [miss.place for miss in refusal.near_misses] == [None]
+    assert [str(miss.place) for miss in refusal.near_misses] == ["<text>:5"]
 
 
 def test_answers_print_on_one_screen(answer: Answer, refusal: sc.Refusal) -> None:

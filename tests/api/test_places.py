@@ -168,3 +168,29 @@ def test_what_comes_from_elsewhere_has_no_place_and_what_cannot_be_read_again_no
     for later in (text + "#" * LARGEST_REREAD, "no Turtle"):
         file.write_text(later)
         assert Places(template, ecology).of(component) == Place(str(file))
+
+
+def test_lines_of_text_that_is_in_no_file_are_told_too_and_of_a_graph_its_name() -> None:
+    template = PREFIXES + "# A comment.\n" + TIME + SINK
+    display = SCREEN.replace("SIGNAL", "rob:Text")
+    refused = sc.configure(sc.template(template), sc.read(PREFIXES + display, PREFIXES + "\n\n" + CLOCK))
+    assert isinstance(refused, sc.Refusal)
+    role, clock = template.splitlines().index(TIME.splitlines()[1]) + 1, PREFIXES.count("\n") + 3
+    assert [one.place for one in (*refused.reasons, *refused.near_misses)] == [
+        Place("<text>", role),
+        Place("<text>", clock),
+    ]
+    graph = Graph().parse(data=template)
+    refused = sc.configure(sc.template(graph), sc.read(Graph().parse(data=PREFIXES + CLOCK)))
+    assert {one.place for one in (*refused.reasons, *refused.near_misses, *refused.repairs)} == {Place("<graph>")}
+
+
+def test_a_text_that_only_speaks_of_a_component_is_not_where_it_is_described() -> None:
+    template = Template(IRI("urn:t"), (Role(IRI("urn:r"), place=Place("<text>")),))
+    speaking, describing = "<urn:a> <urn:p> <urn:c> .", "\n<urn:c> a <urn:T> ."
+    ecology = read(PREFIXES + "<urn:c> a sc:Component, :T .").advertisements()
+    assert Places(template, ecology, (speaking, None, describing)).of(IRI("urn:c")) == Place("<text>", 2)
+    assert Places(template, ecology, (speaking,)).of(IRI("urn:c")) == Place("<text>", 1)
+    assert Places(template, ecology, ("no Turtle", describing + "#" * LARGEST_REREAD)).of(IRI("urn:c")) == Place(
+        "<text>"
+    )
