@@ -108,8 +108,12 @@ class TaskSpecification(Tabular):
         names, bound = self.names, self.bindings
         yield from (["role", names(role.iri), ", ".join(map(names, role.types))] for role in self.roles)
         for parameter in self.parameters:
-            known = parameter.name in bound
-            yield ["parameter", parameter.name, names(bound[parameter.name]) if known else "(free)"]
+            value = bound.get(parameter.name)
+            if value is not None:
+                shown = names(value)
+            else:
+                shown = "(free)" if parameter.default is None else f"{names(parameter.default)}  (default)"
+            yield ["parameter", parameter.name, shown]
 
     def __repr__(self) -> str:
         return f"<task {self.names(self.iri)}>\n{Tabular.__repr__(self)}"

@@ -208,6 +208,13 @@ def test_a_template_has_its_name_roles_and_parameters() -> None:
     assert "<table>" in task._repr_html_()
 
 
+def test_a_parameter_that_has_a_default_is_not_shown_as_free() -> None:
+    task = template(NAVIGATION + ":robot sh:defaultValue :Astrid .")
+    assert any(row.split() == ["parameter", "robot", ":Astrid", "(default)"] for row in repr(task).splitlines())
+    assert ":Astrid  (default)" in task._repr_html_()
+    assert "(default)" not in repr(task.bind(robot=":Pippi"))
+
+
 def test_one_template_of_several_is_named() -> None:
     two = NAVIGATION + f":t a sc:Template ; sc:roles ( :r ) . {ROLE}"
     assert template(two, ":t").iri == iri("t")
