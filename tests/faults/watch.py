@@ -105,8 +105,9 @@ class Watch:
         self._overdue = min(lasting, default=math.inf) - ROUNDING
 
     def is_quiet(self, seconds: float) -> bool:
-        """Whether nothing has changed for so long, and no condition is present that may not last."""
-        return not self._since and self._history.network.time - self._changed_at >= seconds
+        """Whether nothing has changed for so long, no task is being started, and no condition holds that may not last."""
+        unchanged = self._history.network.time - self._changed_at
+        return not self._since and unchanged >= seconds and self.all_decided()
 
     def all_decided(self) -> bool:
         """Whether every task is running or refused."""
