@@ -105,7 +105,7 @@ class Watch:
         self._overdue = min(lasting, default=math.inf) - ROUNDING
 
     def is_quiet(self, seconds: float) -> bool:
-        """Whether nothing has changed for so long, no task is being started, and no condition holds that may not last."""
+        """Whether nothing has changed for so long, no task is being started, and nothing is amiss that may not last."""
         unchanged = self._history.network.time - self._changed_at
         return not self._since and unchanged >= seconds and self.all_decided()
 
