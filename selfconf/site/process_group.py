@@ -23,7 +23,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from selfconf.termination import stopped
+from selfconf.termination import alive, stopped
 
 GROUP_VARIABLE = "SELFCONF_PROCESS_GROUP"
 """The variable that each process of a group inherits: words apart by spaces, the last of which no other group has.
@@ -68,8 +68,12 @@ class ProcessGroup:
         return self._process.poll()
 
     def gone(self) -> bool:
-        """Whether the program has ended, and all that it started."""
-        return self.code() is not None and not self._signalled(0)
+        """Whether the program has ended, and all that it started.
+
+        What has ended and not been waited for by its parent (a zombie) is over: where process 1 waits for nobody, as in
+        some containers, it stays so for ever.
+        """
+        return self.code() is not None and not (self._is_in_group() or any(self._outside()))
 
     def frozen(self) -> bool:
         """Whether the program was stopped by a signal (SIGSTOP) and does not go on."""
@@ -97,6 +101,20 @@ class ProcessGroup:
         for process in self._outside():
             reached = self._sent_outside(process, number) or reached
         return reached
+
+    def _is_in_group(self) -> bool:
+        """Whether a process is left in the group that has not ended."""
+        if not (self._has_number() and _reached(os.killpg, self.number, 0)):
+            return False
+        if not _PROCESSES.is_dir():
+            return True
+        return any(self._has_member(int(one.name)) for one in _PROCESSES.glob("[0-9]*"))
+
+    def _has_member(self, process: int) -> bool:
+        try:
+            return os.getpgid(process) == self.number and alive(process)
+        except ProcessLookupError:
+            return False
 
     def _has_number(self) -> bool:
         """Whether the number of the group is still its own.

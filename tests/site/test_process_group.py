@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -189,3 +190,32 @@ def test_signals_to_a_group_that_is_gone_reach_nobody(groups: list[ProcessGroup]
     assert until(group.gone)
     group.terminate()
     group.kill()
+
+
+PR_SET_CHILD_SUBREAPER = 36
+"""Of prctl(2): what loses its parent gets this process for one."""
+
+
+@pytest.fixture
+def foster_parent() -> Iterator[None]:
+    """This process is the parent of orphans, and waits for none of them, as process 1 of some containers."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    if not sys.platform.startswith("linux") or libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0):
+        pytest.skip("orphans cannot be had here")
+    yield
+    libc.prctl(PR_SET_CHILD_SUBREAPER, 0, 0, 0, 0)
+
+
+@pytest.mark.usefixtures("foster_parent")
+def test_a_group_of_which_nothing_is_left_that_has_not_ended_is_gone(
+    groups: list[ProcessGroup], tmp_path: Path
+) -> None:
+    group = started(groups, tmp_path, CHILD)
+    assert group.wait(10)
+    child = int((tmp_path / "child").read_text())
+    assert not group.gone()
+    os.kill(child, signal.SIGKILL)
+    assert until(group.gone)
+    assert os.getpgid(child) == group.number, "nobody has waited for it"
+    os.waitpid(child, 0)
+    assert group.gone()
