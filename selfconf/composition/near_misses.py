@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import filterfalse
 
 from selfconf.composition.composer import Composer
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.nearness import ranked
-from selfconf.model.obstacle import UnfitOutput, UnlikePorts
+from selfconf.model.obstacle import UnfitOutput, UnlikePorts, WrongType
 from selfconf.model.partition import NearMiss
 from selfconf.model.port_likeness import PortLikeness
 from selfconf.model.profile import Condition, Input, Output, Profile
@@ -42,7 +43,8 @@ def ranked_near_misses(
 ) -> tuple[NearMiss, ...]:
     """The near misses of a refusal, role by role: first probable slips of the type, then by likeness.
 
-    `known` is the hierarchy that the ontologies have, whatever the roles see.
+    Slips are of a type that is written like the one that is asked for, or related to it. `known` is the hierarchy that
+    the ontologies have, whatever the roles see.
     """
     problem = Problem(composer.task.task, composer.partition(ecology), composer.hierarchy)
     signals = SignalLikeness(known)
@@ -51,16 +53,23 @@ def ranked_near_misses(
     slips: list[NearMiss] = []
     found: list[NearMiss] = []
     for number, role in enumerate(problem.roles):
-        if role.iri in short:
-            compiled = composer.partitioner.roles[number]
-            slips += near_misses_by_type(compiled, composer.partitioner, composer.gathered(ecology), known)
         question = _Question(composer, ecology, problem, number, signals)
         misses = [miss for miss in refusal.near_misses if miss.role == role.iri]
+        if role.iri in short:
+            compiled = composer.partitioner.roles[number]
+            by_type = [*near_misses_by_type(compiled, composer.partitioner, composer.gathered(ecology), known)]
+            slips += filter(_is_slip, by_type)
+            misses += filterfalse(_is_slip, by_type)
         if role.iri in short or not short:
             misses += question.kept_out()
         misses += question.feeding_nothing([need for need in unfed if number in _sources(problem, need.role)])
         found += question.ranked(misses)[:MOST_NEAR]
     return (*slips, *found)
+
+
+def _is_slip(miss: NearMiss) -> bool:
+    """Whether a component has a type that was probably meant to be the one that a role asks for."""
+    return isinstance(miss.obstacle, WrongType) and miss.obstacle.relation is not None
 
 
 def fault_of(

@@ -200,3 +200,13 @@ def test_of_an_operation_its_request_is_told_beside_a_response_that_the_mode_doe
     assert requested(f"sc:request :Special ; sc:response :{answered}", wanted, mode) == [
         f"it {said}offers what takes Special and would be sent General (operation 'o')"
     ]
+
+
+def test_what_lacks_one_class_of_several_comes_by_its_likeness_and_after_a_slip() -> None:
+    asked = (
+        ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Clock , :Display ; sh:property [ sh:path :p ] ."
+    )
+    ads = ":a a sc:Component , :Clock . :r2 a sc:Component , :Clock , :Large . :c a sc:Component , :Clock , :Displey ."
+    found = near(PREFIXES + asked, PREFIXES + ads)
+    assert found[0].component.short == "c"
+    assert [str(miss) for miss in found][1:] == ["it is no Display", "it is no Display"]

@@ -2,12 +2,12 @@
 
 A role that asks for :Clok finds no component, and nothing is wrong with the components. So components that their type
 alone keeps out are near misses too, if the type is written nearly like the one wanted, or related to it by the
-ontologies.
+ontologies; or if they are of all other classes that the role asks for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from functools import lru_cache
@@ -33,6 +33,8 @@ def near_misses_by_type(
 ) -> Iterator[NearMiss]:
     """The components that one class test alone keeps out: misspelt ones first, then by meaning, then by component.
 
+    Those come last that have no related type, but another class that the role asks for.
+
     `known` is the hierarchy that the ontologies have, whatever the role sees.
     """
     found = {kind: _relation(role.classes, kind, partitioner.hierarchy, known) for kind in ecology.type_sets}
@@ -48,7 +50,7 @@ def near_misses_by_type(
 
 
 def _relation(
-    classes: Iterable[ClassTest], types: frozenset[IRI], seen: Hierarchy, known: Hierarchy
+    classes: Sequence[ClassTest], types: frozenset[IRI], seen: Hierarchy, known: Hierarchy
 ) -> tuple[int, WrongType] | None:
     """How likely (0 most) and in what words the one test that these types fail was meant to pass them."""
     failed = [test.kind for test in classes if not test.admits(types, seen)]
@@ -62,7 +64,7 @@ def _relation(
             return 1, WrongType(wanted, offered, TypeRelation.BELOW)
         if known.matches(wanted, offered):
             return 2, WrongType(wanted, offered, TypeRelation.ABOVE)
-    return None
+    return (3, WrongType(wanted)) if any(test.kind != wanted for test in classes) else None
 
 
 def _alike(offered: IRI, wanted: IRI) -> bool:
