@@ -77,6 +77,8 @@ PAUSE = 0.1
 """Seconds after which a component that has not answered a question for its state is asked again."""
 CALL_ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
+SITE_ENDS = 1.0
+"""Seconds for which a site is waited for that ends the process of a component that has not obeyed its release."""
 GONE = 2.5
 """Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
 RESERVE_AGAIN = 0.5
@@ -271,13 +273,30 @@ class Calls:
         if not self._state().ended and self._state().owed.get(effect.component) == effect.epoch:
             self.release(effect)
 
-    def _end(self, component: IRI, life: str) -> None:
-        """Have the site end a life of a component that does not obey its release: it may act on without a task."""
+    def _end(self, component: IRI, message: Release, otherwise: Callable[[], None]) -> None:
+        """Have the site end a life of a component that does not obey its release: it may act on without a task.
+
+        `otherwise` is called if the site cannot do so, or has not within `SITE_ENDS` seconds; it may do so later.
+        """
         found = self.ecology.discovery.found.get(component)
-        if found is not None and found.startable and life:
-            self._lives.lost(component, life)
-            message = encode(End(component, life))
-            self.bus.ask(self.keys.end(found.site), message, CALL, lambda replies: None)
+        if found is None or not found.startable or not message.life:
+            otherwise()
+            return
+
+        def answered(replies: Replies) -> None:
+            if not replies.samples:
+                otherwise()
+                return
+            self.ecology.ended(component_chunk(component), message.life)
+            self._lives.leave_behind_if_ended(component)
+            if not self._lives.lives_on(component):
+                self._lives.gone(component)
+            detail = "its site has ended its process"
+            self._report(ComponentReleased(component, detail))
+            self._step(Answered(component, Call.RELEASE, message.epoch, Verdict.OTHER_LIFE, detail=detail))
+
+        self._lives.lost(component, message.life)
+        self.bus.ask(self.keys.end(found.site), encode(End(component, message.life)), SITE_ENDS, answered)
 
     # Looking.
 
@@ -324,9 +343,9 @@ class Calls:
             elif replies.errors:
                 detail = replies.errors[0]
                 self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
+            elif isinstance(message, Release) and not replies.complete:
+                self._end(component, message, inspect)
             else:
-                if call is Call.RELEASE and not replies.complete:
-                    self._end(component, message.life)
                 inspect()
 
         def inspect() -> None:

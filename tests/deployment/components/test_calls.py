@@ -10,7 +10,7 @@ import pytest
 from selfconf.bus.port import Replies, Request
 from selfconf.configurator.state import Phase
 from selfconf.deployment.components import calls
-from selfconf.deployment.components.calls import CALL, STARTING
+from selfconf.deployment.components.calls import CALL, SITE_ENDS, STARTING
 from selfconf.deployment.components.liveness import SETTLING
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk
@@ -231,7 +231,9 @@ def test_components_start_after_those_that_feed_them_and_actuators_last_and_rest
     assert (off[:2], set(off[2:])) == (["drive", "control"], {"sonar", "encoder", "tracker"})
 
 
-def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_path: Path) -> None:
+@pytest.mark.parametrize("seconds", [0.3, 2 * SITE_ENDS], ids=["soon", "late"])
+def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_path: Path, seconds: float) -> None:
+    """It is out of control if the site takes too long for that."""
     lab = Lab(tmp_path)
     lab.site("astrid", *TASK, "odometry")
     for name in ADVERTISEMENTS:
@@ -247,7 +249,11 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_pat
 
     def end(request: Request) -> None:
         ended.append(decode(request.payload, End))
+        node.later(seconds, lambda: gone(request))
+
+    def gone(request: Request) -> None:
         lab.crash("tracker")
+        request.reply(lab.keys.end("living-room"), b"ended")
         request.finish()
 
     node.announce(lab.keys.site_life("living-room", "1"))
@@ -261,7 +267,11 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_pat
     runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
     agent.stop()
     assert lab.until(lambda: bool(lab.ended))
-    assert ended[0] == End(tracker, runtime.life)
+    assert ended == [End(tracker, runtime.life)]
+    (stopped,) = lab.acts("stopped")
+    assert stopped.owed == (() if seconds < SITE_ENDS else (tracker,))
+    off = [event.detail for event in lab.acts("released") if event.component == tracker]
+    assert off == (["its site has ended its process"] if seconds < SITE_ENDS else [])
     assert lab.until(lambda: lab.active() == set())
 
 
