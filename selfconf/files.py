@@ -40,7 +40,8 @@ def within(
 ) -> list[Path]:
     """The files that a path stands for, sorted: all below a folder that end so, or else itself.
 
-    A folder that cannot be read raises AuthorError, unless `left_out` is given, which receives the error instead.
+    Links to files are among them, also those that lead nowhere, but for the locks of editors (`.#name`). A folder
+    that cannot be read raises AuthorError, unless `left_out` is given, which receives the error instead.
     """
     return sorted(map(Path, stamps(path, left_out, endings))) if path.is_dir() else [path]
 
@@ -69,15 +70,30 @@ def stamps(
                     if entry.is_dir(follow_symlinks=False):
                         waiting.append(entry.path)
                     elif entry.name.endswith(endings) and (entry.name not in endings or entry.name[0] != "."):
-                        status = _status(entry)
-                        if status is not None and stat.S_ISREG(status.st_mode):
-                            found[entry.path] = status.st_mtime_ns, status.st_size
+                        stamp = _stamp(entry)
+                        if stamp is not None:
+                            found[entry.path] = stamp
         except OSError as error:
             wrong = AuthorError(f"cannot read the folder {folder}: {error.strerror}")
             if left_out is None:
                 raise wrong from None
             left_out(wrong)
     return found
+
+
+_LEADS_NOWHERE: FileStamp = (0, 0)
+"""The stamp of a link to what is not there."""
+_LOCK = ".#"
+"""What the names of the links begin with by which editors lock files; they lead nowhere on purpose."""
+
+
+def _stamp(entry: os.DirEntry[str]) -> FileStamp | None:
+    """The stamp of a file in a folder; None if it is no file or has gone."""
+    status = _status(entry)
+    if status is not None:
+        return (status.st_mtime_ns, status.st_size) if stat.S_ISREG(status.st_mode) else None
+    # A link that leads nowhere counts as a file, so that it is named when it is read.
+    return _LEADS_NOWHERE if Path(entry.path).is_symlink() and not entry.name.startswith(_LOCK) else None
 
 
 def _status(entry: Path | os.DirEntry[str]) -> os.stat_result | None:
@@ -125,6 +141,8 @@ def octets(path: Path) -> bytes:
     except IsADirectoryError:
         raise AuthorError(f"{path} is a folder; a file is needed here") from None
     except FileNotFoundError:
+        if path.is_symlink():
+            raise AuthorError(f"cannot read {path}: it is a link to {path.readlink()}, which is not there") from None
         raise AuthorError(f"there is no file or folder {path}") from None
     except OSError as error:
         raise AuthorError(f"cannot read {path}: {error.strerror}") from None

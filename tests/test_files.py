@@ -158,3 +158,20 @@ def test_no_more_is_read_than_can_be_meant(tmp_path: Path, monkeypatch: pytest.M
         monkeypatch.setattr(sys, "stdin", endless)
         with pytest.raises(AuthorError, match="cannot read standard input: it is larger than 3 MiB"):
             files.standard_input()
+
+
+def test_a_link_that_leads_nowhere_is_named_and_the_lock_of_an_editor_passed_over(tmp_path: Path) -> None:
+    (tmp_path / "a.ttl").write_text("<urn:a> a <urn:b> .")
+    (tmp_path / ".#a.ttl").symlink_to("author@host.4711:1795663100")
+    assert files.within(tmp_path) == [tmp_path / "a.ttl"]
+    link = tmp_path / "z.ttl"
+    link.symlink_to("gone.ttl")
+    assert files.within(tmp_path) == [tmp_path / "a.ttl", link]
+    with pytest.raises(AuthorError, match=f"^cannot read {link}: it is a link to gone.ttl, which is not there$"):
+        files.octets(link)
+    said: list[str] = []
+    shelf = Shelf([tmp_path], said.append)
+    shelf.refresh()
+    assert said == [f"left out: cannot read {link}: it is a link to gone.ttl, which is not there"]
+    (tmp_path / "gone.ttl").write_text("<urn:c> a <https://w3id.org/selfconf#Component>, <urn:T> .")
+    assert shelf.refresh()
