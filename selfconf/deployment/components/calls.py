@@ -403,8 +403,9 @@ class Calls:
             if call is Call.APPLY:
                 self._report(CallDeclined(component, detail))
         elif call is Call.RELEASE:
+            if self._lives.has_obeyed(component, answer.life):  # else this task has only waited for it
+                self._report(ComponentReleased(component, detail))
             self._lives.released(component)
-            self._report(ComponentReleased(component, detail))
         elif isinstance(message, Apply):
             if message.values:
                 self._report(ParametersSet(component, detail))

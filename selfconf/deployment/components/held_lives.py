@@ -81,6 +81,10 @@ class HeldLives:
         self._held[component] = life
         self.caught_up(component, life)
 
+    def has_obeyed(self, component: IRI, life: str) -> bool:
+        """Whether a life of a component has obeyed a call of this task, and not yet a release."""
+        return self._held.get(component) == life or self.was_left_behind(component, life)
+
     def released(self, component: IRI) -> None:
         """Note that a component has obeyed a release."""
         self._held.pop(component, None)

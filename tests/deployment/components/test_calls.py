@@ -275,6 +275,22 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_pat
     assert lab.until(lambda: lab.active() == set())
 
 
+def test_a_task_that_is_stopped_while_it_waits_says_of_no_component_that_it_is_off(lab: Lab) -> None:
+    first = lab.agent()
+    assert lab.running(first)
+    second = lab.agent(patient=True)
+    assert lab.until(lambda: second.state.phase is Phase.REFUSED)
+    lab.let_pass(1.0)
+    assert second.state.queued
+    second.stop()
+    assert lab.until(lambda: second.state.ended)
+    assert lab.acts("released") == []
+    first.stop()
+    assert lab.until(lambda: first.state.ended)
+    names = TASK | {"tracker"}
+    assert {event.component for event in lab.acts("released")} == {lab.profile(name).component for name in names}
+
+
 def test_a_task_waits_for_a_component_whose_life_is_ending_and_has_its_site_start_it_again(tmp_path: Path) -> None:
     """Its code is in `started` for another task; its process is told to end meanwhile, and ends as that returns."""
     lab = home(tmp_path)
