@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_format_argument, domain
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
+from selfconf.model.wording import listed
 
 if TYPE_CHECKING:
     from selfconf.importing import ImportedFile, ImportReport
@@ -62,6 +64,8 @@ def run(given: argparse.Namespace) -> int:
         complain(str(unreadable) if unreadable.file else f"selfconf import: {unreadable}")  # a place comes first
     for each in (*report.renamed, *report.left_out):
         complain(str(each))
+    if not report.files and not report.unreadable and given.router is None:
+        complain(f"selfconf import: {_looked_for(given.form, given.sources)}")
     if given.format == "json":
         print(json.dumps(_body(report), indent=2, ensure_ascii=False))
     else:
@@ -81,6 +85,16 @@ def _imported(given: argparse.Namespace) -> ImportReport:
     if given.form != "ros2" or given.sources:
         raise AuthorError("--connect imports the nodes that live in a domain of ROS 2; it goes with ros2 and no SOURCE")
     return import_living_nodes(given.router, given.domain, given.out, given.namespace)
+
+
+def _looked_for(form: str, sources: Sequence[str]) -> str:
+    """The sentence about sources that hold nothing of a format: which files of a folder were read."""
+    from selfconf.importing import IMPORT_FORMATS
+
+    *others, last = IMPORT_FORMATS[form].endings
+    endings = f"{', '.join(others)} or {last}" if others else last
+    where = listed(sources)
+    return f"there is nothing of the format {form} in {where}; of a folder the files that end in {endings} are read"
 
 
 def _print_table(report: ImportReport) -> None:

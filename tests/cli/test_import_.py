@@ -66,7 +66,11 @@ def test_the_example_of_the_schema_is_what_the_command_prints(things: Path, caps
 def test_nothing_to_import_is_an_honest_no(things: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (things / "lamp.json").unlink()
     outcome = run(capsys, "import", "wot", "things", "--out", "ads")
-    assert (outcome.code, outcome.out, outcome.err) == (1, "0 components in 0 files\n", "")
+    assert (outcome.code, outcome.out) == (1, "0 components in 0 files\n")
+    said = "there is nothing of the format wot in things; of a folder the files that end in .json or .jsonld are read"
+    assert outcome.err == f"selfconf import: {said}\n"
+    peis = run(capsys, "import", "peis", "things", "--out", "ads")
+    assert peis.err.endswith("of a folder the files that end in .cmp are read\n")
 
 
 def test_a_document_that_cannot_be_read_is_named_with_its_place_and_the_rest_is_imported(
