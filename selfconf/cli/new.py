@@ -22,7 +22,7 @@ _HOME = "https://example.org/my-home#"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("kind", metavar="KIND", choices=tuple(SCAFFOLDS), help="component, template or ontology")
-    parser.add_argument("name", metavar="NAME", help="its name, such as kitchen-thermometer: letters, digits, hyphens")
+    parser.add_argument("name", metavar="NAME", help="its name, such as kitchen-thermometer: letters, digits, - and _")
     parser.add_argument(
         "--dir", metavar="DIR", type=Path, default=Path(), help="where the files go (default: the current folder)"
     )
@@ -46,7 +46,9 @@ def run(given: argparse.Namespace) -> int:
 def scaffold(kind: str, name: str, folder: Path, namespace: str | None = None) -> list[Path]:
     """Write the files of one thing; raises AuthorError, and writes nothing, if there is a file of that name."""
     if not _NAME.fullmatch(name):
-        raise AuthorError(f"{name!r} cannot be a name; start with a letter, go on with letters, digits and hyphens")
+        raise AuthorError(
+            f"{name!r} cannot be a name; begin with a letter, go on with letters and digits, a - or _ between them"
+        )
     namespace = namespace or (f"https://example.org/{name}#" if kind == "ontology" else _HOME)
     if not _NAMESPACE.fullmatch(namespace):
         raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with #, / or :")

@@ -46,3 +46,13 @@ def test_a_namespace_that_is_no_iri_is_refused(
 def test_a_folder_that_is_not_there_is_made(tmp_path: Path) -> None:
     assert main(["new", "ontology", "x", "--dir", str(tmp_path / "deep" / "er")]) == 0
     assert (tmp_path / "deep" / "er" / "x.ttl").is_file()
+
+
+def test_a_name_with_hyphens_and_underscores_is_one_and_the_sentence_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", "component", "kitchen_door-bell", "--dir", str(tmp_path)]) == 0
+    assert not check([str(tmp_path)]).diagnostics
+    capsys.readouterr()
+    outcome = run(capsys, "new", "component", "a__b", "--dir", str(tmp_path))
+    assert outcome.is_one_sentence("'a__b' cannot be a name", "go on with letters and digits, a - or _ between them")
