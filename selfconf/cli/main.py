@@ -14,13 +14,16 @@ from collections.abc import Collection, Sequence
 from keyword import iskeyword
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from selfconf.aside_writer import AsideHandler
 from selfconf.cli.settings import Settings, found_settings
 from selfconf.cli.terminal import complain, for_programs, guard, silence
 from selfconf.errors import SelfconfError, SiteMisusedError, reason
 from selfconf.model.setting_names import options_named
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 COMMANDS = {
     "new": "write the first files of a component, a template or an ontology, to be changed to what you want",
@@ -76,6 +79,19 @@ class Parser(argparse.ArgumentParser):
         """End with exit code 2."""
         self.exit(2, f"{self.prog}: {message}; see `{self.prog} --help`\n")
 
+    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
+        """Print what `--help` and `--version` say; argparse by itself passes over what cannot be written."""
+        if file is not sys.stdout:
+            super()._print_message(message, file)
+            return
+        try:
+            print(message, end="", flush=True)
+        except BrokenPipeError:
+            silence(sys.stdout)
+        except OSError as error:
+            silence(sys.stdout)
+            self.exit(2, f"{self.prog}: {reason(error)}\n")
+
 
 class Listed(Parser):
     """Stands for the commands that are listed, but not loaded: to make a parser for each takes longer than to parse."""
@@ -90,7 +106,7 @@ class Version(argparse.Action):
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         """Print the version and end."""
-        print(f"selfconf {_version()}")
+        parser._print_message(f"selfconf {_version()}\n", sys.stdout)
         parser.exit()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
 
@@ -82,12 +83,22 @@ def test_what_programs_read_is_utf_8_whatever_the_terminal_would_have(
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
-def test_what_the_system_says_is_told_without_its_number(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("words", "speaker"),
+    [
+        (("query", "ASK {}", "--ads", "lamp.ttl"), "selfconf query"),
+        (("query", "--help"), "selfconf query"),
+        (("--help",), "selfconf"),
+        (("--version",), "selfconf"),
+    ],
+    ids=" ".join,
+)
+def test_what_the_system_says_is_told_without_its_number(tmp_path: Path, words: Sequence[str], speaker: str) -> None:
     (tmp_path / "lamp.ttl").write_text(PREFIXES + ":lamp a sc:Component, :Lamp .")
-    command = [sys.executable, "-m", "selfconf", "query", "ASK {}", "--ads", "lamp.ttl"]
+    command = [sys.executable, "-m", "selfconf", *words]
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert (done.returncode, done.stderr) == (2, "selfconf query: No space left on device\n")
+    assert (done.returncode, done.stderr) == (2, f"{speaker}: No space left on device\n")
 
 
 def test_only_a_terminal_gets_colours_and_only_from_paint(monkeypatch: pytest.MonkeyPatch) -> None:
