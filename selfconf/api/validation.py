@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 from selfconf import files, library
 from selfconf.api.arguments import Paths, checked_flag, checked_path, listed_paths
@@ -23,8 +24,8 @@ LARGEST_FILE = 64 << 20
 
 
 @immutable
-class ValidationReport(Tabular, Report):
-    """A report as the library answers with it: true if all conforms, and by iteration its problems in order.
+class ValidationReport(Tabular, Report, Sequence[Diagnostic]):
+    """A report as the library answers with it: true if all conforms, and a sequence of its problems in order.
 
     It prints a line for each problem, or a table in a notebook.
     """
@@ -34,6 +35,9 @@ class ValidationReport(Tabular, Report):
 
     def __len__(self) -> int:
         return len(self.diagnostics)
+
+    def __getitem__(self, number: Any) -> Any:
+        return self.diagnostics[number]
 
     def __iter__(self) -> Iterator[Diagnostic]:
         return iter(self.diagnostics)

@@ -29,6 +29,8 @@ def test_a_report_is_true_if_all_conforms_and_has_its_problems() -> None:
     good, bad, strange = sc.validate("examples/clock"), sc.validate(BAD), sc.validate("tests/supply")
     assert (bool(good), len(good), list(good)) == (True, 0, [])
     assert (bool(bad), len(bad), tuple(bad)) == (False, 2, bad.diagnostics)
+    assert (bad[0], bad[-1:]) == (bad.diagnostics[0], bad.diagnostics[-1:])
+    assert (bad.index(bad.diagnostics[1]), *reversed(bad)) == (1, *reversed(bad.diagnostics))
     assert (bool(strange), [one.code for one in strange]) == (True, ["SC-S04"])
 
 
