@@ -14,7 +14,7 @@ from selfconf.model.profile import Place
 from selfconf.model.template import Role, Setting
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.model.truth import truth
-from selfconf.rdf.shacl import ONLY_WITH_A_PATH, misfit
+from selfconf.rdf.shacl import ONLY_WITH_A_PATH, component_parameters, misfit
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import FIRST, SC, SH, TYPE, XSD
@@ -116,13 +116,19 @@ class _RoleReader(DocumentReader):
 
 
 def substituted(document: Document, values: Mapping[IRI, Term]) -> Document:
-    """A template with parameters replaced by their values wherever they stand in shapes: in lists and paths too."""
+    """A template with parameters replaced by their values wherever they stand in shapes: in lists and paths too.
+
+    And where constraint components of the document itself (SHACL, section 6) have them as values of their parameters.
+    """
     if not values:
         return document
+    own = component_parameters(document)
     statements = {
         subject: [
             (predicate, values[value])
-            if isinstance(value, IRI) and value in values and (predicate in SH or predicate == FIRST)
+            if isinstance(value, IRI)
+            and value in values
+            and (predicate in SH or predicate == FIRST or predicate in own)
             else (predicate, value)
             for predicate, value in said
         ]

@@ -171,6 +171,14 @@ def test_a_constraint_component_that_the_template_brings_along_is_judged(shape: 
     assert names(partitioner(role + OWN_COMPONENT).partition(ads)) == [["a"]]
 
 
+@pytest.mark.parametrize(("bound", "eligible"), [("1", ["a"]), ("2", ["a", "b"]), ("0", [])])
+def test_a_parameter_of_such_a_component_is_replaced_by_its_value(bound: str, eligible: list[str]) -> None:
+    ads = read([":a a sc:Component, :Lamp ; :p 1 .", ":b a sc:Component, :Lamp ; :p 2 ."])
+    role = ":r a sc:Role ; sh:class :Lamp ; sh:property [ sh:path :p ; :atMost :k ] ."
+    text = ':t a sc:Template ; sc:parameter :k ; sc:roles ( :r ) . :k a sc:Parameter ; sc:name "k" . ' + role
+    assert names(partitioner(text + OWN_COMPONENT, bound=(("k", bound),)).partition(ads)) == [eligible]
+
+
 @pytest.mark.parametrize("constraint", ['sh:pattern "("', "sh:minCount 1", "sh:property [ sh:minCount 1 ]"])
 def test_a_shape_that_is_none_is_the_authors_error(constraint: str) -> None:
     ads = read([":a a sc:Component, :Lamp ."])
