@@ -81,7 +81,8 @@ class Parser(argparse.ArgumentParser):
 
     def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
         """Print what `--help` and `--version` say; argparse by itself passes over what cannot be written."""
-        if file is not sys.stdout:
+        elsewhere = file is not sys.stdout
+        if elsewhere:
             super()._print_message(message, file)
             return
         try:
