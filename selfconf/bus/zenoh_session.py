@@ -36,6 +36,9 @@ SHARED_FROM = 1 << 15
 SHARED_MEMORY = Path("/dev/shm")
 ENOUGH_SHARED = 256_000_000
 """Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
+MOST_PORT = (1 << 16) - 1
+_WITH_PORT = frozenset(("tcp", "tls", "udp", "quic", "ws"))
+"""The protocols whose addresses have a host and a port."""
 _RETRY = {
     # A client is cut off as long as it has no router, and its components rest after a second.
     "client": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1.5},
@@ -78,7 +81,7 @@ def open_session(
     With `security` all links are mutual TLS.
     """
     for endpoint in (*listen, *connect):
-        _refuse_other_protocol(endpoint, security)
+        _check_endpoint(endpoint, security)
     begin_log()
     config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory(), security)
     try:
@@ -146,7 +149,7 @@ def _config(
         try:
             config.insert_json5(key, json.dumps(value))
         except zenoh.ZError:
-            raise NetworkError(f"{', '.join(value)} is no endpoint; write it like tcp/127.0.0.1:7447") from None
+            raise _no_endpoint(", ".join(value)) from None
     return config
 
 
@@ -173,13 +176,23 @@ def _secured(security: Security) -> dict[str, Any]:
     return settings
 
 
-def _refuse_other_protocol(endpoint: str, security: Security | None) -> None:
-    """Raise NetworkError where an endpoint is not of the protocol that is spoken: TLS with keys, TCP without."""
+def _check_endpoint(endpoint: str, security: Security | None) -> None:
+    """Raise NetworkError for an endpoint that lacks its port, or is not of what is spoken: TLS with keys, TCP without.
+
+    Zenoh itself would try for as long as it is given to reach one without a port.
+    """
     protocol = endpoint.partition("/")[0]
+    port = endpoint_port(endpoint)
+    if protocol in _WITH_PORT and (port is None or port > MOST_PORT):
+        raise _no_endpoint(endpoint)
     if security is None and protocol == "tls":
         raise NetworkError(f"{endpoint} is reached with keys only; give {setting('keys', 'DIR')}, or set SELFCONF_KEYS")
     if security is not None and protocol == "tcp":
         raise NetworkError(f"{endpoint} is without keys, and keys are given; write tls/{endpoint.partition('/')[2]}")
+
+
+def _no_endpoint(said: str) -> NetworkError:
+    return NetworkError(f"{said} is no endpoint; write it like tcp/127.0.0.1:7447")
 
 
 def _first_sentence(error: Exception) -> str:

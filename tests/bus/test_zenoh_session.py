@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, open_session, with_port
@@ -23,10 +25,23 @@ def test_an_address_of_another_host_has_no_free_port_here() -> None:
         with_port("tcp/192.0.2.1:0")
 
 
-@pytest.mark.parametrize("endpoint", ["127.0.0.1:7447", "home"])
+@pytest.mark.parametrize(
+    "endpoint",
+    ["127.0.0.1:7447", "home", "tcp/127.0.0.1", "tcp/127.0.0.1:port", "tcp/127.0.0.1:65536", "udp/localhost"],
+)
 def test_what_is_no_endpoint_is_told_how_one_is_written(endpoint: str) -> None:
-    with pytest.raises(NetworkError, match=r"is no endpoint; write it like tcp/127\.0\.0\.1:7447$"):
-        open_session("router", listen=[endpoint])
+    for way in ({"listen": [endpoint]}, {"connect": [endpoint], "connect_seconds": 60.0}):
+        with pytest.raises(NetworkError, match=r"is no endpoint; write it like tcp/127\.0\.0\.1:7447$"):
+            open_session("client" if "connect" in way else "router", **way)
+
+
+def test_an_endpoint_may_be_of_any_protocol_that_zenoh_speaks(tmp_path: Path) -> None:
+    for endpoint in (with_port("udp/127.0.0.1:0"), f"unixsock-stream/{tmp_path}/hub"):
+        router = open_session("router", listen=[endpoint])
+        try:
+            open_session("client", connect=[endpoint], connect_seconds=5.0).close()
+        finally:
+            router.close()
 
 
 def test_a_client_without_a_router_names_every_endpoint_that_it_has_asked() -> None:
