@@ -7,6 +7,7 @@ feed nothing, come last, when everything else acts. Coming to rest goes the othe
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping
+from itertools import pairwise
 from typing import NamedTuple
 
 from selfconf.model.configuration import Configuration
@@ -65,7 +66,7 @@ class StartingOrder:
     """Which components must act before a component is started."""
 
     before: Mapping[IRI, frozenset[IRI]]
-    """For each component, the feeders that are started before it: all, but for those that close a loop."""
+    """For each component, what is started before it: all that feed it, but in a loop the one before it by the roles."""
     after: Mapping[IRI, tuple[IRI, ...]]
     """For each component, those that wait for it."""
     actuators: frozenset[IRI]
@@ -80,10 +81,18 @@ def starting_order(configuration: Configuration) -> StartingOrder:
     for source, sink in _joined(configuration, rank):
         feeders[sink].add(source)
         fed[source].append(sink)
-    place = _placed(rank, feeders, fed)
-    before = {c: frozenset(one for one in sources if place[one] < place[c]) for c, sources in feeders.items()}
-    after = {c: tuple(one for one in sinks if c in before[one]) for c, sinks in fed.items()}
-    return StartingOrder(before, after, frozenset(c for c, sinks in fed.items() if not sinks))
+    before: dict[IRI, frozenset[IRI]] = {}
+    for together in _placed(rank, feeders, fed):
+        for component in together:
+            before[component] = frozenset(feeders[component] - set(together))
+        for previous, component in pairwise(together):
+            before[component] |= {previous}
+    after: dict[IRI, list[IRI]] = {component: [] for component in rank}
+    for component in rank:
+        for earlier in before[component]:
+            after[earlier].append(component)
+    actuators = frozenset(c for c, sinks in fed.items() if not sinks)
+    return StartingOrder(before, {c: tuple(waiting) for c, waiting in after.items()}, actuators)
 
 
 def _joined(configuration: Configuration, known: Container[IRI]) -> Iterable[tuple[IRI, IRI]]:
@@ -94,31 +103,33 @@ def _joined(configuration: Configuration, known: Container[IRI]) -> Iterable[tup
 
 def _placed(
     rank: Mapping[IRI, int], feeders: Mapping[IRI, set[IRI]], fed: Mapping[IRI, list[IRI]]
-) -> Mapping[IRI, int]:
-    """The place of each component in a topological order (Kahn); a loop is entered at its first role.
+) -> Iterable[tuple[IRI, ...]]:
+    """The components in a topological order (Kahn), those of a loop together, in the order of their roles.
 
-    Of several loops that one comes first which nothing feeds that has no place yet.
+    Of several loops that one comes first which nothing feeds that has not come yet.
     """
     missing = {component: len(sources) for component, sources in feeders.items()}
-    place: dict[IRI, int] = {}
+    placed: set[IRI] = set()
     ready = [component for component in rank if not missing[component]]
-    while len(place) < len(rank):
-        if not ready:
-            left = {component: feeders[component] - place.keys() for component in rank if component not in place}
-            ready.append(min(_end_loop(left), key=rank.__getitem__))
-        component = ready.pop()
-        if component in place:
-            continue
-        place[component] = len(place)
-        for sink in fed[component]:
+    while len(placed) < len(rank):
+        if ready:
+            together: tuple[IRI, ...] = (ready.pop(),)
+        else:
+            left = {component: feeders[component] - placed for component in rank if component not in placed}
+            together = tuple(sorted(_end_loop(left), key=rank.__getitem__))
+        placed.update(together)
+        for sink in (sink for component in together for sink in fed[component]):
             missing[sink] -= 1
-            if not missing[sink] and sink not in place:
+            if not missing[sink] and sink not in placed:
                 ready.append(sink)
-    return place
+        yield together
 
 
 def resting_next(wires: Mapping[IRI, InputWires], left: Iterable[IRI]) -> tuple[IRI, ...]:
-    """Of the components that still act, those that feed none of the others; where there is none, a loop at the end."""
+    """Of the components that still act, those that feed none of the others; where there is none, a loop at the end.
+
+    The loop is given backwards.
+    """
     acting = tuple(left)
     fed: dict[IRI, set[IRI]] = {component: set() for component in acting}
     for component in acting:
@@ -129,7 +140,7 @@ def resting_next(wires: Mapping[IRI, InputWires], left: Iterable[IRI]) -> tuple[
     if sinks or not acting:
         return sinks
     loop = _end_loop(fed)
-    return tuple(component for component in acting if component in loop)
+    return tuple(component for component in reversed(acting) if component in loop)
 
 
 def _end_loop(graph: Mapping[IRI, Iterable[IRI]]) -> set[IRI]:

@@ -95,6 +95,18 @@ def test_the_order_of_the_roles_does_not_matter_but_in_a_loop() -> None:
     assert starting_order(configuration("bcad", *loop)).before[name("a")] == {name("c")}
 
 
+def test_a_loop_is_started_in_the_order_of_its_roles_whatever_feeds_what_in_it() -> None:
+    order = starting_order(configuration("dbcas", "ba", "ac", "cb", "ad", "sc"))
+    assert order.before == {
+        name("s"): set(),
+        name("b"): set(),
+        name("c"): {name("b"), name("s")},
+        name("a"): {name("c")},
+        name("d"): {name("a")},
+    }
+    assert order.after[name("b")] == (name("c"),)
+
+
 def test_a_component_that_feeds_only_itself_waits_for_nobody_and_counts_as_an_actuator() -> None:
     order = starting_order(configuration("a", "aa"))
     assert (order.before, order.after) == ({name("a"): set()}, {name("a"): ()})
@@ -114,9 +126,10 @@ def test_two_connections_between_two_components_count_once() -> None:
         ("abc", ("ab", "bc"), ["c", "b", "a"]),
         ("abcd", ("ab", "ac", "bd", "cd"), ["d", "bc", "a"]),
         ("a", ("aa",), ["a"]),
-        ("sab", ("sa", "ab", "ba"), ["ab", "s"]),
-        ("sabd", ("sa", "ab", "ba", "bd"), ["d", "ab", "s"]),
-        ("abcd", ("ab", "ba", "bc", "cd", "dc"), ["cd", "ab"]),
+        ("sab", ("sa", "ab", "ba"), ["ba", "s"]),
+        ("sabd", ("sa", "ab", "ba", "bd"), ["d", "ba", "s"]),
+        ("abcd", ("ab", "ba", "bc", "cd", "dc"), ["dc", "ba"]),
+        ("bca", ("ba", "ac", "cb"), ["acb"]),
     ],
 )
 def test_what_feeds_nothing_any_more_comes_to_rest_first(
