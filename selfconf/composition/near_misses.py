@@ -21,6 +21,7 @@ from selfconf.model.profile import Condition, Input, Output, Profile
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.requirement import InputFed
 from selfconf.model.signal_likeness import SignalLikeness
+from selfconf.model.signal_match import SignalMatch
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import (
@@ -138,10 +139,20 @@ class _Question:
         if self._ports is None:
             return None
         _, lacking = self._ports.of(profile.ports)
-        akin = any(match.likeness for match in lacking.issued)
-        if not akin or all(match.exact for match in (*lacking.issued, *lacking.given)):
+        if not any(match.likeness for match in lacking.issued):
             return None
-        return replace(lacking, unfit=tuple(_untaken(profile, lacking, unfed)))
+        issued, given = ([one for one in side if not self._serves(one)] for side in (lacking.issued, lacking.given))
+        if all(match.exact for match in (*issued, *given)):
+            return None
+        return replace(
+            lacking, issued=tuple(issued), given=tuple(given), unfit=tuple(_untaken(profile, lacking, unfed))
+        )
+
+    def _serves(self, match: SignalMatch) -> bool:
+        """Whether what is offered is another type than the wanted one, and serves all the same in the mode."""
+        if match.exact or match.offered is None or match.wanted is None:
+            return False
+        return self._problem.hierarchy.matches(match.offered, match.wanted)
 
     def _unfit(self, profile: Profile, unfed: Sequence[InputFed]) -> UnfitOutput | None:
         """What is wrong with the first output that an unfed input would take by its type."""

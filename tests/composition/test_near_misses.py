@@ -210,3 +210,16 @@ def test_what_lacks_one_class_of_several_comes_by_its_likeness_and_after_a_slip(
     found = near(PREFIXES + asked, PREFIXES + ads)
     assert found[0].component.short == "c"
     assert [str(miss) for miss in found][1:] == ["it is no Display", "it is no Display"]
+
+
+def test_a_type_that_serves_in_the_mode_is_not_told_beside_one_that_does_not() -> None:
+    inputs = '[ sc:name "s" ; sc:signalType :Coarse ] , [ sc:name "q" ; sc:signalType :Special ]'
+    outputs = '[ sc:name "l" ; sc:signalType :Fine ] , [ sc:name "p" ; sc:signalType :General ]'
+    ads = f"{PREFIXES} :k a sc:Component , :Client ; sc:hasInput {inputs} ."
+    ads += f" :a a sc:Component , :Service ; sc:hasOutput {outputs} ."
+    below = known(*BELOW_REQUESTS)
+    above = "it issues General, which lies above Special"
+    assert [str(miss) for miss in near(PREFIXES + FEED, ads, *BELOW_REQUESTS, sees=below)] == [above]
+    assert [str(miss) for miss in near(PREFIXES + FEED, ads, *BELOW_REQUESTS)] == [
+        f"{above} and issues Fine, which lies below Coarse"
+    ]
