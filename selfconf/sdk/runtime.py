@@ -24,7 +24,7 @@ from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
 from selfconf.protocol import activation as table
-from selfconf.protocol.activation import Activation, ActivationStep
+from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of, owner_of, task_name
 from selfconf.protocol.messages import (
@@ -309,7 +309,7 @@ class ComponentRuntime:
             if self._closed:
                 reply(self._verdict(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
                 return
-            if step is not ActivationStep.NONE:
+            if step is not ActivationStep.NONE and self.activation.phase is not ActivationPhase.FAILED:
                 self._drop([message.task], message.epoch)
             reply(self._verdict(Verdict.REFUSED, message.task, trouble))
 

@@ -299,6 +299,8 @@ def test_a_component_that_fails_as_a_parameter_is_set_says_so_and_is_not_started
     assert stage.fails == [Fail(CAP, "life-1", 1, Cause.FAIL, "cannot take it")]
     assert stage.recorder.said == [("goal", "x")]
     assert not stage.state().active
+    again = stage.call(apply(1, US, values={"goal": Literal("y")}))
+    assert (again.verdict, again.detail) == (Verdict.REFUSED, "it has failed"), "it stays failed for its epoch"
     assert stage.call(apply(2, US, values={"goal": Literal("y")})).active
     assert stage.recorder.said == [("goal", "x"), ("goal", "y"), ("started",)]
 
