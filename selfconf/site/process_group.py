@@ -70,8 +70,8 @@ class ProcessGroup:
     def gone(self) -> bool:
         """Whether the program has ended, and all that it started.
 
-        What has ended and not been waited for by its parent (a zombie) is over: where process 1 does not wait for what it
-        inherits, as in some containers, it stays so for ever.
+        What has ended and not been waited for by its parent (a zombie) is over: where process 1 does not wait for what
+        it inherits, as in some containers, it stays so for ever.
         """
         return self.code() is not None and not (self._is_in_group() or any(self._outside()))
 
