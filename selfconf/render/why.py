@@ -1,4 +1,4 @@
-"""Why a component plays a role, in sentences: what a task has reported, read back at a moment.
+"""Why a component plays a role, or is recruited, in sentences: what a task has reported, read back at a moment.
 
 The events are those of `run --format json`, as a configurator keeps them. Of a stranger they may hold anything: then
 `told_why` raises PeerError.
@@ -41,21 +41,44 @@ class TaskStory:
             before = self.configuration if self.ended is None else None  # one that was taken down is replaced by none
             self.configuration, self.refusal, self.since = event["configuration"], None, _time(event)
             self.ended = None
-            for role, components in self.roles():
-                gone = [one for one in _components(before, role) if one not in components]
-                come = [one for one in components if one not in _components(before, role)]
-                for one in come:
-                    self.replaced.pop(one, None)
-                self.replaced.update(zip(come, gone, strict=False))
+            self._note_replaced(before)
         elif act in ("waiting", "refused"):
             self.refusal, self.since = event.get("refusal") or {}, _time(event)
         elif act in ("stopped", "detached"):
             self.ended = _time(event)
 
+    def _note_replaced(self, before: Mapping[str, Any] | None) -> None:
+        """Note which components have come since a configuration, each with the one that it took over from."""
+        for role, components in self.roles():
+            gone = [one for one in _components(before, role) if one not in components]
+            come = [one for one in components if one not in _components(before, role)]
+            for one in come:
+                self.replaced.pop(one, None)
+            self.replaced.update(zip(come, gone, strict=False))
+        for one in self.recruits:
+            if one not in _recruits(before):
+                self.replaced.pop(one, None)
+                self.replaced.update((one, gone) for gone in _fed_before(before, self.configuration, one))
+
     def roles(self) -> Iterator[tuple[str, list[str]]]:
         """Each role with its components."""
         for one in (self.configuration or {}).get("roles", ()):
             yield str(one["role"]), list(map(str, one["components"]))
+
+    @property
+    def recruits(self) -> list[str]:
+        """The components that play no role and feed those that do, or each other."""
+        return _recruits(self.configuration)
+
+    def sinks_of(self, component: str) -> list[str]:
+        """The components that a component feeds, each once."""
+        sinks = (sink for source, (sink, _) in _connections(self.configuration) if source == component)
+        return list(dict.fromkeys(sinks))
+
+    def recruits_of(self, components: Sequence[str]) -> list[str]:
+        """The recruits that feed some of these components, each once."""
+        fed = {source for source, (sink, _) in _connections(self.configuration) if sink in components}
+        return [one for one in self.recruits if one in fed]
 
 
 def story(task: str, events: Iterable[EventBody], at: float | None = None) -> TaskStory:
@@ -78,7 +101,7 @@ def told_why(
 
 
 def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequence[str]]) -> list[str]:
-    """Why the roles of a task are played as they are, of those that a term means; none where it means nothing here.
+    """Why the roles of a task are played as they are, and its recruits, of those that a term means; else none.
 
     The term is a role, a component, a value that the task is bound to, or its name; an IRI or its local name.
     `passed_over` are by role the candidates that go before the chosen ones, as far as that is known.
@@ -90,12 +113,15 @@ def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequenc
     for role, components in found.roles():
         if everything or _means(term, role) or any(_means(term, one) for one in components):
             sentences += _played(found, role, components, passed_over.get(role))
+    for component in found.recruits:
+        if everything or _means(term, component):
+            sentences += _recruited(found, component)
     return sentences + _without_a_role(found, term, passed_over)
 
 
 def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Sequence[str]]) -> list[str]:
     """Why a component that a term means plays no role."""
-    playing = {component for _, components in found.roles() for component in components}
+    playing = {component for _, components in found.roles() for component in components}.union(found.recruits)
     lost = {component: event for component, event in found.lost.items() if _means(term, component)}
     sentences = [
         f"{_name(component)} plays no role in {found.task}: {_loss(event)}"
@@ -112,15 +138,12 @@ def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Seque
 def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequence[str] | None) -> list[str]:
     """Which components play a role and why; `before` are the candidates before those, None if not known."""
     who = ", ".join(map(_name, components)) or "no component"
-    until = "" if found.ended is None else f", until {_clock(found.ended)}"
-    sentences = [f"{_name(role)} in {found.task}: {who}, since {_clock(found.since)}{until}"]
+    sentences = [f"{_name(role)} in {found.task}: {who}, {_while(found)}"]
     for component in components:
-        instead = found.replaced.get(component)
-        if instead is not None:
-            loss = found.lost.get(instead)
-            sentences.append(f"  it took over from {_name(instead)}{'' if loss is None else ': ' + _loss(loss)}")
-        if component in found.lost:
-            sentences.append(f"  {_name(component)} was {_loss(found.lost[component])}, and has come back")
+        sentences += _came_about(found, component)
+    recruits = found.recruits_of(components)
+    if recruits:
+        sentences.append(f"  fed by recruits: {', '.join(map(_name, recruits))}")
     others = [one for one in before or () if one not in components]
     if before is not None and components and not others:
         sentences.append("  no other candidate goes before it")
@@ -129,6 +152,25 @@ def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequ
         sentences.append(f"  passed over, though first in order: {names}")
         sentences.append(f"  what would change it: {names} able to act again, and `run --upgrade`, or a new start")
     return sentences
+
+
+def _recruited(found: TaskStory, component: str) -> list[str]:
+    """What a recruit is there for."""
+    fed = ", ".join(map(_name, found.sinks_of(component)))
+    return [
+        f"{_name(component)} in {found.task}: recruited to feed {fed}, {_while(found)}",
+        *_came_about(found, component),
+    ]
+
+
+def _came_about(found: TaskStory, component: str) -> Iterator[str]:
+    """From which component one took over, and whether it was lost itself."""
+    instead = found.replaced.get(component)
+    if instead is not None:
+        loss = found.lost.get(instead)
+        yield f"  it took over from {_name(instead)}{'' if loss is None else ': ' + _loss(loss)}"
+    if component in found.lost:
+        yield f"  {_name(component)} was {_loss(found.lost[component])}, and has come back"
 
 
 def _refused(found: TaskStory, term: str) -> list[str]:
@@ -142,7 +184,8 @@ def _refused(found: TaskStory, term: str) -> list[str]:
     sentences += [f"  {reason.get('message')}" for reason in refusal.get("reasons", ())]
     sentences += [f"  {_name(component)}: {_loss(event)}" for component, event in found.lost.items()]
     sentences += [
-        f"  nearly, as {_name(miss.get('role'))}: {_name(miss.get('component'))}, but {miss.get('obstacle')}"
+        f"  nearly, {'to be recruited for' if miss.get('recruit') else 'as'} {_name(miss.get('role'))}:"
+        f" {_name(miss.get('component'))}, but {miss.get('obstacle')}"
         for miss in near
     ]
     sentences += [f"  what would change it: {relaxation.get('message')}" for relaxation in refusal.get("repairs", ())]
@@ -152,6 +195,26 @@ def _refused(found: TaskStory, term: str) -> list[str]:
 def _components(configuration: Mapping[str, Any] | None, role: str) -> list[str]:
     roles = (configuration or {}).get("roles", ())
     return next((list(one["components"]) for one in roles if one["role"] == role), [])
+
+
+def _recruits(configuration: Mapping[str, Any] | None) -> list[str]:
+    return list(map(str, (configuration or {}).get("recruits", ())))
+
+
+def _connections(configuration: Mapping[str, Any] | None) -> Iterator[tuple[str, tuple[str, str]]]:
+    """Each connection: the source, and the sink with its input."""
+    for one in (configuration or {}).get("connections", ()):
+        yield str(one["from"]["component"]), (str(one["to"]["component"]), str(one["to"]["input"]))
+
+
+def _fed_before(
+    before: Mapping[str, Any] | None, configuration: Mapping[str, Any] | None, recruit: str
+) -> Iterator[str]:
+    """Yield the recruits before, there no more, that have fed an input that a recruit feeds now."""
+    fed = {wanted for source, wanted in _connections(configuration) if source == recruit}
+    for source, wanted in _connections(before):
+        if wanted in fed and source in _recruits(before) and source not in _recruits(configuration):
+            yield source
 
 
 def _bindings(found: TaskStory) -> list[object]:
@@ -175,6 +238,11 @@ def _loss(event: EventBody) -> str:
 def _time(event: EventBody) -> float:
     moment = event.get("time")
     return float(moment) if isinstance(moment, int | float) else 0.0
+
+
+def _while(found: TaskStory) -> str:
+    """Since when a task has been what it is, and until when it was."""
+    return f"since {_clock(found.since)}{'' if found.ended is None else f', until {_clock(found.ended)}'}"
 
 
 def _clock(seconds: float) -> str:

@@ -84,6 +84,53 @@ def test_a_refusal_is_told_with_its_reasons_near_misses_and_repairs() -> None:
         ]
 
 
+def recruiting(time: float, *chain: str) -> dict[str, Any]:
+    """A configuration in which a locator is fed by a chain of recruits, the last of which has no inputs."""
+    ends = zip(chain, ("locator", *chain), strict=False)
+    connections = [
+        {"from": {"component": HOME + source, "output": "o"}, "to": {"component": HOME + sink, "input": "i"}}
+        for source, sink in ends
+    ]
+    roles = [{"role": HOME + "place", "components": [HOME + "locator"]}]
+    recruits = [HOME + one for one in sorted(chain)]
+    body = {"template": HOME + "locate", "roles": roles, "connections": connections, "recruits": recruits}
+    return {"act": "running", "time": time, "configuration": body}
+
+
+def test_a_recruit_is_told_by_its_own_name_by_what_it_feeds_and_by_its_task() -> None:
+    found = story("locate", [recruiting(10.0, "converter", "lidar")])
+    (only,) = why_sentences(found, "lidar", {})
+    assert only.startswith("lidar in locate: recruited to feed converter, since ")
+    player, fed = why_sentences(found, "place", {})
+    assert player.startswith("place in locate: locator, since ")
+    assert fed == "  fed by recruits: converter"
+    assert why_sentences(found, "locate", {})[2:] == [
+        *why_sentences(found, "converter", {}),
+        *why_sentences(found, "lidar", {}),
+    ]
+
+
+def test_of_a_recruit_it_is_said_from_which_it_took_over_and_that_it_has_come_back() -> None:
+    lost = {"act": "lost", "time": 20.0, "component": HOME + "lidar", "cause": "crash"}
+    events = [recruiting(10.0, "converter", "lidar"), lost, recruiting(21.0, "converter", "camera")]
+    found = story("locate", events)
+    first, second = why_sentences(found, "camera", {})
+    assert first.startswith("camera in locate: recruited to feed converter, since ")
+    assert second.startswith("  it took over from lidar: lost at ")
+    (gone,) = why_sentences(found, "lidar", {})
+    assert gone.startswith("lidar plays no role in locate: lost at ")
+    back = why_sentences(story("locate", [*events, recruiting(40.0, "converter", "lidar")]), "lidar", {})
+    assert back[1] == "  it took over from camera"
+    assert back[2].endswith("(crash), and has come back")
+    assert len(back) == 3
+
+
+def test_a_near_miss_that_could_be_recruited_is_told_as_that() -> None:
+    near = {"role": HOME + "place", "component": HOME + "lidar", "obstacle": "it issues Ping", "recruit": True}
+    found = story("locate", [{"act": "waiting", "time": 30.0, "refusal": {"near_misses": [near]}}])
+    assert "  nearly, to be recruited for place: lidar, but it issues Ping" in why_sentences(found, "lidar", {})
+
+
 def test_what_a_stranger_tells_does_no_harm() -> None:
     with pytest.raises(PeerError, match="no events of a run"):
         told_why("navigate", [{"act": "running", "configuration": {"roles": [3]}}], "navigate", None, {})
