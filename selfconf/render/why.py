@@ -146,12 +146,22 @@ def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequ
         sentences.append(f"  fed by recruits: {', '.join(map(_name, recruits))}")
     others = [one for one in before or () if one not in components]
     if before is not None and components and not others:
-        sentences.append("  no other candidate goes before it")
+        sentences.append("  no other candidate went before it in the latest search")
     if others:
-        names = ", ".join(map(_name, others))
-        sentences.append(f"  passed over, though first in order: {names}")
-        sentences.append(f"  what would change it: {names} able to act again, and `run --upgrade`, or a new start")
+        sentences.append(f"  passed over, though first in order: {', '.join(map(_name, others))}")
+        sentences += _changes(found, others)
     return sentences
+
+
+def _changes(found: TaskStory, passed_over: Sequence[str]) -> Iterator[str]:
+    """What would change that candidates were passed over: for one that was never lost only a search can tell that."""
+    lost = [one for one in passed_over if one in found.lost]
+    if lost:
+        names = ", ".join(map(_name, lost))
+        yield f"  what would change it: {names} able to act again, and `run --upgrade`, or a new start"
+    rest = [one for one in passed_over if one not in lost]
+    if rest:
+        yield f"  `selfconf partition TEMPLATE --why` says what comes of {', '.join(map(_name, rest))}"
 
 
 def _recruited(found: TaskStory, component: str) -> list[str]:

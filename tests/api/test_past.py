@@ -108,7 +108,7 @@ def test_a_real_configuration_is_told(tmp_path: Path) -> None:
     history.close()
     sentence, why = past_why(tmp_path / "history", "position", None)
     assert sentence.startswith("position in navigate: person-tracker, since ")
-    assert why == "  no other candidate goes before it"
+    assert why == "  no other candidate went before it in the latest search"
     assert past_why(tmp_path / "history", "Astrid", None)
 
 

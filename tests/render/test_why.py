@@ -34,6 +34,14 @@ def test_a_role_is_told_with_what_failed_what_was_passed_over_and_what_would_cha
     assert fourth.startswith("  what would change it: tracker able to act again")
 
 
+def test_only_of_what_was_lost_it_is_said_that_it_has_to_be_able_to_act_again() -> None:
+    passed = {HOME + "position": [HOME + "slow-tracker", HOME + "tracker"]}
+    *_, over, change, ask = why_sentences(story("navigate", EVENTS), "position", passed)
+    assert over == "  passed over, though first in order: slow-tracker, tracker"
+    assert change == "  what would change it: tracker able to act again, and `run --upgrade`, or a new start"
+    assert ask == "  `selfconf partition TEMPLATE --why` says what comes of slow-tracker"
+
+
 def test_who_goes_first_and_who_has_come_back_is_said() -> None:
     first, over, back, order = why_sentences(
         story("navigate", [*EVENTS, running(40.0, "tracker")]), "position", {HOME + "position": []}
@@ -42,7 +50,7 @@ def test_who_goes_first_and_who_has_come_back_is_said() -> None:
     assert over == "  it took over from odometry"
     assert back.startswith("  tracker was lost at ")
     assert back.endswith("(fail, out of view), and has come back")
-    assert order == "  no other candidate goes before it"
+    assert order == "  no other candidate went before it in the latest search"
 
 
 def test_at_an_earlier_moment_the_answer_is_that_of_then() -> None:
