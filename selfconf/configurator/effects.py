@@ -87,6 +87,8 @@ class ApplyTo:
     """Which components may call its operations."""
     gently: bool = False
     """Whether what an input followed before is let go of only when the new output delivers."""
+    adopted: bool = False
+    """Whether it has acted for the task already, for a configurator that is gone."""
 
 
 @immutable

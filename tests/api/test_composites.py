@@ -62,12 +62,15 @@ class Source(Component):
 class Tracker(Component):
     """Issues its name, and what it heard last on its inputs."""
 
+    mute = False
+
     def __init__(self, name: str) -> None:
         self.name, self.heard = name, {"image": "", "hint": ""}
 
     def received(self, port: str, signal: Signal) -> None:
         self.heard[port] = signal.value
-        self.emit("pose", [self.name, self.heard["image"], self.heard["hint"]])
+        if not self.mute:
+            self.emit("pose", [self.name, self.heard["image"], self.heard["hint"]])
 
 
 class Navigator(Component):
@@ -83,22 +86,30 @@ class Navigator(Component):
 class House:
     """An ecology in memory with a composite, what may be inside of it, and a task that needs it."""
 
-    def __init__(self, *, cameras: str = "c1 c2", trackers: str = "t1 t2", hinters: str = "h1 h2") -> None:
+    def __init__(
+        self,
+        *,
+        cameras: str = "c1 c2",
+        trackers: str = "t1 t2",
+        hinters: str = "h1 h2",
+        tracker: str = TRACKER,
+        navigator: str = NAVIGATOR,
+    ) -> None:
         self.ecology = MemoryEcology()
         self.by_name: dict[str, Component] = {}
         for names, kind, text in ((cameras, "image", CAMERA), (hinters, "hint", HINTER)):
             for name in names.split():
                 self.by_name[name] = self.ecology.add(Source(name, kind), text.replace("NAME", name))
         for name in trackers.split():
-            self.by_name[name] = self.ecology.add(Tracker(name), TRACKER.replace("NAME", name))
-        self.navigator = self.ecology.add(Navigator(), NAVIGATOR)
+            self.by_name[name] = self.ecology.add(Tracker(name), tracker.replace("NAME", name))
+        self.navigator = self.ecology.add(Navigator(), navigator)
 
-    def run(self, *composites: str) -> MemoryRun:
+    def run(self, *composites: str, task: str = TASK) -> MemoryRun:
         """Run the task with some composites."""
         for text in composites:
             self.ecology.advertise(text)
         self.ecology.advance(2.0)
-        run = self.ecology.run(template(TASK)).started()
+        run = self.ecology.run(template(task)).started()
         self.ecology.advance(1.0)
         return run
 
@@ -145,6 +156,30 @@ def test_who_follows_a_composite_is_told_when_another_component_stands_behind_it
     assert (house.navigator.pose, house.navigator.source) == (["t2", "c1", "h1"], "t2")
     assert lost(run) == []
     assert house.navigator.active
+
+
+def test_an_output_that_falls_silent_inside_is_repaired_inside() -> None:
+    """It is noticed outside, by who follows it."""
+    rate = "sc:signalType :Pose ; sc:rate [ sc:value 10 ; sc:unit <http://qudt.org/vocab/unit/HZ> ]"
+    house = House(tracker=TRACKER.replace("sc:signalType :Pose", rate))
+    run = house.run(SERVICE)
+    tracker = house.by_name["t1"]
+    assert isinstance(tracker, Tracker)
+    tracker.mute = True
+    house.ecology.advance(3.0)
+    assert (house.navigator.pose, house.navigator.source) == (["t2", "c1", "h1"], "t2")
+    assert lost(run) == []
+
+
+@pytest.mark.parametrize("roles", [":positions :navigator", ":navigator :positions"])
+def test_a_composite_in_a_loop_is_heard_whatever_comes_first(roles: str) -> None:
+    output = '; sc:hasOutput [ sc:name "hint" ; sc:signalType :Hint ] .'
+    house = House(navigator=NAVIGATOR.rstrip(" .") + output)
+    task = TASK.replace(":hints :positions :navigator", roles).replace(
+        ":hints a sc:Role ; sh:class :Hinter ; sc:feeds :positions .", ""
+    )
+    house.run(SERVICE, task=task.replace(":Nav .", ":Nav ; sc:feeds :positions ."))
+    assert house.navigator.source == "t1"
 
 
 def test_what_is_inside_follows_another_component_outside_when_the_first_is_lost() -> None:

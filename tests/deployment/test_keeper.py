@@ -20,7 +20,8 @@ from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.tasks import bind, complete, read_task
 from tests.deployment.tasks import DRIVEN, SPARE, TASK
-from tests.lab import NAVIGATE, Lab
+from tests.faults.ecologies import COMPOSED
+from tests.lab import NAVIGATE, Lab, iri
 
 RECORD = TaskRecord("patrol~1", 1, priority=1, beginning=5.0)
 
@@ -164,6 +165,47 @@ def test_after_all_sites_were_restarted_the_task_comes_back_from_their_disks(kee
     assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"tracker"})
 
 
+def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
+    """Which site is to run a task, and which one after its end."""
+    first = keeper_of(task, sites)
+    return first, keeper_of(task, {*sites} - {first})
+
+
+def composed(record: TaskRecord) -> RunRequest:
+    """A task that needs a composite."""
+    task = complete(read_task(turtle.parse(COMPOSED.whole, "t")))
+    return RunRequest(task=task.task, compose=Composer(task).compose, patient=True, priority=record.priority)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_who_follows_a_composite_goes_on_when_the_next_site_goes_on(tmp_path: Path, seed: int) -> None:
+    lab = Lab(tmp_path, seed, Faults(most_delay=0.1), COMPOSED.advertisements)
+    for site, names in COMPOSED.sites.items():
+        lab.site(site, *names)
+    for name in COMPOSED.processes:
+        lab.component(name)
+    keepers = Keepers(lab, tmp_path / "disks", composed)
+    sites = (*COMPOSED.sites, *"abc")
+    task = next(
+        one
+        for one in (f"task~{number}" for number in range(99))
+        if not {*keepers_in_turn(one, *sites)} & {*COMPOSED.sites}
+    )
+    keepers.hand_over(TaskRecord(task, 1, beginning=5.0))
+    assert lab.until(lambda: bool(keepers.running()))
+    lab.let_pass(3.0)
+    drive, said = lab.components["drive"], list(lab.components["drive"].said)
+    lost: list[str] = []
+    lab.runtimes["drive"].inputs._events = replace(lab.runtimes["drive"].inputs._events, unfed=lost.append)
+    keepers.end(keepers_in_turn(task, *sites)[0])
+    lab.let_pass(10.0)
+    assert (lost, drive.said) == ([], said)
+    lab.components["tracker-1"].emit("track", "here")
+    drive.ask("start")
+    lab.let_pass(1.0)
+    assert sorted(drive.said[len(said) :]) == [("position", "here"), ("start", "answered", iri("tracker-1"))]
+
+
 def drives(record: TaskRecord) -> RunRequest:
     """A task for which either of two components will do."""
     task = complete(read_task(turtle.parse(DRIVEN, "t")))
@@ -171,12 +213,6 @@ def drives(record: TaskRecord) -> RunRequest:
     return RunRequest(
         task=task.task, compose=composer.compose, usable=composer.usable, patient=True, priority=record.priority
     )
-
-
-def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
-    """Which site is to run a task, and which one after its end."""
-    first = keeper_of(task, sites)
-    return first, keeper_of(task, {*sites} - {first})
 
 
 @pytest.mark.parametrize("keepers_are", ["one", "two"])

@@ -116,6 +116,8 @@ class Calls:
         self._lives, self._waking, self._ends = lives, waking, ends
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""
+        self._held_back: list[ApplyTo] = []
+        """What is applied to once it is known what stands behind the composites that it is connected to."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
 
@@ -158,7 +160,14 @@ class Calls:
     # Activating.
 
     def apply(self, effect: ApplyTo) -> None:
-        """Activate a component with its parameters, and connect its inputs."""
+        """Activate a component with its parameters, and connect its inputs.
+
+        One that was adopted is connected already: what stands behind a composite is asked before it hears of it anew.
+        """
+        unknown = effect.adopted and self._ends.unknown(effect.inputs, effect.callers)
+        if unknown and not self._ends.is_composite(effect.component):  # those of a circle would wait for each other
+            self._held_back.append(effect)
+            return
         life = self._lives.life(effect.component)
         if life is None or not self.ecology.lives_on(effect.component, life):
             self._ended(effect.component, life or "")
@@ -174,6 +183,15 @@ class Calls:
             self._report(InputConnected(c.source, c.output, c.sink, c.input))
         self._connections[effect.component] = life, frozenset(connections)
         self._report(ActivationSent(effect.component))
+
+    def _acts(self, component: IRI, answer: CallAnswer) -> None:
+        """A component acts: connect others to what stands behind it, if that was not known before."""
+        if self._ends.moved(component, answer.outputs, answer.callers):
+            self._step(Rewired(component))  # before the answer: those that it calls hear of it, then all is complete
+        held_back, self._held_back = self._held_back, []
+        for effect in held_back:
+            if effect.epoch == self._state().epoch:
+                self.apply(effect)
 
     def _ended(self, component: IRI, life: str) -> None:
         """A component that is to act has ended without a FAIL: its site may start it again."""
@@ -412,9 +430,8 @@ class Calls:
             self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
             self._lives.obeyed(component, answer.life)
-        applied = answer.verdict is Verdict.DONE and call is Call.APPLY
-        if applied and self._ends.moved(component, answer.outputs, answer.callers):
-            self._step(Rewired(component))  # before the answer: those that it calls hear of it, then all is complete
+        if answer.verdict is Verdict.DONE and call is Call.APPLY:
+            self._acts(component, answer)
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)

@@ -62,7 +62,7 @@ class ComponentMessages:
             log.warning("passed over a FAIL on %s: %s", sample.key, error)
             return
         own = sample.key == self._keys.fail(fail.component)
-        reported = fail.cause is Cause.SILENCE and owner_of_fail(sample.key) in map(component_chunk, self._watched)
+        reported = fail.cause is Cause.SILENCE and self._may_report(owner_of_fail(sample.key), fail.component)
         if not self._heeds(fail):
             return
         if (
@@ -73,11 +73,17 @@ class ComponentMessages:
             self._lives.gone(fail.component)  # its site has told: its process has ended, or is being ended
         if fail.cause is Cause.LET_GO and fail.component in self._state().held:
             log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
-        around = self._ends.composite_around(fail.component) if reported else None
         if fail.component in self._watched and (own or reported):
             self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
-        elif around is not None and around in self._watched:
-            self._step(Failed(around, "", fail.cause, f"{fail.component.short} inside of it: {fail.detail}"))
+
+    def _may_report(self, reporter: str, silent: IRI) -> bool:
+        """Whether a component, given by its chunk, may say that another one is silent: one that may follow it.
+
+        That is one of this task, or of what issues outputs of the composite that this is the inside of anyone outside.
+        """
+        target = self._state().target
+        outside = target is not None and self._ends.stands_outside(silent, target)
+        return outside or reporter in map(component_chunk, self._watched)
 
     def _heeds(self, fail: Fail) -> bool:
         """Whether a FAIL may be about this task, as far as it says itself."""

@@ -23,14 +23,29 @@ class PortEnds:
         """For each composite that acts for the task, what stands behind its outputs."""
         self._calling: dict[IRI, Mapping[str, tuple[IRI, ...]]] = {}
         """For each composite that acts for the task, which components inside of it call what it needs."""
+        self._guessed: set[IRI] = set()
+        """The composites that were taken for the ends themselves, as they have not said yet what stands behind them."""
 
     def moved(
         self, component: IRI, outputs: Mapping[str, tuple[Wire, ...]], calling: Mapping[str, tuple[IRI, ...]]
     ) -> bool:
-        """Note what stands behind a component now; returns whether others call what it needs than before."""
-        before = self._calling.get(component, {})
+        """Note what stands behind a component now; returns whether others were connected otherwise before."""
+        issues_otherwise = self._issuing.get(component, {} if component in self._guessed else outputs) != outputs
+        calls_otherwise = self._calling.get(component, {}) != calling
         self._issuing[component], self._calling[component] = outputs, calling
-        return before != calling
+        self._guessed.discard(component)
+        return issues_otherwise or calls_otherwise
+
+    def unknown(self, connected: Mapping[str, tuple[Wire, ...]], calling: Callers) -> set[IRI]:
+        """The composites among those that feed inputs, or call, which have not said yet what stands behind them."""
+        others = {wire.component for some in connected.values() for wire in some}
+        others |= {caller.component for some in calling.values() for caller in some}
+        return {one for one in others - self._issuing.keys() if self.is_composite(one)}
+
+    def is_composite(self, component: IRI) -> bool:
+        """Whether a component is a task inside, by its advertisement."""
+        found = self._ecology.discovery.found.get(component)
+        return found is not None and found.advertisement.profile.inside is not None
 
     def wires(self, connected: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
         """The outputs behind those that feed each input, each with the longest pause that it promises."""
@@ -40,6 +55,8 @@ class PortEnds:
     def _behind(self, wire: Wire) -> tuple[Wire, ...]:
         if self._outside is not None and wire.component == self._outside.composite:
             return self._outside.received().get(wire.output, ())
+        if wire.component not in self._issuing and self.is_composite(wire.component):
+            self._guessed.add(wire.component)
         inside = self._issuing.get(wire.component, {}).get(wire.output)
         return (self._promised(wire),) if inside is None else inside
 
@@ -77,9 +94,6 @@ class PortEnds:
                 ends[one.output] = (*ends.get(one.output, ()), Caller(one.sink, one.input))
         return self.callers(ends)
 
-    def composite_around(self, component: IRI) -> IRI | None:
-        """The composite behind whose outputs a component stands, if it does."""
-        for composite, outputs in self._issuing.items():
-            if any(wire.component == component for wires in outputs.values() for wire in wires):
-                return composite
-        return None
+    def stands_outside(self, component: IRI, configuration: Configuration) -> bool:
+        """Whether a component issues outputs of the composite of which a configuration is the inside."""
+        return any(wire.component == component for some in self.issued_outside(configuration).values() for wire in some)

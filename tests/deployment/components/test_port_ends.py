@@ -10,6 +10,7 @@ from selfconf.deployment.components import PortEnds
 from selfconf.discovery import EcologyView
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.protocol.messages import Wire
+from tests.faults.ecologies import COMPOSED
 from tests.lab import ADVERTISEMENTS, Lab, iri
 
 CAMERA, FILTER, LOOKOUT, DISPLAY = map(iri, ("camera", "filter", "lookout", "display"))
@@ -24,7 +25,6 @@ def test_the_output_of_a_component_is_its_own_end(lab: Lab) -> None:
     found = ends(lab)
     assert found.wires({"in": (Wire(CAMERA, "out"),)}) == {"in": (Wire(CAMERA, "out"),)}
     assert found.callers({"show()": (Caller(CAMERA, "show()"),)}) == {"show()": (CAMERA,)}
-    assert found.composite_around(CAMERA) is None
 
 
 def test_a_promised_rate_is_the_longest_pause_of_a_wire(tmp_path: Path) -> None:
@@ -42,12 +42,11 @@ def test_a_promised_rate_is_the_longest_pause_of_a_wire(tmp_path: Path) -> None:
 def test_what_stands_behind_a_composite_is_in_its_place(lab: Lab) -> None:
     found = ends(lab)
     inside = {"picture": (Wire(CAMERA, "out"), Wire(FILTER, "out"))}
-    assert found.moved(LOOKOUT, inside, {"show()": (FILTER,)})
-    assert not found.moved(LOOKOUT, inside, {"show()": (FILTER,)}), "the same components call as before"
+    assert found.moved(LOOKOUT, inside, {"show()": (FILTER,)}), "others may be called by what is inside"
+    assert not found.moved(LOOKOUT, inside, {"show()": (FILTER,)}), "the same as before"
     assert found.wires({"in": (Wire(LOOKOUT, "picture"),)}) == {"in": inside["picture"]}
     assert found.callers({"show()": (Caller(LOOKOUT, "show()"), Caller(FILTER, "show()"))}) == {"show()": (FILTER,)}
-    assert found.composite_around(FILTER) == LOOKOUT
-    assert found.moved(LOOKOUT, {"picture": ()}, {})
+    assert found.moved(LOOKOUT, {"picture": ()}, {"show()": (FILTER,)})
     assert found.wires({"in": (Wire(LOOKOUT, "picture"),)}) == {}, "nothing issues it now"
 
 
@@ -78,3 +77,23 @@ def test_what_a_composite_issues_and_calls_outside_is_that_of_its_inside(lab: La
     assert found.issued_outside(configuration) == {"picture": (Wire(FILTER, "out"),)}
     assert found.calling_outside(configuration) == {"show()": (FILTER,)}
     assert ends(lab).issued_outside(configuration) == {}
+    assert found.stands_outside(FILTER, configuration)
+    assert not found.stands_outside(CAMERA, configuration)
+
+
+def test_who_was_connected_to_a_composite_before_it_was_known_what_stands_behind_it_is_to_be_connected_anew(
+    tmp_path: Path,
+) -> None:
+    lab = Lab(tmp_path, advertised=COMPOSED.advertisements)
+    for site, names in COMPOSED.sites.items():
+        lab.site(site, *names)
+    ecology = lab.agent(COMPOSED.whole, ()).ecology
+    lab.let_pass(1.0)
+    service, inside = iri("service"), {"pose": (Wire(iri("tracker-1"), "track"),)}
+    early, late = PortEnds(ecology, None), PortEnds(ecology, None)
+    wanted, asking = {"position": (Wire(service, "pose"),)}, {"shine()": (Caller(service, "light()"),)}
+    assert early.unknown(wanted, {}) == early.unknown({}, asking) == {service}
+    assert early.wires(wanted) == wanted
+    assert early.moved(service, inside, {})
+    assert early.unknown(wanted, asking) == set()
+    assert not late.moved(service, inside, {}), "all that it feeds is connected later"
