@@ -143,7 +143,8 @@ class LivingTasks:
         rejected += map(_said_of_silent, sorted(living - answered - holding))
         rejected += map(str, self._holding)
         self.silent = tuple(sorted((living - answered) | holding))
-        named = {status.name for status in found}.union(task_name(one.task) for one in self._holding)
+        named = {status.name for status in found if status.outside is None}
+        named.update(task_name(one.task) for one in self._holding)
         suspended = suspended_tasks(self._keys.ecology, self._endpoints)
         self.suspended = tuple(one for one in suspended if one.name not in named)
         rejected += map(str, self.suspended)
@@ -204,16 +205,19 @@ class LivingTasks:
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them; returns their names.
 
-        Raises NetworkError if there is none of that name, or if one does not answer or does not end in time, or if a
-        component was turned off and does not obey; of all tasks those are taken down first that answer. One that does
-        not answer, suspended perhaps, is an error also where what it held has come to rest: it may go on.
+        The inside of a composite, which has the name of the composite, is meant only where no other task has that name;
+        then the composite fails. Raises NetworkError if there is none of that name, or if one does not answer or does
+        not end in time, or if a component was turned off and does not obey; of all tasks those are taken down first
+        that answer. One that does not answer, suspended perhaps, is an error also where what it held has come to rest:
+        it may go on.
         """
-        running = [s for s in self.running(by_components=True) if name in (None, s.configurator, s.name)]
+        found = [s for s in self.running(by_components=True) if name in (None, s.configurator, s.name)]
         kept = self.kept(name)
         holding = [one for one in self._holding if one.is_named(name)]
+        suspended = [one for one in self.suspended if name in (None, one.name)]
+        running = found if name is None else _meant(name, found, bool(kept or holding or suspended))
         unanswered = {record.task for record in kept}.difference(status.task for status in running)
         silent = self._silent_beside_holders(None if unanswered else name)
-        suspended = [one for one in self.suspended if name in (None, one.name)]
         if name is not None and not kept:
             _check_there(name, silent, [*running, *holding, *suspended])
         self._take_down(running, kept)
@@ -327,6 +331,12 @@ def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
         else:
             rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
     return found, rejected
+
+
+def _meant(name: str, found: Sequence[Status], others: bool) -> list[Status]:
+    """Of the tasks that were found by a name, those that it means: insides of composites where no `others` have it."""
+    own = [one for one in found if one.outside is None or one.configurator == name]
+    return own if own or others else [*found]
 
 
 def _records(replies: Replies) -> list[TaskRecord]:

@@ -36,12 +36,19 @@ class Tasks:
         self.kept: list[TaskRecord] = []
 
     def configurator(
-        self, name: str, task: str, *components: IRI, answers: bool = True, speaks_of: str = ""
+        self,
+        name: str,
+        task: str,
+        *components: IRI,
+        answers: bool = True,
+        speaks_of: str = "",
+        outside: IRI | None = None,
     ) -> MemoryBus:
-        """A configurator that runs a task until it is stopped."""
+        """A configurator that runs a task, perhaps the inside of a composite, until it is stopped."""
         node = self.network.node()
         node.announce(KEYS.configurator_life(name, "1"))
-        status = Status(speaks_of or name, "running", TEMPLATE, 3, 1.5, components=components, task=task)
+        speaker = speaks_of or name
+        status = Status(speaker, "running", TEMPLATE, 3, 1.5, components=components, task=task, outside=outside)
 
         def answer(request: Request) -> None:
             if answers:
@@ -140,6 +147,28 @@ def test_a_task_is_stopped_by_its_name_or_by_that_of_its_configurator(tasks: Tas
     assert tasks.asked.stop("patrol") == ("patrol",)
     assert [status.configurator for status in tasks.asked.running()] == ["c2"]
     assert tasks.asked.stop("c2") == ("tidy",)
+    assert tasks.asked.running() == ()
+
+
+PATROL_COMPOSITE = IRI("urn:c#patrol")
+
+
+def test_a_name_means_the_inside_of_a_composite_only_where_no_other_task_has_it(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.asked.running() == ()
+
+
+def test_an_inside_goes_on_where_the_sites_keep_a_task_of_its_name_and_ends_by_its_configurator(tasks: Tasks) -> None:
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    tasks.site(PATROL)
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+    assert tasks.asked.stop("c2") == ("patrol",)
     assert tasks.asked.running() == ()
 
 
@@ -279,6 +308,14 @@ def test_a_run_of_this_machine_that_is_suspended_and_not_seen_is_named_by_its_ta
             tasks.asked.stop(name)
     assert (tasks.asked.running() == ()) == (name is None)
     assert tasks.asked.suspended == ()
+
+
+@pytest.mark.process
+def test_an_inside_goes_on_where_a_run_of_its_name_is_suspended(tasks: Tasks) -> None:
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    with suspended_run("lab", "patrol", HERE), pytest.raises(NetworkError, match="which runs the task 'patrol'"):
+        tasks.asked.stop("patrol")
+    assert len(tasks.asked.running()) == 1
 
 
 @pytest.mark.process
