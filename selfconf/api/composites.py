@@ -3,8 +3,9 @@
 A composite is advertised like any other component; its grounding names a template of the same document, whose ports are
 its own. Its inside is configured from the components of its site alone, itself left out: so each level is small, and
 each site answers for its own. A composite lives while its inside can be configured. When it is activated its inside
-becomes a task with the rank of the one that holds it, and it acts once that task runs; what fails inside is repaired
-inside, and only a refusal is a FAIL of the composite, with the reason. When it is released its inside comes to rest.
+becomes a task with the rank of the one that holds it, of several the first, and it acts once that task runs; what fails
+inside is repaired inside, and only a refusal is a FAIL of the composite, with the reason. When it is released its
+inside comes to rest.
 
 Its operational parameters are parameters of the template, known by their names: the values that they are set to are
 bound when the composite is activated. Other values than before have the inside begin anew. Where an optional input of
@@ -136,14 +137,15 @@ class InsideOfComposite:
             self.runtime.fail(str(error))
             self._settle(False)
             return
+        claim = message if self.runtime.activation.first is None else self.runtime.activation.first.claim
         request = replace(
             request,
             outside=Outside(self.profile.component, lambda: self._wires, lambda name: self._called_by.get(name, ())),
             report=partial(self._report, self._beginnings),
-            priority=message.priority,
+            priority=claim.priority,
             ended=self._ended,
         )
-        self.runner = TaskRunner(self._bus, self._ecology, request, beginning=message.beginning)
+        self.runner = TaskRunner(self._bus, self._ecology, request, beginning=claim.beginning)
         self.runner.start()
 
     def when_settled(self, action: Callable[[], None]) -> None:
@@ -152,6 +154,12 @@ class InsideOfComposite:
             action()
         else:
             self._waiting.append(action)
+
+    def holders_changed(self) -> None:
+        """Give the inside the rank of the first of those that hold the composite."""
+        first = self.runtime.activation.first
+        if first is not None and self.runner is not None:
+            self.runner.rank(first.claim.priority, first.claim.beginning)
 
     def end(self) -> None:
         """Take the inside down; `ending` lasts as long as that takes."""

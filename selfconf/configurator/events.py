@@ -132,6 +132,13 @@ class Reconnected:
 
 
 @immutable
+class Ranked:
+    """The task has another priority, or another beginning, than before: what it holds is to know that."""
+
+    priority: int
+
+
+@immutable
 class Stopped:
     """The configuration is to be taken down."""
 
@@ -150,5 +157,6 @@ Event = (
     | Rewired
     | Improvable
     | Reconnected
+    | Ranked
     | Stopped
 )

@@ -66,6 +66,7 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
+    Ranked,
     Reconnected,
     Rewired,
     Stopped,
@@ -120,6 +121,8 @@ def step(state: State, event: Event) -> Reaction:
             return _look_for_better(state)
         case Reconnected():
             return _reconnected(state)
+        case Ranked():
+            return _ranked(state, event.priority)
         case Stopped():
             return _stopped(state)
 
@@ -512,6 +515,22 @@ def _reconnected(state: State) -> Reaction:
         return state, ()
     unsure = {component: replace(held, acts=False, confirmed=False) for component, held in state.held.items()}
     return _discover(replace(state, held=unsure, fallback=None))
+
+
+def _ranked(state: State, priority: int) -> Reaction:
+    """Claim everything that is held anew, with the rank that the task has now; what acts acts on."""
+    if state.ended:
+        return state, ()
+    taken, sharers = (
+        {component: holder for component, holder in holders.items() if holder.priority >= priority}
+        for holders in (state.taken, state.sharers)
+    )
+    held = {
+        component: replace(one, reserved=one.reserved and one.active, confirmed=False)
+        for component, one in state.held.items()
+    }
+    known = replace(state, priority=priority, taken=taken, sharers=sharers, held=held)
+    return deploying.deploy(known) if state.phase in (Phase.RUNNING, *DEPLOYING) else (known, ())
 
 
 def _stopped(state: State) -> Reaction:

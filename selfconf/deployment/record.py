@@ -24,13 +24,12 @@ class DeploymentRecord:
         bus: Bus,
         keys: Keys,
         name: str,
-        identity: TaskIdentity,
+        identity: Callable[[], TaskIdentity],
         request: RunRequest,
         status: Callable[[], Status],
         stop: Callable[[], None],
     ) -> None:
-        self.bus, self._keys, self._name, self._request = bus, keys, name, request
-        self._running_as = identity.name, identity.priority
+        self.bus, self._keys, self._name, self._identity, self._request = bus, keys, name, identity, request
         self._status, self._stop = status, stop
         self._deployed: tuple[IRI, Configuration, int, float] | None = None
         self._revises: tuple[IRI, Configuration] | None = None
@@ -87,6 +86,7 @@ class DeploymentRecord:
         """What is deployed, as Turtle with its provenance."""
         assert self._deployed is not None
         name, configuration, epoch, generated = self._deployed
+        identity = self._identity()
         triples = configuration_triples(
             configuration,
             name,
@@ -98,7 +98,7 @@ class DeploymentRecord:
             failures=self._failures.values(),
             passed_over=self._request.passed_over(configuration),
             outside=None if self._request.outside is None else self._request.outside.composite,
-            running_as=self._running_as,
+            running_as=(identity.name, identity.priority),
         )
         return to_turtle(triples)
 

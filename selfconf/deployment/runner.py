@@ -33,6 +33,7 @@ from selfconf.configurator import (
     Loss,
     Phase,
     QueueFor,
+    Ranked,
     Reconnected,
     ReleaseFrom,
     ReserveOf,
@@ -137,7 +138,9 @@ class TaskRunner:
             self.ecology, request, self._liveness, self._now, self._step, self._report, self._give_up
         )
         self._retries = Retries(self.ecology, self._lives, self._now, self._step, request.upgrade)
-        self._record = DeploymentRecord(bus, self.keys, self.name, self.identity, request, self.status, self.stop)
+        self._record = DeploymentRecord(
+            bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
+        )
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self._events: deque[Event] = deque()
         self._stepping = False
@@ -183,6 +186,13 @@ class TaskRunner:
     def reconsider(self) -> None:
         """Search again beside what runs, as other inputs than before are fed from outside."""
         self._step(Reconnected())
+
+    def rank(self, priority: int, beginning: float) -> None:
+        """Give the task another rank, and claim what it holds with that; what runs runs on."""
+        ranked = replace(self.identity, priority=priority, beginning=beginning)
+        if ranked != self.identity:
+            self.identity = self._calls.identity = ranked
+            self._step(Ranked(priority))
 
     def issued_outside(self) -> dict[str, tuple[Wire, ...]]:
         """Which outputs stand behind those of the composite of which the task is the inside."""

@@ -80,6 +80,10 @@ class InputFollower(Protocol):
         """Do something once what the call has said is done."""
         ...
 
+    def holders_changed(self) -> None:
+        """Take note that other tasks hold the component than before, or otherwise."""
+        ...
+
     def end(self) -> None:
         """Follow nothing."""
         ...
@@ -178,6 +182,9 @@ class Inputs:
     def patience(self) -> float:
         """For how many seconds the caller may wait for the inputs that are being handed over; zero: for none."""
         return HANDOVER_PATIENCE if self._handovers else 0.0
+
+    def holders_changed(self) -> None:
+        """Do nothing: the inputs of code follow the same for all that hold the component."""
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""

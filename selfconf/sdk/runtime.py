@@ -431,6 +431,7 @@ class ComponentRuntime:
         if step in (ActivationStep.STOP, ActivationStep.RESTART):
             self._stop()
         self.operations.callers_changed()
+        self.inputs.holders_changed()
         if step is ActivationStep.RAISE_FAIL:
             self.code.end_acting()  # again: another thread's FAIL may have been overtaken by a release and an apply
         self.supervision.watch({hold.claim.supervisor for hold in activation.holds})

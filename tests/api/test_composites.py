@@ -8,12 +8,15 @@ from typing import Any
 import pytest
 
 from selfconf.api.task import template
+from selfconf.configurator import Phase
+from selfconf.deployment import TaskRunner
 from selfconf.discovery import EcologyView
 from selfconf.model.run_event import ComponentLost, InputConnected
 from selfconf.model.term import IRI
 from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG, MemoryRun
+from tests.lab import PREFIXES as LAB_PREFIXES
 from tests.lab import Lab
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
@@ -590,3 +593,70 @@ def test_a_composite_of_itself_through_two_sites_lives_at_neither(tmp_path: Path
         "its inside cannot be configured now: no component is eligible for the role part",
         "its inside cannot be configured now: no component is eligible for the role piece",
     ]
+
+
+EYE = {
+    "eye": """:eye a sc:Component, :Eye ; sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ] ;
+        sc:grounding [ sc:template :seeing ] .
+        :seeing a sc:Template ; sc:roles ( :lens ) ;
+            sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ; sc:of :lens ] .
+        :lens a sc:Role ; sh:class :Lens .""",
+    "lens": """:lens-1 a sc:Component, :Lens ; sc:shareable false ;
+        sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ] .""",
+} | {
+    name: f""":{name} a sc:Component, :{name.title()} ;
+        sc:hasInput [ sc:name "seen" ; sc:signalType rob:Text ] ."""
+    for name in ("low", "middle", "high")
+}  # fmt: skip
+"""A composite that tasks share, with one component inside that they do not, and for each task what follows them."""
+LOOK = f"""{LAB_PREFIXES}
+:look a sc:Template ; sc:roles ( :source :sink ) .
+:source a sc:Role ; sh:class :Eye ; sc:feeds :sink . :sink a sc:Role ; sh:class :SINK ."""
+
+
+def eye(folder: Path) -> Lab:
+    """A site with the composite, and with all that lives."""
+    lab = Lab(folder, advertised=EYE)
+    lab.site("home", *EYE)
+    for name in EYE.keys() - {"eye"}:
+        lab.component(name)
+    lab.let_pass(3.0)
+    return lab
+
+
+def looking(lab: Lab, sink: str, priority: int, source: str = "Eye") -> TaskRunner:
+    """A task that begins, and gets as far as it does."""
+    agent = lab.agent(LOOK.replace("SINK", sink).replace(":Eye", f":{source}"), (), priority=priority)
+    lab.running(agent)
+    lab.let_pass(3.0)
+    return agent
+
+
+def rank_inside(lab: Lab) -> tuple[int, float]:
+    """The rank of the task inside of the composite, as the component inside knows it."""
+    (hold,) = lab.runtimes["lens"].activation.holds
+    return hold.claim.priority, hold.claim.beginning
+
+
+@pytest.mark.parametrize("priorities", [(0, 3), (3, 0)])
+def test_the_inside_of_a_composite_has_the_rank_of_the_first_of_those_that_share_it(
+    tmp_path: Path, priorities: tuple[int, int]
+) -> None:
+    lab = eye(tmp_path)
+    first, second = (looking(lab, sink, of) for sink, of in zip(("Low", "High"), priorities, strict=True))
+    low, high = sorted((first, second), key=lambda one: one.identity.priority)
+    assert rank_inside(lab) == (3, high.identity.beginning)
+    (inside,) = lab.composites["home"].living.values()
+    assert inside.runner is not None
+    assert inside.runner.status().priority == 3
+    middle = looking(lab, "Middle", 1, "Lens")
+    assert (low.state.phase, high.state.phase) == (Phase.RUNNING, Phase.RUNNING)
+    assert middle.state.phase is Phase.REFUSED
+    assert lab.components["lens"].said == [("started",)]
+    high.stop()
+    lab.let_pass(3.0)
+    assert rank_inside(lab) == (0, low.identity.beginning)
+    assert lab.components["lens"].said == [("started",)]
+    middle = looking(lab, "Middle", 1, "Lens")
+    assert middle.state.phase is Phase.RUNNING
+    assert low.state.phase is Phase.REFUSED

@@ -34,6 +34,7 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
+    Ranked,
     Reconnected,
     Rewired,
     Stopped,
@@ -90,6 +91,7 @@ ONE_OF_EACH: list[Event] = [
     Improvable(),
     *(Rewired(component) for component in EVERYBODY),
     Reconnected(),
+    *(Ranked(priority) for priority in (-1, 0, 2)),
     Stopped(),
 ]
 
@@ -303,6 +305,7 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
             WaitedLong(component, state.epoch - how % 2),
             Improvable(),
             Rewired(component),
+            Ranked(when % 3 - 1),
             Adopted(when, navigation()),
             *([HandedOver()] if how == when else []),
         ]

@@ -30,6 +30,7 @@ from selfconf.configurator.events import (
     Failed,
     Freed,
     Improvable,
+    Ranked,
     Reconnected,
     Stopped,
 )
@@ -348,6 +349,34 @@ def test_a_component_that_appears_while_everything_is_taken_down_comes_to_rest_i
 
 
 # Other tasks.
+
+
+def test_a_task_of_another_rank_claims_what_runs_anew_and_nothing_stops() -> None:
+    history = History(replace(TASK, priority=0)).running()
+    epoch = history.state.epoch
+    effects = history.hear(Ranked(2))
+    assert kinds(effects) == [ApplyTo] * 3
+    assert set(applied(effects)) == {TRACKER, CONTROL, DRIVE}
+    assert (history.state.priority, history.state.epoch) == (2, epoch + 1)
+    assert kinds(history.all_answer()) == [Running]
+
+
+def test_a_task_of_another_rank_reserves_anew_what_does_not_act_yet() -> None:
+    history = History(replace(TASK, priority=0)).reserved()
+    assert history.state.pending == {(TRACKER, Call.APPLY)}
+    assert kinds(history.hear(Ranked(2))) == [WakeUp, WakeUp]
+    history.answer(CONTROL, Call.WAKE)
+    assert reserved(history.answer(DRIVE, Call.WAKE)) == [CONTROL]
+
+
+def test_what_tasks_of_a_lower_priority_hold_than_a_task_now_has_counts_for_the_search() -> None:
+    history = History(replace(TASK, priority=0)).running()
+    history.hear(Reconnected(), Discovered({ODOMETRY: OTHERS}))
+    history.composed(navigation())
+    history.all_answer()
+    history.hear(Ranked(OTHERS.priority + 1))
+    (search,) = [one for one in history.hear(Failed(TRACKER, "1", Cause.FAIL)) if isinstance(one, Compose)]
+    assert search.lost == frozenset({TRACKER})
 
 
 def test_what_tasks_of_the_same_or_a_higher_priority_hold_does_not_count_for_the_search() -> None:
