@@ -73,8 +73,14 @@ inside.
 class InsideOfComposite:
     """What does as the calls of a configurator say to a composite: it runs the inside as a task."""
 
-    def __init__(self, bus: Bus, ecology: str, profile: Profile, request_with: RequestWith) -> None:
-        """What the inside reports and who ranks it is said here, the rest by `request_with`."""
+    def __init__(
+        self, bus: Bus, ecology: str, profile: Profile, request_with: RequestWith, rested: Callable[[], None]
+    ) -> None:
+        """What the inside reports and who ranks it is said here, the rest by `request_with`.
+
+        `rested` is called when the composite acts no more, as it is at rest or has failed.
+        """
+        self._rested = rested
         self._bus, self._ecology, self.profile, self._request_with = bus, ecology, profile, request_with
         self._wires: Mapping[str, tuple[Wire, ...]] = {}
         """By which outputs each input of the composite is fed."""
@@ -136,6 +142,7 @@ class InsideOfComposite:
         except SelfconfError as error:
             self.runtime.fail(str(error))
             self._settle(False)
+            self._rested()
             return
         claim = message if self.runtime.activation.first is None else self.runtime.activation.first.claim
         request = replace(
@@ -228,9 +235,10 @@ class InsideOfComposite:
         if ending:
             self._settle(False)
             self.runtime.at_rest()
-            return
-        self.runtime.fail(f"its inside is refused: {why_none(refusal) if trouble is None else trouble}")
-        self._settle(False)
+        else:
+            self.runtime.fail(f"its inside is refused: {why_none(refusal) if trouble is None else trouble}")
+            self._settle(False)
+        self._rested()
 
     def _settle(self, runs: bool) -> None:
         self.settled = runs
@@ -262,6 +270,8 @@ class Composites:
         self._hierarchy, self._unable = hierarchy, unable
         self._complain, self._aside, self._believed = complain, aside, believed
         self._advertisements: Mapping[IRI, Advertisement] = {}
+        self._able: Set[IRI] = frozenset()
+        """Those whose inside can be configured from these advertisements."""
         self.living: dict[IRI, InsideOfComposite] = {}
         self._told: dict[IRI, str] = {}
 
@@ -282,21 +292,29 @@ class Composites:
         self.living.clear()
 
     def _become(self, known: Mapping[IRI, Advertisement], found: Mapping[IRI, Inside], why: Mapping[IRI, str]) -> None:
-        self._advertisements = known
+        self._advertisements, self._able = known, found.keys()
         for component in [*self.living]:
-            # One that acts finds out by itself what it lacks.
-            if component not in known or (component not in found and not self.living[component].runtime.active):
+            if component in known:
+                self._end_unable(component)
+            else:
                 self.living.pop(component).close()
         for component, inside in found.items():
             if component not in self.living:
                 profile, request_with = known[component].profile, partial(self._request, inside)
-                self.living[component] = InsideOfComposite(self._bus, self._ecology, profile, request_with)
+                rested = partial(self._end_unable, component)
+                self.living[component] = InsideOfComposite(self._bus, self._ecology, profile, request_with, rested)
         for component, sentence in why.items():
             if self._told.get(component) != sentence:
                 self._complain(f"the composite {component} does not live: {sentence}")
         if self._told != why:
             self._unable(why)
         self._told = dict(why)
+
+    def _end_unable(self, component: IRI) -> None:
+        """Let a composite live no more whose inside cannot be configured; one that acts finds out what it lacks."""
+        composite = self.living.get(component)
+        if composite is not None and component not in self._able and not composite.runtime.active:
+            self.living.pop(component).close()
 
     def _request(self, inside: Inside, values: Mapping[str, Term], fed: Callable[[], Set[str]]) -> RunRequest:
         component, composer = inside.composite, inside.composer_with(values)

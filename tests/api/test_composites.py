@@ -17,7 +17,7 @@ from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG, MemoryRun
 from tests.lab import PREFIXES as LAB_PREFIXES
-from tests.lab import Lab
+from tests.lab import Lab, iri
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix sh: <http://www.w3.org/ns/shacl#> .
@@ -660,3 +660,27 @@ def test_the_inside_of_a_composite_has_the_rank_of_the_first_of_those_that_share
     middle = looking(lab, "Middle", 1, "Lens")
     assert middle.state.phase is Phase.RUNNING
     assert low.state.phase is Phase.REFUSED
+
+
+@pytest.mark.parametrize("fails", [True, False])
+def test_a_composite_that_acts_no_more_lives_no_more_if_its_inside_cannot_be_configured(
+    tmp_path: Path, fails: bool
+) -> None:
+    lab = eye(tmp_path)
+    low, advertised = looking(lab, "Low", 0), tmp_path / "home" / "lens.ttl"
+    text = advertised.read_text()
+    advertised.unlink()
+    lab.let_pass(3.0)
+    assert lab.complaints[-1].endswith("no component is eligible for the role lens")
+    assert (low.state.phase, list(lab.composites["home"].living)) == (Phase.RUNNING, [iri("eye")])
+    if fails:
+        lab.crash("lens")
+    else:
+        low.stop()
+    lab.let_pass(3.0)
+    assert low.state.phase is (Phase.REFUSED if fails else Phase.STOPPED)
+    assert not lab.composites["home"].living
+    advertised.write_text(text)
+    lab.component("lens")
+    lab.let_pass(3.0)
+    assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
