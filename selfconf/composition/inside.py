@@ -18,10 +18,12 @@ from selfconf.model.immutable import immutable
 from selfconf.model.profile import Input, Output, Profile, port_in_words
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
+from selfconf.model.wording import MANY
 from selfconf.rdf import tasks
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.tasks import TaskDocument
 from selfconf.rdf.turtle import Document
+from selfconf.render import holder_text
 
 DocumentOf = Callable[[Advertisement], Document]
 """Reads the document in which a composite is advertised; raises SelfconfError."""
@@ -223,7 +225,9 @@ def _check_parameters(later: frozenset[str], inside: TaskDocument) -> None:
 
 
 def why_none(refusal: Refusal | Undecided | None) -> str:
-    """Why there is no configuration, in a sentence."""
+    """Why there is no configuration, in a sentence, and which tasks hold what is lacking."""
     if isinstance(refusal, Refusal) and refusal.reasons:
-        return str(refusal.reasons[0])
+        held = [f"; {component.short}: {holder_text(holder)}" for component, holder in refusal.held[:MANY]]
+        more = f"; and {len(refusal.held) - MANY} more are held" if len(refusal.held) > MANY else ""
+        return "".join((str(refusal.reasons[0]), *held, more))
     return str(refusal) if isinstance(refusal, Undecided) else "it was taken down"

@@ -662,6 +662,15 @@ def test_the_inside_of_a_composite_has_the_rank_of_the_first_of_those_that_share
     assert low.state.phase is Phase.REFUSED
 
 
+def test_a_task_that_is_refused_as_another_holds_what_is_inside_says_which_one(tmp_path: Path) -> None:
+    lab = eye(tmp_path)
+    looking(lab, "Middle", 1, "Lens")
+    low = looking(lab, "Low", 0)
+    assert low.state.phase is Phase.REFUSED
+    (lost,) = low.losses.values()
+    assert "; lens-1: the task look (priority 1, configurator " in lost
+
+
 @pytest.mark.parametrize("fails", [True, False])
 def test_a_composite_that_acts_no_more_lives_no_more_if_its_inside_cannot_be_configured(
     tmp_path: Path, fails: bool

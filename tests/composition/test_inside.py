@@ -8,10 +8,13 @@ import pytest
 
 from selfconf.composition import Inside, configurable, insides, why_none
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
-from selfconf.model.refusal import Undecided
+from selfconf.model.holder import Holder
+from selfconf.model.refusal import Refusal, TooFewEligible, Undecided
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.wording import MANY
 from selfconf.rdf.advertisements import Advertisement, read_advertisements
 from selfconf.rdf.turtle import Document, parse
+from selfconf.render import holder_text
 from tests.lab import PREFIXES, iri
 
 COMPOSITE = """
@@ -149,9 +152,24 @@ def test_an_optional_input_that_nobody_feeds_is_fed_to_nobody_inside(
         assert inside.components == (iri(player),)
 
 
+LACKING = Refusal(iri("localise"), (TooFewEligible(iri("tracker"), 1, 0),))
+
+
 def test_why_there_is_no_configuration_is_said_in_words() -> None:
     assert why_none(None) == "it was taken down"
     assert why_none(Undecided(steps=7)) == str(Undecided(steps=7))
+    assert why_none(LACKING) == "no component is eligible for the role tracker"
+
+
+def test_of_what_is_lacking_it_is_said_which_task_holds_it_and_since_when() -> None:
+    holder = Holder("patrol~1", 2, 0.0, "c1")
+    said = why_none(replace(LACKING, held=((iri("camera"), holder), (iri("t1"), holder))))
+    assert said == (
+        f"no component is eligible for the role tracker; camera: {holder_text(holder)}; t1: {holder_text(holder)}"
+    )
+    assert "the task patrol (priority 2, configurator c1) holds it since " in said
+    many = why_none(replace(LACKING, held=((iri("camera"), holder),) * (MANY + 2)))
+    assert many.endswith("; and 2 more are held")
 
 
 NESTED = """
