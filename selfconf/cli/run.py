@@ -272,7 +272,7 @@ def _explain(running: Run, task: TaskSpecification, told: Collection[IRI]) -> No
             "run again when it is free, or run with --wait, which goes on then; `selfconf status` shows who has it"
         )
     if any(not loss.busy for loss in losses):
-        complain("start it again and run again, or run with --wait, which goes on when it is back")
+        complain("run again when what is lost can act (start it if it ended), or run with --wait, which goes on then")
 
 
 class LinePrinter:
