@@ -211,11 +211,10 @@ class LivingTasks:
         that answer. One that does not answer, suspended perhaps, is an error also where what it held has come to rest:
         it may go on.
         """
-        found = [s for s in self.running(by_components=True) if name in (None, s.configurator, s.name)]
-        kept = self.kept(name)
+        found, kept = self.running(by_components=True), self.kept(name)
         holding = [one for one in self._holding if one.is_named(name)]
         suspended = [one for one in self.suspended if name in (None, one.name)]
-        running = found if name is None else _meant(name, found, bool(kept or holding or suspended))
+        running = _meant(name, found, [*kept, *holding, *suspended])
         unanswered = {record.task for record in kept}.difference(status.task for status in running)
         silent = self._silent_beside_holders(None if unanswered else name)
         if name is not None and not kept:
@@ -333,10 +332,11 @@ def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
     return found, rejected
 
 
-def _meant(name: str, found: Sequence[Status], others: bool) -> list[Status]:
-    """Of the tasks that were found by a name, those that it means: insides of composites where no `others` have it."""
-    own = [one for one in found if one.outside is None or one.configurator == name]
-    return own if own or others else [*found]
+def _meant(name: str | None, running: Sequence[Status], others: Sequence[object]) -> list[Status]:
+    """The tasks that a name means, or all: insides of composites only where neither tasks nor `others` have it."""
+    found = [one for one in running if name in (None, one.configurator, one.name)]
+    own = [one for one in found if one.outside is None or name in (None, one.configurator)]
+    return found if not own and not others else own
 
 
 def _records(replies: Replies) -> list[TaskRecord]:
