@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import gc
 import json
+from collections.abc import Iterable
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
@@ -23,8 +24,10 @@ from selfconf.cli.terminal import complain, display
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer, Inquiry
+    from selfconf.api.ecology import Ecology
     from selfconf.model.configuration import Configuration
     from selfconf.model.refusal import Refusal, Undecided
+    from selfconf.model.term import IRI
 
 EXAMPLE = """  selfconf configure examples/navigate.ttl --ads examples/peis-home \\
       --bind robot=:Astrid --bind goal='(AT BEDROOM)'"""
@@ -58,7 +61,10 @@ def run(given: argparse.Namespace) -> int:
         complain_of_left_out(inquiry.left_out)
         if given.ads is None:  # what does not conform among files was named when they were read
             complain_of(ecology)
+        absent = _absent(ecology, inquiry.ecology) if given.ads is None and given.endpoint is None else frozenset()
     answer = inquiry.answer(given.what_if)
+    if isinstance(answer, Answer):
+        _tell_absent(answer, absent)
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
         complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")
     if given.format == "json":
@@ -70,6 +76,21 @@ def run(given: argparse.Namespace) -> int:
         if isinstance(answer, Answer) and given.format == "text" and given.ads is not None:
             _tell_insides(inquiry, answer)
     return 0 if answer else 2 if isinstance(answer, Undecided) else 1
+
+
+def _absent(ecology: Ecology, components: Iterable[IRI]) -> frozenset[IRI]:
+    """Those of some components of the living ecology that no process runs, and that no site can start."""
+    from selfconf.api.living import LivingEcology
+
+    if not isinstance(ecology, LivingEcology):
+        return frozenset()
+    return frozenset(one for one in components if ecology.state(one) == "absent")
+
+
+def _tell_absent(answer: Answer, absent: frozenset[IRI]) -> None:
+    """Tell which components of a configuration would have to be started first by other means than `run`."""
+    for component in sorted(absent.intersection(answer.components)):
+        complain(f"{answer.names(component)} is absent: `run` does without it, unless it is started before that")
 
 
 def _tell_insides(inquiry: Inquiry, answer: Answer) -> None:

@@ -9,8 +9,9 @@ import pytest
 
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
-from tests.cli.command import each
+from tests.cli.command import each, run
 from tests.cli.desk import BOUND, Desk, players
+from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 # The paper's experiment on files.
@@ -210,3 +211,22 @@ def test_an_answer_that_is_not_certified_is_never_printed(desk: Desk, monkeypatc
     monkeypatch.setattr("selfconf.search.problem.Problem.compatible", lambda *_: True)
     for form in ("text", "json", "turtle"):
         assert desk.configure(*BOUND, "--format", form).is_one_sentence("the search has made a mistake", "missing")
+
+
+# The living ecology.
+
+
+@pytest.mark.process
+def test_what_is_chosen_and_absent_is_named_as_a_run_would_do_without_it(
+    home: Home, capsys: pytest.CaptureFixture[str]
+) -> None:
+    home.site("peis-home", "ads")
+    home.components("sonar", "encoder", "odometry", "control", "drive")
+    template, where = str(home.folder / "navigate.ttl"), home.arguments()
+    said = run(capsys, "configure", template, *BOUND, *where)
+    assert said.code == 0
+    assert [line for line in said.err.splitlines() if "is absent" in line] == [
+        ":person-tracker is absent: `run` does without it, unless it is started before that"
+    ]
+    home.components("tracker")
+    assert run(capsys, "configure", template, *BOUND, *where).err == ""
