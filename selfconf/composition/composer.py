@@ -29,7 +29,7 @@ from selfconf.rdf.tasks import TaskDocument
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import recruits_that_matter
-from selfconf.search.relaxations import NEAR, with_relaxations
+from selfconf.search.relaxations import with_relaxations
 from selfconf.search.strategies import possible
 from selfconf.search.what_if import consequences
 
@@ -216,10 +216,9 @@ class Composer:
         outside = [
             miss for miss in refusal.near_misses if not miss.recruit and (miss.role, miss.component) not in eligible
         ]
-        near = [
-            (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables)))
-            for miss in outside[:NEAR]
-        ]
+        near = (
+            (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables))) for miss in outside
+        )
         return with_relaxations(problem, refusal, near, self.steps)
 
     def not_judged(self) -> Mapping[IRI, NotJudged]:

@@ -275,7 +275,7 @@ class Refusal:
     smallest: bool = True
     """Whether each reason was proved to have the fewest requirements that cannot hold together."""
     repairs_stopped: bool = False
-    """Whether the steps or the time for repairs were used up before all was tried: then there may be others."""
+    """Whether the steps, time or trials for repairs were used up before all was tried: there may be others then."""
     left_out: tuple[LeftOut, ...] = field(default=(), kw_only=True, repr=False, compare=False)
     """The components that count for nothing, as what they say cannot be judged, or not in time."""
 

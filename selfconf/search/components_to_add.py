@@ -4,7 +4,8 @@ A component without inputs that issues every signal that the roles fed by it cou
 be added for a role; an output that an interaction names has one signal, so that there may be a choice of these.
 Wherever there is no solution, an irreducible set of constraints cannot hold; only a component for one of its roles, or
 for a role that may feed one of its inputs, changes that. So breadth-first search over sets of such additions, each
-extended by these roles alone, finds the fewest; then outputs are taken away again one by one, as long as there is a
+extended by these roles alone, finds the fewest, beginning with as many for each role as it has too few candidates that
+could be fed at all; then outputs are taken away again one by one, as long as there is a
 solution without them. Where there are players, but none that have recruits, one more component for any role may help.
 """
 
@@ -44,10 +45,10 @@ def components_to_add(problem: Problem, effort: RelaxationEffort, works: Works) 
     if lacking is None:
         return None
     recruiting = any(role.recruits for role in problem.roles)
-    choices = _choices(problem)
-    waiting = _lacked(lacking, choices)
+    choices = _choices(problem, effort)
+    waiting = _lacked(lacking, choices, effort)
     seen = {frozenset[object](added.items()) for added in waiting}
-    for added in itertools.islice(waiting, TRIALS):  # which grows meanwhile
+    for added in effort.first_of(waiting, TRIALS):  # which grows meanwhile
         if effort.used_up():
             return None
         asked = _asked(problem, added)
@@ -63,10 +64,13 @@ def components_to_add(problem: Problem, effort: RelaxationEffort, works: Works) 
     return None
 
 
-def _choices(problem: Problem) -> list[list[tuple[Output, ...]]]:
+def _choices(problem: Problem, effort: RelaxationEffort) -> list[list[tuple[Output, ...]]]:
     """Return for each role the choices of outputs for a component to be added; none where none could be eligible."""
     closed = impossible(problem)
-    return [[] if role in closed else wanted_of(problem, role) for role in range(len(problem.roles))]
+    return [
+        [] if role in closed else list(effort.first_of(wanted_of(problem, role), CHOICES))
+        for role in range(len(problem.roles))
+    ]
 
 
 def _with_one_more(
@@ -80,23 +84,36 @@ def _with_one_more(
             yield further
 
 
-def _lacked(lacking: Counter[int], choices: Sequence[Sequence[tuple[Output, ...]]]) -> list[Added]:
+def _lacked(
+    lacking: Counter[int], choices: Sequence[Sequence[tuple[Output, ...]]], effort: RelaxationEffort
+) -> list[Added]:
     """Return additions for what each role lacks by itself; all that are for one role issue the same."""
     ways = itertools.product(*([(role, outputs) for outputs in choices[role]] for role in lacking))
-    return [Counter({one: lacking[one[0]] for one in chosen}) for chosen in itertools.islice(ways, TRIALS)]
+    return [Counter({one: lacking[one[0]] for one in chosen}) for chosen in effort.first_of(ways, TRIALS)]
 
 
 def _lacking(problem: Problem) -> Counter[int] | None:
-    """Return how many candidates each role lacks by itself, if adding as many could be advice at all."""
-    if any(role.maximum is not None and role.maximum < role.minimum for role in problem.roles):
+    """Return how many candidates each role lacks by itself, if adding as many could be advice at all.
+
+    A candidate with an input that could not be fed, whatever plays the other roles, counts for none.
+    """
+    if problem.valueless or any(role.maximum is not None and role.maximum < role.minimum for role in problem.roles):
         return None
-    pairs = zip(problem.roles, problem.candidates, strict=True)
-    lacking = Counter({number: max(0, role.minimum - len(some)) for number, (role, some) in enumerate(pairs)})
+    lacking: Counter[int] = Counter()
+    for number, (role, some) in enumerate(zip(problem.roles, problem.candidates, strict=True)):
+        lacking[number] = max(0, role.minimum - sum(_may_be_fed(problem, number, one) for one in some))
     return +lacking if sum(lacking.values()) <= MOST_ADDED else None
 
 
-def wanted_of(problem: Problem, role: int) -> list[tuple[Output, ...]]:
-    """Return the choices of outputs for a component that could feed all that a role may have to feed.
+def _may_be_fed(problem: Problem, role: int, candidate: Candidate) -> bool:
+    """Return whether some interaction, or a recruit, could feed each required input of a candidate of a role."""
+    return problem.roles[role].recruits or all(
+        any(_asks(link, port) for link in problem.links[role]) for port in candidate.profile.required
+    )
+
+
+def wanted_of(problem: Problem, role: int) -> Iterator[tuple[Output, ...]]:
+    """Yield the choices of outputs for a component that could feed all that a role may have to feed.
 
     It issues each signal that the roles fed by it could need; but where an interaction names the output, that output
     has one signal only, so that there is a choice for each.
@@ -121,7 +138,7 @@ def wanted_of(problem: Problem, role: int) -> list[tuple[Output, ...]]:
         names.add(name)
         others.append(one.output(name))
     ways = itertools.product(*([one.output(name) for one in wanted] for name, wanted in by_name.items() if wanted))
-    return [(*others, *chosen) for chosen in itertools.islice(ways, CHOICES)]
+    yield from ((*others, *chosen) for chosen in ways)
 
 
 def _asks(link: Link, port: Input) -> bool:

@@ -6,6 +6,9 @@ fewer relaxations than there are, and says so, never with one that does not work
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from typing import TypeVar
+
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
@@ -31,6 +34,8 @@ RECRUIT_TRIAL_STEPS = 5_000
 HELPFUL_STEPS = 10_000
 """Steps to find out whose help a conflict needs."""
 
+Trial = TypeVar("Trial")
+
 
 class RelaxationEffort:
     """What may still be spent on all that is tried for a refusal."""
@@ -41,7 +46,15 @@ class RelaxationEffort:
         self.readings = Budget(READINGS)
         """The needs and supports that may be read to find out whose help a conflict needs."""
         self.stopped = False
-        """Whether something was not tried, or not to its end, because too little was left."""
+        """Whether something was not tried, or not to its end: too little was left, or enough had been tried."""
+
+    def first_of(self, some: Iterable[Trial], most: int) -> Iterator[Trial]:
+        """Yield at most so many of what could be tried; that there is more is noted."""
+        for number, one in enumerate(some):
+            if number == most:
+                self.stopped = True
+                return
+            yield one
 
     def used_up(self) -> bool:
         """Return whether nothing is left; that something is not tried for this is noted."""

@@ -14,7 +14,7 @@ What may be spent on all this is limited (`RelaxationEffort`).
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 
 from selfconf.model.configuration import Configuration
@@ -46,7 +46,7 @@ NEAR = 8
 MOST_ROLES = 8
 """How many roles of a conflict are tried with a smaller count; where more clash, that is no advice."""
 
-NearMisses = Sequence[tuple[NearMiss, Candidate]]
+NearMisses = Iterable[tuple[NearMiss, Candidate]]
 """Near misses, each with the candidate that it would be."""
 
 
@@ -100,7 +100,7 @@ def _possible_relaxations(
     problem: Problem, refused: Refusal, near_misses: NearMisses, effort: RelaxationEffort
 ) -> Iterator[Relaxation]:
     """Yield changes that make a refused problem possible if all recruits were there at once."""
-    near_misses = near_misses[:NEAR]
+    near_misses = list(effort.first_of(near_misses, NEAR))
     matter = recruits_that_matter(problem) if problem.supply.recruits else ()
     recruitable = {problem.supply.recruits[number].component for number in matter}
     small = _reduced(problem, recruitable.union(miss.component for miss, _ in near_misses))
@@ -116,7 +116,8 @@ def _possible_relaxations(
     recruits = recruits_to_add(small, lambda one: possible(one) and works(one))
     added = components_to_add(small, effort, works)
     yield from (one for one in (recruits, added) if one is not None)
-    yield from filter(possible, _interactions(small, refused))
+    interactions = effort.first_of(_interactions(small, refused), TRIALS)
+    yield from filter(possible, interactions)
     yield from _fewer(small, refused, effort)
 
 
@@ -148,7 +149,7 @@ def _interactions(problem: Problem, refused: Refusal) -> Iterator[AddInteraction
         plain = {link.source for link in problem.links[index[need.role]] if link.output is None and link.input is None}
         for number, role in enumerate(problem.roles):
             pair = role.iri, need.role
-            if number in plain or pair in tried or len(tried) == TRIALS:
+            if number in plain or pair in tried:
                 continue
             if issued[number].serves(need.wanted):
                 tried.add(pair)
@@ -159,11 +160,11 @@ def _fewer(problem: Problem, refused: Refusal, effort: RelaxationEffort) -> Iter
     """Yield for each role of the conflict the largest number of components that it can ask for."""
     named = [r.role for reason in refused.reasons for r in reason.requirements if isinstance(r, RolePlayed)]
     recruits = any(role.recruits for role in problem.roles)  # of fewer players there may be none that have recruits
-    for iri in list(dict.fromkeys(named))[:MOST_ROLES]:
+    for iri in effort.first_of(dict.fromkeys(named), MOST_ROLES):
         role: Role = problem.task.template.role(iri)
         # No role can ask for more than its candidates: the trials begin there, and not at a million.
         enough = min(role.minimum, 1 + len(problem.candidates[problem.roles.index(role)]))
-        for minimum in reversed(range(max(0, enough - TRIALS), enough)):
+        for minimum in effort.first_of(reversed(range(enough)), TRIALS):
             fewer = AskForFewer(iri, minimum)
             changed = relaxed_by(problem, fewer)
             if effort.possible(changed) and (not recruits or possible_with_recruits(changed, RECRUIT_TRIAL_STEPS)):

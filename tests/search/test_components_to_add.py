@@ -67,12 +67,25 @@ def test_what_has_to_leave_by_an_output_says_so() -> None:
 
 def test_no_operation_is_asked_to_feed_an_input_and_no_output_to_answer_a_call() -> None:
     given_ = problem({"a": [], "b": [component("b1", "x:X")]}, "a.ask()>b")
-    assert wanted_of(given_, 0) == [()]
+    assert list(wanted_of(given_, 0)) == [()]
 
 
 def test_signals_of_one_name_leave_by_outputs_of_different_names() -> None:
     given_ = problem({"a": [], "b": [component("b1", "x:one/X y:two/X")]}, "a>b")
     assert [[o.name for o in outputs] for outputs in wanted_of(given_, 0)] == [["X", "X2"]]
+
+
+def test_candidates_that_could_not_be_fed_count_for_none() -> None:
+    deaf, other = component("deaf", "x:X"), component("other", "y:Y z:Z")
+    given_ = problem(
+        {"a": [deaf, other], "b": [deaf, other], "c": [deaf, other]}, "c.out>b", {"a": (2, 2), "c": (3, 3)}
+    )
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    added = next(one for one in with_relaxations(given_, refused).repairs if isinstance(one, AddComponents))
+    assert str(added) == (
+        "add 2 more components for the role a and 3 more components for the role c that issue X by the output 'out'"
+    )
 
 
 def test_an_addition_names_the_value_that_the_others_leave() -> None:
