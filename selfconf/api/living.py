@@ -482,8 +482,9 @@ class LivingEcology(Ecology):
         """Take down a task, given by its name or that of its configurator, or all of them.
 
         The inside of a composite, which has the name of the composite, is meant only where no other task has that name.
-        Returns the names of the tasks. Raises NetworkError if there is none of that name, if one does not answer or
-        does not end in time, or if a component does not obey; of all tasks those are taken down first that answer.
+        Returns the names of the tasks. Raises NetworkError if there is none of that name, if several insides alone have
+        it, if one does not answer or does not end in time, or if a component does not obey; of all tasks those are
+        taken down first that answer.
         """
         check_may_run(self._credentials)
         if name is not None:

@@ -13,6 +13,7 @@ from selfconf.discovery import namesakes
 from selfconf.errors import NetworkError, PeerError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
+from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
@@ -206,10 +207,10 @@ class LivingTasks:
         """Take down a task, given by its name or that of its configurator, or all of them; returns their names.
 
         The inside of a composite, which has the name of the composite, is meant only where no other task has that name;
-        then the composite fails. Raises NetworkError if there is none of that name, or if one does not answer or does
-        not end in time, or if a component was turned off and does not obey; of all tasks those are taken down first
-        that answer. One that does not answer, suspended perhaps, is an error also where what it held has come to rest:
-        it may go on.
+        then the composite fails. Raises NetworkError if there is none of that name, or if several insides alone have
+        it, or if one does not answer or does not end in time, or if a component was turned off and does not obey; of
+        all tasks those are taken down first that answer. One that does not answer, suspended perhaps, is an error also
+        where what it held has come to rest: it may go on.
         """
         found, kept = self.running(by_components=True), self.kept(name)
         holding = [one for one in self._holding if one.is_named(name)]
@@ -333,10 +334,18 @@ def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
 
 
 def _meant(name: str | None, running: Sequence[Status], others: Sequence[object]) -> list[Status]:
-    """The tasks that a name means, or all: insides of composites only where neither tasks nor `others` have it."""
+    """The tasks that a name means, or all: an inside of a composite only where neither tasks nor `others` have it.
+
+    Raises NetworkError for a name that several insides have.
+    """
     found = [one for one in running if name in (None, one.configurator, one.name)]
     own = [one for one in found if one.outside is None or name in (None, one.configurator)]
-    return found if not own and not others else own
+    if own or others:
+        return own
+    if len(found) > 1:
+        named = listed(sorted(one.configurator for one in found))
+        raise NetworkError(f"several composites are called {name!r}; name the configurator of one inside: {named}")
+    return found
 
 
 def _records(replies: Replies) -> list[TaskRecord]:

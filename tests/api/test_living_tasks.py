@@ -162,6 +162,15 @@ def test_a_name_means_the_inside_of_a_composite_only_where_no_other_task_has_it(
     assert tasks.asked.running() == ()
 
 
+def test_of_several_insides_of_one_name_none_is_ended_by_it(tasks: Tasks) -> None:
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    tasks.configurator("c3", "patrol~3", outside=IRI("urn:d#patrol"))
+    with pytest.raises(NetworkError, match="'patrol'; name the configurator of one inside: c2 and c3"):
+        tasks.asked.stop("patrol")
+    assert tasks.asked.stop("c3") == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+
+
 def test_an_inside_goes_on_where_the_sites_keep_a_task_of_its_name_and_ends_by_its_configurator(tasks: Tasks) -> None:
     tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
     tasks.site(PATROL)
