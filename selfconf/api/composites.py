@@ -5,7 +5,8 @@ its own. Its inside is configured from the components of its site alone, itself 
 each site answers for its own. A composite lives while its inside can be configured. When it is activated its inside
 becomes a task with the rank of the one that holds it, of several the first, and it acts once that task runs; what fails
 inside is repaired inside, and only a refusal is a FAIL of the composite, with the reason. When it is released its
-inside comes to rest.
+inside comes to rest. A composite that has failed begins a new life once its inside can be configured, from what other
+tasks do not hold and what is not lost: so tasks that have lost it hear that it may be had again.
 
 Its operational parameters are parameters of the template, known by their names: the values that they are set to are
 bound when the composite is activated. Other values than before have the inside begin anew. Where an optional input of
@@ -29,6 +30,7 @@ from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
 from functools import partial
 
+from selfconf.api.inside_prospect import InsideProspect
 from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.composition import DocumentOf, Inside, configurable, why_none
 from selfconf.deployment import Aside, Outside, RunRequest, TaskRunner, at_once
@@ -52,6 +54,10 @@ STARTING_INSIDE = 25.0
 """Seconds that the inside of a composite may take to run: each site may take 15 to start what is dormant."""
 REPLACING = 0.5
 """Seconds after which those outside hear that nothing stands behind an output: most repairs take less."""
+LOOK_AT_REFUSED = 10.0
+"""After how many seconds it is looked again whether an inside that was refused can be configured."""
+NEXT_LIFE = 0.5
+"""Seconds between two lives of a composite: one that still sees the last would leave, as another process has it."""
 
 
 class _CompositeCode(Component):
@@ -102,6 +108,8 @@ class InsideOfComposite:
         """The components inside that issue outputs of the composite, with these outputs."""
         self._undo_silence: Undo = lambda: None
         """Undoes the plan to tell that nothing stands behind some outputs."""
+        self.prospect: InsideProspect | None = None
+        """What may come of the last inside that was refused."""
         self._silent: frozenset[str] = frozenset()
         """The outputs behind which nothing stands since a component inside was lost, or came to rest."""
         self.settled = False
@@ -225,6 +233,8 @@ class InsideOfComposite:
 
     def _ended(self, refusal: Refusal | Undecided | None) -> None:
         trouble = None if self.runner is None else self.runner.trouble
+        if refusal is not None and self.runner is not None:
+            self.prospect = InsideProspect(self._bus, self._ecology, self.runner.request, self.runner.state)
         self.runner, self.issued, self.callers, self._standing = None, {}, {}, {}
         self._forget_silence()
         ending, self.ending = self.ending, False
@@ -270,10 +280,12 @@ class Composites:
         self._hierarchy, self._unable = hierarchy, unable
         self._complain, self._aside, self._believed = complain, aside, believed
         self._advertisements: Mapping[IRI, Advertisement] = {}
-        self._able: Set[IRI] = frozenset()
+        self._able: Mapping[IRI, Inside] = {}
         """Those whose inside can be configured from these advertisements."""
         self.living: dict[IRI, InsideOfComposite] = {}
         self._told: dict[IRI, str] = {}
+        self._looking: dict[IRI, Undo] = {}
+        """What undoes the next look at those whose inside was refused."""
 
     def refresh(self, advertisements: Mapping[IRI, Advertisement]) -> None:
         """Let those live whose inside can be configured from these advertisements, and no others."""
@@ -287,22 +299,23 @@ class Composites:
 
     def close(self) -> None:
         """Let none live."""
+        self._able = {}
         for composite in self.living.values():
             composite.close()
         self.living.clear()
 
     def _become(self, known: Mapping[IRI, Advertisement], found: Mapping[IRI, Inside], why: Mapping[IRI, str]) -> None:
-        self._advertisements, self._able = known, found.keys()
+        self._advertisements, self._able = known, found
         for component in [*self.living]:
             if component in known:
                 self._end_unable(component)
             else:
                 self.living.pop(component).close()
-        for component, inside in found.items():
-            if component not in self.living:
-                profile, request_with = known[component].profile, partial(self._request, inside)
-                rested = partial(self._end_unable, component)
-                self.living[component] = InsideOfComposite(self._bus, self._ecology, profile, request_with, rested)
+        for component in found:
+            if component in self.living:
+                self._look_again(component)
+            else:
+                self._let_live(component)
         for component, sentence in why.items():
             if self._told.get(component) != sentence:
                 self._complain(f"the composite {component} does not live: {sentence}")
@@ -315,6 +328,42 @@ class Composites:
         composite = self.living.get(component)
         if composite is not None and component not in self._able and not composite.runtime.active:
             self.living.pop(component).close()
+
+    def _let_live(self, component: IRI) -> None:
+        """Let a composite live, unless it does, or its inside cannot be configured by now."""
+        if component in self._able and component not in self.living:
+            profile = self._advertisements[component].profile
+            request_with, rested = partial(self._request, self._able[component]), partial(self._acts_no_more, component)
+            self.living[component] = InsideOfComposite(self._bus, self._ecology, profile, request_with, rested)
+
+    def _acts_no_more(self, component: IRI) -> None:
+        self._end_unable(component)
+        self._look_later(component)
+
+    def _look_later(self, component: IRI) -> None:
+        self._looking.pop(component, lambda: None)()
+        composite = self.living.get(component)
+        if composite is not None and composite.prospect is not None:
+            self._looking[component] = self._bus.later(LOOK_AT_REFUSED, partial(self._look_again, component))
+
+    def _look_again(self, component: IRI) -> None:
+        """Let a composite begin a new life if its inside was refused and can be configured, as tasks count it as lost.
+
+        One that a task holds by now begins it later: the tasks that have lost it do not hear what becomes of that.
+        """
+        self._look_later(component)
+        composite = self.living.get(component)
+        if composite is None or composite.prospect is None or composite.runner is not None:
+            return
+        usable = {one: a for one, a in self._advertisements.items() if a.profile.inside is None or one in self._able}
+
+        def able() -> None:
+            held = composite.runner is not None or composite.runtime.activation.holds
+            if not held and self.living.get(component) is composite:
+                self.living.pop(component).close()
+                self._bus.later(NEXT_LIFE, partial(self._let_live, component))
+
+        composite.prospect.look(usable, able)
 
     def _request(self, inside: Inside, values: Mapping[str, Term], fed: Callable[[], Set[str]]) -> RunRequest:
         component, composer = inside.composite, inside.composer_with(values)

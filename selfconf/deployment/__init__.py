@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from selfconf.deployment.holders import holders_in
+    from selfconf.deployment.holders import ask_holders, holders_in
     from selfconf.deployment.keeper import Keeper
     from selfconf.deployment.run_request import Aside, Outside, RunRequest, TaskIdentity, at_once
     from selfconf.deployment.runner import TaskRunner
@@ -25,6 +25,7 @@ __all__ = [
     "TaskFolder",
     "TaskIdentity",
     "TaskRunner",
+    "ask_holders",
     "at_once",
     "holders_in",
 ]
@@ -37,6 +38,7 @@ _HOME = {
     "TaskFolder": "task_folder",
     "TaskIdentity": "run_request",
     "TaskRunner": "runner",
+    "ask_holders": "holders",
     "at_once": "run_request",
     "holders_in": "holders",
 }

@@ -17,7 +17,7 @@ from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG, MemoryRun
 from tests.lab import PREFIXES as LAB_PREFIXES
-from tests.lab import Lab, iri
+from tests.lab import Lab, iri, write_advertisements
 
 PREFIXES = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix sh: <http://www.w3.org/ns/shacl#> .
@@ -603,6 +603,8 @@ EYE = {
         :lens a sc:Role ; sh:class :Lens .""",
     "lens": """:lens-1 a sc:Component, :Lens ; sc:shareable false ;
         sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ] .""",
+    "plain": """:plain a sc:Component, :Plain ; sc:preference -1 ;
+        sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ] .""",
 } | {
     name: f""":{name} a sc:Component, :{name.title()} ;
         sc:hasInput [ sc:name "seen" ; sc:signalType rob:Text ] ."""
@@ -693,3 +695,38 @@ def test_a_composite_that_acts_no_more_lives_no_more_if_its_inside_cannot_be_con
     lab.component("lens")
     lab.let_pass(3.0)
     assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
+
+
+@pytest.mark.parametrize("how", ["free", "new life", "another"])
+def test_a_task_that_upgrades_returns_to_a_composite_once_its_inside_can_act_again(tmp_path: Path, how: str) -> None:
+    lab = eye(tmp_path)
+    task = LOOK.replace("SINK", "Low").replace("sh:class :Eye", "sh:or ( [ sh:class :Eye ] [ sh:class :Plain ] )")
+    low = lab.agent(task, (), upgrade=1.0)
+    assert lab.running(low)
+    middle = None
+    if how == "free":
+        middle = looking(lab, "Middle", 1, "Lens")
+    else:
+        lab.runtimes["lens"].fail("it is dirty")
+    lab.let_pass(60.0)
+    assert (low.state.phase, played(low)) == (Phase.RUNNING, {iri("plain"), iri("low")})
+    fails = [event for event in lab.acts("lost") if event.component == iri("eye")]
+    assert len(fails) == 1
+    if middle is not None:
+        middle.stop()
+    elif how == "new life":
+        lab.crash("lens")
+        lab.component("lens")
+    else:
+        lens = EYE["lens"].replace("lens-1", "lens-2")
+        write_advertisements(tmp_path / "home", "other", advertisements={"other": lens})
+        lab.advertised = {**EYE, "other": lens}
+        lab.component("other")
+    lab.let_pass(20.0)
+    assert (low.state.phase, played(low)) == (Phase.RUNNING, {iri("eye"), iri("low")})
+    assert [event for event in lab.acts("lost") if event.component == iri("eye")] == fails
+
+
+def played(agent: TaskRunner) -> set[IRI]:
+    """The components of what a task has deployed."""
+    return set() if agent.configuration is None else set(agent.configuration.components)

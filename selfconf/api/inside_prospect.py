@@ -1,0 +1,96 @@
+"""Whether the inside of a composite that was refused can be configured again.
+
+A task that has ended hears nothing: that what other tasks held is free, or that what was lost lives a new life. So
+that is asked, and searched for again only where it is other than before, among what the site advertises by then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from selfconf.bus.port import Bus
+from selfconf.configurator import State
+from selfconf.deployment import RunRequest, ask_holders
+from selfconf.errors import SelfconfError
+from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys, life_of
+from selfconf.rdf.advertisements import Advertisement
+
+SPENT_CALL = 1.0
+"""Seconds for which the lives of a component that was lost are asked."""
+
+
+class InsideProspect:
+    """What may come of an inside that was refused."""
+
+    def __init__(self, bus: Bus, ecology: str, request: RunRequest, state: State) -> None:
+        """`request` and `state` are those of the task that was refused."""
+        self._bus, self._keys, self._request, self._priority = bus, Keys(ecology), request, state.priority
+        self._spent = {one: frozenset((loss.life,)) for one, loss in state.lost.items() if not loss.busy}
+        """The lives of each component that was lost in which it cannot act; without a name, those that it lives now."""
+        self._searched: object = None
+        """Among what, and without what, a search has found nothing."""
+
+    def look(self, known: Mapping[IRI, Advertisement], able: Callable[[], None]) -> None:
+        """Call `able` if the inside can be configured from what is advertised, in the rank that it had."""
+        lives: dict[IRI, frozenset[str]] = {}
+
+        def called(component: IRI, keys: tuple[str, ...]) -> None:
+            lives[component] = frozenset(map(life_of, keys))
+            if len(lives) == len(self._spent):
+                ask()
+
+        def ask() -> None:
+            ask_holders(self._bus, self._keys, "", partial(self._search, known, self._lost(lives), able))
+
+        for component in self._spent:
+            self._bus.roll_call(self._keys.lives(component), SPENT_CALL, partial(called, component))
+        if not self._spent:
+            ask()
+
+    def _lost(self, lives: Mapping[IRI, frozenset[str]]) -> frozenset[IRI]:
+        """The components that were lost and live no life yet in which they may be able to act."""
+        for component, spent in self._spent.items():
+            if "" in spent:
+                self._spent[component] = lives[component]
+        return frozenset(component for component, spent in self._spent.items() if not lives[component] - spent)
+
+    def _search(
+        self,
+        known: Mapping[IRI, Advertisement],
+        lost: frozenset[IRI],
+        able: Callable[[], None],
+        holders: Mapping[IRI, Holder],
+    ) -> None:
+        held = {one: holder for one, holder in holders.items() if one in known and holder.priority >= self._priority}
+        searched = known, lost, held
+        if searched == self._searched:
+            return
+
+        def work() -> None:
+            if self._is_configurable(known, lost, held):
+                self._bus.wake_up(able)
+            else:
+                self._searched = searched
+
+        self._request.aside(work)
+
+    def _is_configurable(
+        self, known: Mapping[IRI, Advertisement], lost: frozenset[IRI], held: Mapping[IRI, Holder]
+    ) -> bool:
+        shared = {one for one in held if known[one].profile.is_shareable}
+        without = lost | (held.keys() - shared)
+        while True:
+            try:
+                outcome = self._request.compose(known, without, None)
+            except SelfconfError:
+                return False
+            if not isinstance(outcome, Configuration):
+                return False
+            contested = {one for one in shared.intersection(outcome.components) if held[one].disagrees(one, outcome)}
+            if not contested:
+                return True
+            shared, without = shared - contested, without | contested
