@@ -26,6 +26,7 @@ from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner, near_misses
 from selfconf.rdf.tasks import TaskDocument
+from selfconf.search.additions import with_optional_slots
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import recruits_that_matter
@@ -203,7 +204,12 @@ class Composer:
         there = self.partitioner.under(hierarchy).partition(self.gathered(ecology))
         if here == there and not _matches_more(here, hierarchy):
             return False
-        return possible(Problem(self.task.task, there, hierarchy), Budget(self.steps))
+        problem = Problem(self.task.task, there, hierarchy)
+        if not possible(with_optional_slots(problem), Budget(self.steps)):
+            return False
+        # That took it that whatever can be recruited is there at once, also what plays a role.
+        *_, answer = Searches(Strategy.FIRST, self.steps).answers(problem)
+        return isinstance(answer, Configuration)
 
     def with_relaxations(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""

@@ -21,6 +21,7 @@ from selfconf.model.signal_likeness import SignalLikeness
 from selfconf.model.term import IRI
 from selfconf.model.text_likeness import words
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.search.additions import with_optional_slots
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import possible
@@ -150,7 +151,7 @@ def recruiting_instead(
         task = replace(composer.task.task, template=replace(template, roles=roles))
         changed = Composer(replace(composer.task, task=task), composer.hierarchy, steps=composer.steps)
         problem = Problem(task, changed.partition(ecology), changed.hierarchy)
-        if possible(problem, Budget(RECRUITING_STEPS)):
+        if possible(with_optional_slots(problem), Budget(RECRUITING_STEPS)):
             found = changed.compose(ecology, frozenset(), None)
             if isinstance(found, Configuration):
                 yield LetRecruit(iri, found.recruits)

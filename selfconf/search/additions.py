@@ -56,6 +56,21 @@ def with_additions(problem: Problem, steps: int | None = None) -> Problem | Unde
     return asking_for(problem, found) if isinstance(found, Counter) else found
 
 
+def with_optional_slots(problem: Problem) -> Problem:
+    """Return a problem in which optional roles have slots that may stay empty; the same one where none could help.
+
+    It has a solution where some choice of the optional roles has one. A slot that stays empty has a candidate there.
+    """
+    needed = _needed(problem)
+    return _optional(problem, needed, min(max(needed.values()), MOST_OF_A_ROLE)) if needed else problem
+
+
+def asking_for_all(problem: Problem) -> Problem:
+    """Return a problem in which optional roles that feed others ask for as many components as may be tried of them."""
+    rooms = {number: min(_room(problem, number), MOST_OF_A_ROLE) for number in range(len(problem.roles))}
+    return asking_for(problem, {number: room for number, room in rooms.items() if room})
+
+
 def _fewest(problem: Problem, needed: Mapping[int, int], most: int, steps: int) -> Counter[int] | Undecided | None:
     """Return the fewest components that make a solution possible, by role, with at most so many of each."""
     solvable = _is_solvable(_optional(problem, needed, most), steps)

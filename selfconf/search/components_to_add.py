@@ -20,9 +20,10 @@ from selfconf.model.partition import Candidate
 from selfconf.model.profile import CALL_MARK, Input, Output, Ports, WantedSignal
 from selfconf.model.refusal import Undecided
 from selfconf.model.relaxation import AddComponents, Addition
+from selfconf.search.additions import with_optional_slots
 from selfconf.search.newcomers import ADDITION, impossible, with_mentioned_variables, with_values
 from selfconf.search.problem import Link, Problem
-from selfconf.search.reduction import Fed, LazyReduction, Played, ReducedProblem
+from selfconf.search.reduction import Fed, LazyReduction, Played
 from selfconf.search.relaxation_effort import TRIALS, RelaxationEffort
 from selfconf.search.relaxed_problem import relaxed_by
 from selfconf.search.supposed_outputs import supposed
@@ -59,7 +60,7 @@ def components_to_add(problem: Problem, effort: RelaxationEffort, works: Works) 
             return None
         if playing is not None and added and works(asked):
             return _trimmed(problem, added, playing, effort, works)
-        helpful = _helpful(changed.reduced, effort) if playing is None else _feeding_first(changed.problem)
+        helpful = _helpful(changed, effort) if playing is None else _feeding_first(changed.problem)
         waiting += _with_one_more(added, [(role, outputs) for role in helpful for outputs in choices[role]], seen)
     return None
 
@@ -147,16 +148,16 @@ def _asks(link: Link, port: Input) -> bool:
     return link.input in (None, port.name) and (link.output is None or called is port.is_operation)
 
 
-def _helpful(given: ReducedProblem, effort: RelaxationEffort) -> list[int]:
-    """Return the roles for which one more component could resolve the conflict that there is."""
+def _helpful(changed: LazyReduction, effort: RelaxationEffort) -> list[int]:
+    """Return the roles for which one more component could resolve the conflict that there is, optional ones too."""
+    optional = with_optional_slots(changed.problem)
+    given = (changed if optional is changed.problem else LazyReduction(optional)).reduced
     if given.wiped_out() is not None:
         return []
     together = effort.core(given)
     sources = [s.role for r in together if isinstance(r, Fed) for s in given.needs[r.need].sources]
-    played = set(given.slots)
     # Roles that feed come first: of a role that others feed, a component without inputs is less likely to be had.
-    found = dict.fromkeys((*sources, *(r.role for r in together if isinstance(r, Played))))
-    return [role for role in found if role in played]
+    return list(dict.fromkeys((*sources, *(r.role for r in together if isinstance(r, Played)))))
 
 
 def _feeding_first(problem: Problem) -> list[int]:

@@ -11,6 +11,7 @@ from typing import TypeVar
 
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
+from selfconf.search.additions import with_optional_slots
 from selfconf.search.budget import Budget
 from selfconf.search.cores import READINGS, FeasibilityOracle, core
 from selfconf.search.engines import any_by_clauses, least_by_clauses
@@ -63,7 +64,17 @@ class RelaxationEffort:
         return over
 
     def solution(self, given: LazyReduction, least: bool = True) -> list[list[Candidate]] | Undecided | None:
-        """Return a solution of a changed problem, None if there is none, or Undecided if too little is left."""
+        """Return a solution of a changed problem, None if there is none, or Undecided if too little is left.
+
+        Where it has none as it stands, one with optional roles; candidates stand for those of their slots that are
+        empty.
+        """
+        found = self._solution(given, least)
+        if found is None and (optional := with_optional_slots(given.problem)) is not given.problem:
+            return self._solution(LazyReduction(optional), least)
+        return found
+
+    def _solution(self, given: LazyReduction, least: bool) -> list[list[Candidate]] | Undecided | None:
         options = sum(map(len, given.problem.candidates))
         self.budget.spend(_ports(given.problem) // PORTS_PER_TRIAL_STEP + STEPS_PER_OPTION * options)
         if self.used_up():
@@ -91,7 +102,15 @@ class RelaxationEffort:
             return True
         supplying = sum(len(r.profile.inputs) + len(r.profile.outputs) for r in problem.supply.recruits)
         self.budget.spend((_ports(problem) + supplying) // PORTS_PER_TRIAL_STEP)
-        return not self.used_up() and possible_with_recruits(problem, RECRUIT_TRIAL_STEPS)
+        return not self.used_up() and has_recruits(problem)
+
+
+def has_recruits(problem: Problem) -> bool:
+    """Return whether some players that have recruits are found soon, with the optional roles that it takes."""
+    if possible_with_recruits(problem, RECRUIT_TRIAL_STEPS):
+        return True
+    optional = with_optional_slots(problem)
+    return optional is not problem and possible_with_recruits(optional, RECRUIT_TRIAL_STEPS)
 
 
 def _ports(problem: Problem) -> int:

@@ -2,12 +2,12 @@
 
 *Things to add.* The fewest components for roles (`components_to_add`), or recruits (`recruits_to_add`).
 
-*Things to change.* A role that asks for fewer, or for one where it asked for none and others need what it would
-issue; one interaction more, where some candidate issues what is lacking; a near miss accepted. Each alone.
+*Things to change.* A role that asks for fewer; one interaction more, where some candidate issues what is lacking; a
+near miss accepted. Each alone.
 
 All this is tried on the reduced problem (`dominance`): adding, asking for fewer and linking leave its argument intact,
 since candidates of one class have the same ports; near misses, which may become eligible for more, are distinguished in
-it. A role that asks for none is not in the reduced problem, and is asked for one in the whole problem.
+it. Optional roles may help after a change, as they do without one (`additions`), so that their candidates are kept.
 What may be spent on all this is limited (`RelaxationEffort`).
 """
 
@@ -31,13 +31,14 @@ from selfconf.model.relaxation import (
 from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.template import Role
 from selfconf.model.term import IRI
+from selfconf.search.additions import asking_for_all, with_optional_slots
 from selfconf.search.components_to_add import components_to_add
 from selfconf.search.newcomers import with_values, without_values
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import first_recruited, possible_with_recruits
+from selfconf.search.recruiting import first_recruited
 from selfconf.search.recruits_to_add import recruits_to_add
 from selfconf.search.reduction import recruits_that_matter, reduced
-from selfconf.search.relaxation_effort import RECRUIT_TRIAL_STEPS, TRIALS, RelaxationEffort
+from selfconf.search.relaxation_effort import RECRUIT_TRIAL_STEPS, TRIALS, RelaxationEffort, has_recruits
 from selfconf.search.relaxed_problem import relaxed_by
 from selfconf.search.supply import Issued
 
@@ -85,8 +86,10 @@ def _with_recruits(problem: Problem, relaxation: Relaxation) -> Relaxation | Non
     """Return a change as it has to be for players that have recruits; None if there are none."""
     changed = relaxed_by(problem, without_values(relaxation) if isinstance(relaxation, AddComponents) else relaxation)
     if isinstance(relaxation, AddRecruits) or not isinstance(relaxation, AddComponents) or not changed.variables:
-        return relaxation if possible_with_recruits(changed, RECRUIT_TRIAL_STEPS) else None
-    found = first_recruited(changed, RECRUIT_TRIAL_STEPS)
+        return relaxation if has_recruits(changed) else None
+    found = first_recruited(changed, RECRUIT_TRIAL_STEPS) or first_recruited(
+        with_optional_slots(changed), RECRUIT_TRIAL_STEPS
+    )
     if not isinstance(found, Configuration):
         return None
     playing = [
@@ -123,7 +126,7 @@ def _possible_relaxations(
 
 def _reduced(problem: Problem, distinguished: Collection[IRI]) -> Problem:
     """Return the problem with only the candidates that its reduction keeps."""
-    kept = reduced(problem, distinguished).options
+    kept = reduced(asking_for_all(problem), distinguished).options
     candidates = tuple(
         tuple(candidates[option.number] for option in options)
         for candidates, options in zip(problem.candidates, kept, strict=True)
@@ -167,6 +170,6 @@ def _fewer(problem: Problem, refused: Refusal, effort: RelaxationEffort) -> Iter
         for minimum in effort.first_of(reversed(range(enough)), TRIALS):
             fewer = AskForFewer(iri, minimum)
             changed = relaxed_by(problem, fewer)
-            if effort.possible(changed) and (not recruits or possible_with_recruits(changed, RECRUIT_TRIAL_STEPS)):
+            if effort.possible(changed) and (not recruits or has_recruits(changed)):
                 yield fewer
                 break

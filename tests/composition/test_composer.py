@@ -94,6 +94,30 @@ def test_subclasses_that_match_but_do_not_suffice_are_no_hint() -> None:
     assert not composer.possible_under(given, Hierarchy([(iri("PlanarPose"), iri("Pose"))]))
 
 
+def test_subclasses_that_need_an_optional_role_are_a_hint() -> None:
+    document = task(
+        ":navigate a sc:Template ; sc:roles ( :position :control ) . :control a sc:Role ; sh:class :Steering ."
+        ":position a sc:Role ; sh:class :Locator ; sc:minCount 0 ; sc:feeds :control ."
+    )
+    above = Hierarchy([(iri("Controller"), iri("Steering"))])
+    composer, given = Composer(document), ecology(locator("gps"), controller("cap"))
+    assert isinstance(composer.compose(given, NOBODY, None), Refusal)
+    assert composer.possible_under(given, above)
+    assert not composer.possible_under(ecology(controller("cap")), above)
+
+
+def test_subclasses_of_players_without_recruits_are_no_hint() -> None:
+    document = task(
+        ":navigate a sc:Template ; sc:roles ( :control ) . :control a sc:Role ; sh:class :Steering ; sc:recruits true ."
+    )
+    above = Hierarchy([(iri("Controller"), iri("Steering"))])
+    pose = '[ sc:name "pose" ; sc:signalType :Pose ]'
+    only = f":cap a sc:Component, :Controller ; sc:hasInput {pose} ; sc:hasOutput {pose} ."
+    composer = Composer(document)
+    assert not composer.possible_under(ecology(only), above)  # which would have to feed itself
+    assert composer.possible_under(ecology(only, locator("gps")), above)
+
+
 # The strategy `best`.
 
 

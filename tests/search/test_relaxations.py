@@ -10,15 +10,17 @@ from hypothesis import given
 
 from selfconf.model.obstacle import NotAmong, PropertyUnmet
 from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition
+from selfconf.search.additions import asking_for
 from selfconf.search.components_to_add import wanted_of
 from selfconf.search.problem import Problem
 from selfconf.search.recruit_refusal import refusal_of_recruits
 from selfconf.search.relaxations import with_relaxations
 from selfconf.search.relaxed_problem import relaxed_by
 from selfconf.search.strategies import first
-from tests.search.oracle import World
+from tests.search.test_additions import choices, solvable
 from tests.search.test_recruiting import RecruitingWorld, recruiting, with_recruits
 from tests.search.worlds import agreement, component, iri, problem, problems
 
@@ -26,14 +28,15 @@ OF_PIPPI = PropertyUnmet(iri("support"), (NotAmong(frozenset((iri("Pippi"),)), f
 
 
 def _possible(problem: Problem) -> bool:
-    return next(World(problem.task, problem.partition, problem.hierarchy).solutions(), None) is not None
+    """Whether there is a solution, with optional roles where it takes them, by enumeration."""
+    return solvable(problem) or any(solvable(asking_for(problem, one)) for one in choices(problem))
 
 
 @given(problems(roles=3, components=4))
 @agreement()
 def test_every_relaxation_works_and_adds_as_few_components_as_possible(problem: Problem) -> None:
     refused = first.search(problem)
-    if not isinstance(refused, Refusal):
+    if not isinstance(refused, Refusal) or _possible(problem):
         return
     found = with_relaxations(problem, refused).repairs
     for one in found:
@@ -177,3 +180,29 @@ def test_what_a_player_cannot_be_recruited_for_is_to_be_issued_by_a_recruit_that
     assert isinstance(refused, Refusal)
     words = [str(one) for one in with_relaxations(helped, refused).repairs]
     assert words[0] == "add one more component for the role boat to recruit that issues S and T"
+
+
+def test_optional_roles_help_after_a_change() -> None:
+    where, needy = component("where", outputs="p:Pose"), component("needy", "p:Pose")
+    given_ = problem({"a": [where], "b": []}, "a>b", {"a": (0, 1)})
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(given_, refused, [(_slip("b", needy), Candidate(needy))]).repairs]
+    assert words[0].startswith("let the role b take needy, although")
+    given_ = problem({"a": [where], "b": [needy]}, "a>b", {"a": (0, 1), "b": (2, 2)})
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
+    assert words == ["add one more component for the role b", "let the role b ask for 1 (sc:minCount 1)"]
+
+
+def test_a_component_is_asked_for_an_optional_role_that_nothing_plays() -> None:
+    given_ = problem({"a": [], "b": [component("needy", "p:Pose")]}, "a>b", {"a": (0, 1)})
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    words = [str(one) for one in with_relaxations(given_, refused).repairs]
+    assert words[0] == "add one more component for the role a that issues Pose"
+
+
+def _slip(role: str, profile: Profile) -> NearMiss:
+    return NearMiss(iri(role), profile.component, OF_PIPPI)
