@@ -101,6 +101,8 @@ class ComponentRuntime:
         self._timers: dict[int, Undo] = {}
         self._timer_numbers = itertools.count()
         self._closed = False
+        self._failure = ""
+        """Why the component has failed the last time."""
         self._preemption: Undo | None = None
         """Set while a task of higher priority waits for those that hold the component to yield."""
         self._after_start: list[Callable[[str | None], None]] = []
@@ -173,6 +175,7 @@ class ComponentRuntime:
         """Raise FAIL, at once, also on the way to a start; may be called from any thread."""
         if self.code.wanted:
             self.code.end_acting()
+            self._failure = reason
             self._put_fail(cause, reason)
             self.bus.wake_up(self._failed)
 
@@ -303,6 +306,8 @@ class ComponentRuntime:
         def started(trouble: str | None) -> None:
             if trouble is None and self.activation.hold(message.task) is None:
                 trouble = "it was turned off again"
+            if trouble is None and not self.inputs.settled:  # the inside of a composite has been refused
+                trouble = self._failure
             if trouble is None:
                 reply(self._verdict(Verdict.DONE, message.task))
                 return

@@ -11,7 +11,7 @@ from selfconf.api.task import template
 from selfconf.configurator import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.discovery import EcologyView
-from selfconf.model.run_event import ComponentLost, InputConnected
+from selfconf.model.run_event import ComponentActivated, ComponentLost, InputConnected
 from selfconf.model.term import IRI
 from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
@@ -234,6 +234,7 @@ def test_a_composite_fails_whose_inside_cannot_do_without_an_optional_input_that
     (event,) = [event for event in run.events if isinstance(event, ComponentLost)]
     assert event.component == SERVED
     assert event.detail.startswith("its inside is refused: the input 'hint' (Hint) of")
+    assert not [event for event in run.events if isinstance(event, ComponentActivated) and event.component == SERVED]
 
 
 def test_another_component_takes_the_place_of_a_composite_that_has_failed() -> None:
