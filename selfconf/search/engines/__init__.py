@@ -5,6 +5,7 @@
 * `ReducedSearch` is depth-first search over a reduced problem, and `first_solution` the least solution found by it.
 * `hall_set` finds roles that lack components (a `HallSet`) by bipartite matching, `unmatchable` the options that are in
   no matching; a `MaintainedMatching` follows a depth-first search.
+* `value_cases` are the cases of a problem by the values of free parameters.
 * `probed` removes options that would leave other roles too few components.
 * `exclusive_groups` are groups of options of which at most one can play, and what counting them proves.
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
@@ -15,6 +16,7 @@
 """
 
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
+from selfconf.search.engines.case_splitting import value_cases
 from selfconf.search.engines.clause_learning import ClauseSolver, solver_available
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.founded import FoundedSolver
@@ -44,4 +46,5 @@ __all__ = [
     "smallest_core",
     "solver_available",
     "unmatchable",
+    "value_cases",
 ]

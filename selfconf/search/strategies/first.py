@@ -47,6 +47,7 @@ from selfconf.search.engines import (
     probed,
     solver_available,
     unmatchable,
+    value_cases,
 )
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
@@ -169,10 +170,39 @@ def least_of(
         fewer = probed(remaining)
         if fewer is not remaining:
             return least_of(fewer, budget, by_clauses)
-        matching = MaintainedMatching(remaining.slots, remaining.components())
+        cases = value_cases(remaining)
+        if cases is not None:
+            return _least_of_cases(cases, budget, by_clauses)
+    return _by_clauses(remaining, budget, by_clauses)
+
+
+def _by_clauses(given: ReducedProblem, budget: Budget, by_clauses: Engine) -> list[Option] | Undecided | None:
+    """Return a solution by clause learning, or by depth-first search without an end where there is no solver."""
     if solver_available():
-        return by_clauses(remaining, budget)
-    return None if exclusive_groups(remaining).impossible else first_solution(remaining, budget, matching=matching)
+        return by_clauses(given, budget)
+    components = given.components()
+    shared = len(set[IRI]().union(*components)) < sum(map(len, components))
+    matching = MaintainedMatching(given.slots, components) if shared else None
+    return None if exclusive_groups(given).impossible else first_solution(given, budget, matching=matching)
+
+
+def _least_of_cases(cases: list[ReducedProblem], budget: Budget, by_clauses: Engine) -> list[Option] | Undecided | None:
+    """Return the least solution of a problem, given all its cases by the values of free parameters."""
+    found: list[list[Option]] = []
+    for case in cases:
+        chosen = least_of(case, budget, by_clauses)
+        if isinstance(chosen, Undecided):
+            return chosen
+        if chosen is not None:
+            found.append(chosen)
+            if by_clauses is any_by_clauses:
+                break
+    return min(found, key=_numbers, default=None)
+
+
+def _numbers(chosen: list[Option]) -> list[int]:
+    """The order of solutions: slot by slot, option by option."""
+    return [option.number for option in chosen]
 
 
 def _without(given: ReducedProblem, excluded: set[tuple[int, IRI]]) -> ReducedProblem:

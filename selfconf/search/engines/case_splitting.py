@@ -1,0 +1,70 @@
+"""Cases by the values of free parameters: each combination of values that leaves all slots enough components.
+
+*Why.* Where all that play have to agree on the value of a free parameter, as people on the site at which they work,
+each value leaves another part of the components. Matching over all of them (Hall's theorem) sees none of these parts;
+clause learning refutes each in exponential time, counting by cases. With a value given, arc consistency and matching
+see at once that it leaves too few.
+
+*What is kept.* Every solution is one of some case, and every solution of a case is one of the problem: so the least
+solution of all is the least among those of the cases.
+
+*Cost.* A pass over all needs and supports, and a matching, for each value or combination that is tried, while there are
+few of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import reduce
+from operator import or_
+
+from selfconf.model.partition import ANY_VALUE
+from selfconf.search.engines.matching import hall_set
+from selfconf.search.reduction import ReducedProblem, pruned
+
+MOST_CASES = 256
+"""How many combinations of values are looked at at most."""
+MOST_COUNTED = 1_000_000
+"""How many needs, supports and options are counted for that at most, some tenths of a second."""
+
+
+def value_cases(given: ReducedProblem) -> list[ReducedProblem] | None:
+    """Return the problem once for each combination of values that leaves all slots enough components.
+
+    Where there would be too many combinations, those with the most values stay free. None if no parameter has a choice
+    among few enough values.
+    """
+    size = sum(1 + len(kind.needs) + len(kind.supports) for kind in given.kinds()) + sum(map(len, given.options))
+    most, chosen = min(MOST_CASES, MOST_COUNTED // max(1, size)), list[int]()
+    choices = sorted((len(_values(given, variable)), variable) for variable in range(len(given.values)))
+    for count, variable in choices:
+        if count > 1 and (most := most // count) > 0:
+            chosen.append(variable)
+    return list(_cases(given, chosen)) if chosen else None
+
+
+def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProblem]:
+    if not variables:
+        yield given
+        return
+    for value in _values(given, variables[0]):
+        case = pruned(_with_value(given, variables[0], value))
+        if case.wiped_out() is None and hall_set(case.slots, case.components()) is None:
+            yield from _cases(case, variables[1:])
+
+
+def _values(given: ReducedProblem, variable: int) -> list[int]:
+    """Return masks of one value each that a variable may still have, in order; none if it may have any other value."""
+    common = given.values[variable]
+    for role in dict.fromkeys(given.slots):
+        masks = [option.kind.admits[variable] for option in given.options[role]]
+        if ANY_VALUE not in masks:
+            common &= reduce(or_, masks, 0)
+    return [1 << bit for bit in range(common.bit_length()) if common >> bit & 1] if common > 0 else []
+
+
+def _with_value(given: ReducedProblem, variable: int, value: int) -> ReducedProblem:
+    options = tuple(tuple(one for one in some if one.kind.admits[variable] & value) for some in given.options)
+    values = (*given.values[:variable], value, *given.values[variable + 1 :])
+    return replace(given, options=options, values=values)

@@ -1,0 +1,142 @@
+"""The cases by the values of free parameters hold every solution, and the least of theirs is the least of all."""
+
+from __future__ import annotations
+
+import random
+from itertools import product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmarks.search.families import profile
+from benchmarks.search.further_families import counted
+from selfconf.model.partition import ANY_VALUE, Candidate, Variable
+from selfconf.model.refusal import Undecided
+from selfconf.search.budget import Budget
+from selfconf.search.engines import any_by_clauses, case_splitting, hall_set, least_by_clauses, value_cases
+from selfconf.search.problem import Problem
+from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
+from selfconf.search.strategies import first, solution
+from tests.search.oracle import World
+from tests.search.worlds import agreement, iri, problems, rivalries
+
+
+def depots(roles: int, asked: int, people: int, sites: int, share: float, seed: int, parameters: int = 1) -> Problem:
+    """Roles that draw on one pool, all of one site for each parameter; a person works at a share of the sites."""
+    rng = random.Random(seed)
+    variables = tuple(
+        Variable(iri(f"site{number}"), tuple(iri(f"s{number}-{k}") for k in range(sites)))
+        for number in range(parameters)
+    )
+    pool = [
+        Candidate(
+            profile(f"p{number:03}"),
+            tuple(sum(1 << k for k in range(sites) if rng.random() < share) or 1 for _ in variables),
+        )
+        for number in range(people)
+    ]
+    return counted([[one for one in pool if rng.random() < 0.6] for _ in range(roles)], [asked] * roles, [], variables)
+
+
+@given(st.one_of(rivalries(), problems()))
+@agreement()
+def test_every_solution_is_one_of_some_case(problem: Problem) -> None:
+    before = pruned(reduced(problem))
+    cases = value_cases(before)
+    if cases is None:
+        return
+    left = [{(role, one.number) for role, some in enumerate(case.options) for one in some} for case in cases]
+    known = {(role, one.number) for role, some in enumerate(before.options) for one in some}
+    for players in World(problem.task, problem.partition, problem.hierarchy).solutions():
+        chosen = {(role, problem.candidates[role].index(one)) for role, some in enumerate(players) for one in some}
+        assert not chosen <= known or any(chosen <= case for case in left)
+
+
+@given(st.one_of(rivalries(), problems()))
+@agreement(0.5)
+def test_the_least_solution_of_all_is_that_of_some_case(problem: Problem) -> None:
+    found = solution(LazyReduction(problem), Budget(None))
+    before = reduced(problem)
+    cases = value_cases(pruned(before))
+    if cases is not None and not any(role.minimum == 0 for role in problem.roles):
+        least = first._least_of_cases(cases, Budget(None), least_by_clauses)
+        assert isinstance(least, list) == isinstance(found, list)
+        if isinstance(found, list) and isinstance(least, list):
+            assert [one.component for one in least] == [c.profile.component for some in found for c in some]
+
+
+def by_hand(problem: Problem) -> list[list[int]] | None:
+    """The least solution of a problem of roles for one component each, by trying all."""
+    for numbers in product(*(range(len(some)) for some in problem.candidates)):
+        players = [some[k] for some, k in zip(problem.candidates, numbers, strict=True)]
+        agreed = [ANY_VALUE] * len(problem.variables)
+        for one in players:
+            agreed = [left & mask for left, mask in zip(agreed, one.admits, strict=True)]
+        if len({one.profile.component for one in players}) == len(players) and all(agreed):
+            return [[number] for number in numbers]
+    return None
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("parameters", [1, 2])
+def test_roles_that_draw_on_one_pool_get_the_least_solution(
+    monkeypatch: pytest.MonkeyPatch, seed: int, parameters: int
+) -> None:
+    monkeypatch.setattr(first, "CANDIDATE_STEPS", 0)
+    monkeypatch.setattr(first, "REDUCED_PACE", 0.0)
+    problem = depots(4, 1, 9, 3, 0.5, seed, parameters)
+    found, expected = solution(LazyReduction(problem), Budget(None)), by_hand(problem)
+    assert not isinstance(found, Undecided)
+    numbers = found and [[problem.candidates[role].index(one) for one in some] for role, some in enumerate(found)]
+    assert numbers == expected
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("parameters", [1, 2])
+def test_each_value_that_leaves_too_few_is_seen_without_counting_by_cases(seed: int, parameters: int) -> None:
+    """Clause learning alone has needed half a minute, and a minute has not been enough."""
+    problem = depots(6, 4, 40, 6, 0.5, seed) if parameters == 1 else depots(8, 3, 40, 8, 0.7, seed, 2)
+    before = pruned(reduced(problem))
+    assert hall_set(before.slots, before.components()) is None
+    assert not isinstance(solution(LazyReduction(problem), Budget(20_000)), Undecided)
+
+
+def test_any_solution_is_one_of_the_first_case_that_has_one() -> None:
+    problem = depots(6, 4, 40, 6, 0.5, 1)
+    found = solution(LazyReduction(problem), Budget(20_000), any_by_clauses)
+    assert isinstance(found, list)
+    assert len({one.profile.component for some in found for one in some}) == 24
+
+
+def free(case: ReducedProblem) -> int:
+    """How many parameters have a choice among several values."""
+    return sum(len(case_splitting._values(case, variable)) > 1 for variable in range(len(case.values)))
+
+
+def test_what_has_too_many_values_is_left_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = pruned(reduced(depots(4, 2, 20, 6, 0.5, 1, parameters=2)))
+    for most, left in ((36, 0), (35, 1), (6, 1)):
+        monkeypatch.setattr(case_splitting, "MOST_CASES", most)
+        cases = value_cases(before)
+        assert cases
+        assert {free(case) for case in cases} == {left}
+    monkeypatch.setattr(case_splitting, "MOST_CASES", 5)
+    assert value_cases(before) is None
+
+
+def test_a_parameter_that_may_have_any_other_value_has_no_cases() -> None:
+    variable = Variable(iri("site"), (iri("s"), iri("t")))
+    pool = [Candidate(profile(f"p{number}"), (ANY_VALUE if number else ~1,)) for number in range(4)]
+    assert value_cases(pruned(reduced(counted([pool, pool], [1, 1], [], (variable,))))) is None
+
+
+def test_no_case_is_left_out_that_has_a_solution() -> None:
+    for seed in range(6):
+        problem = depots(3, 1, 6, 2, 0.6, seed)
+        cases = value_cases(pruned(reduced(problem))) or []
+        possible = {case.values for case in cases}
+        for value in (1, 2):
+            pools = [[one for one in some if one.admits[0] & value] for some in problem.candidates]
+            fits = any(len({one.profile.component for one in chosen}) == len(chosen) for chosen in product(*pools))
+            assert not fits or not cases or (value,) in possible
