@@ -118,7 +118,7 @@ class Partition:
     """For each role the free parameters that its shape mentions, whether or not any candidate states a value."""
     unaddable: frozenset[int] = frozenset()
     """The roles, by number, for which no addition can be worded: their shapes contradict themselves, list who may play
-    them, or have alternatives on which it depends what a free parameter may be."""
+    them, or ask of a free parameter what depends on alternatives, or what only pySHACL can tell."""
 
     def mentioned(self, role: int) -> tuple[Mention, ...]:
         """The free parameters that the shape of a role, given by its number, mentions."""

@@ -284,6 +284,7 @@ class Partitioner:
             for n, (role, some, one) in enumerate(rows)
             if lists_components(role.tests)
             or in_doubt(role.tests)
+            or (not role.complete and self.mentioned(role))  # pySHACL alone can tell what to state for it
             or not passable(role.tests, self.hierarchy)
             or contradictory(some, one)
         )

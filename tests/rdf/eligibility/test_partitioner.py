@@ -405,6 +405,25 @@ def test_a_value_that_has_no_order_with_a_limit_does_not_pass_it(path: str) -> N
     assert names(partitioner(text).partition(read(ads))) == [["c3"]]
 
 
+@pytest.mark.parametrize(
+    ("shape", "addable"),
+    [
+        ("sh:property [ sh:path :on ; sh:hasValue :robot ]", True),
+        ("sh:property [ sh:path :on ; sh:hasValue :robot ] ; sh:property [ sh:path :at ; sh:node :in-doors ]", True),
+        ("sh:not [ sh:property [ sh:path :on ; sh:hasValue :robot ] ]", False),  # not on the robot of the others
+        ("sh:property [ sh:path :on ; sh:node [ sh:in ( :robot ) ] ]", False),
+    ],
+)
+def test_no_component_is_asked_for_where_pyshacl_alone_can_tell_which_value_it_has_to_state(
+    shape: str, addable: bool
+) -> None:
+    text = f"""{PREFIXES} :t a sc:Template ; sc:roles ( :r ) ; sc:parameter :robot .
+        :robot a sc:Parameter ; sc:name "robot" . :in-doors a sh:NodeShape ; sh:nodeKind sh:IRI .
+        :r a sc:Role ; sh:class :A ; {shape} ."""
+    task = templates.read_task(turtle.parse(text, "t.ttl"))
+    assert (not Partitioner(task).partition({}).unaddable) is addable
+
+
 def test_a_partition_tells_which_free_parameters_a_shape_mentions_whatever_components_state() -> None:
     text = """
         :t a sc:Template ; sc:roles ( :one :two ) ; sc:parameter :par , :other .
