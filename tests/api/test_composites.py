@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -617,11 +618,11 @@ LOOK = f"""{LAB_PREFIXES}
 :source a sc:Role ; sh:class :Eye ; sc:feeds :sink . :sink a sc:Role ; sh:class :SINK ."""
 
 
-def eye(folder: Path) -> Lab:
+def eye(folder: Path, advertised: Mapping[str, str] = EYE) -> Lab:
     """A site with the composite, and with all that lives."""
-    lab = Lab(folder, advertised=EYE)
-    lab.site("home", *EYE)
-    for name in EYE.keys() - {"eye"}:
+    lab = Lab(folder, advertised=advertised)
+    lab.site("home", *advertised)
+    for name in sorted(advertised.keys() - {"eye", "outer"}):
         lab.component(name)
     lab.let_pass(3.0)
     return lab
@@ -663,6 +664,21 @@ def test_the_inside_of_a_composite_has_the_rank_of_the_first_of_those_that_share
     middle = looking(lab, "Middle", 1, "Lens")
     assert middle.state.phase is Phase.RUNNING
     assert low.state.phase is Phase.REFUSED
+
+
+def test_the_rank_of_what_is_inside_of_composites_that_nest_follows_the_tasks_outside(tmp_path: Path) -> None:
+    outer = EYE["eye"].replace("lens", "part").replace("Lens", "Eye").replace("seeing", "wrapping")
+    outer = outer.replace(":eye a sc:Component, :Eye", ":outer a sc:Component, :Outer")
+    lab = eye(tmp_path, EYE | {"outer": outer})
+    low, high = looking(lab, "Low", 0, "Outer"), looking(lab, "High", 3, "Outer")
+    assert rank_inside(lab) == (3, high.identity.beginning)
+    middle = looking(lab, "Middle", 1, "Eye")
+    assert rank_inside(lab) == (3, high.identity.beginning)
+    for ended, first in ((high, middle), (middle, low)):
+        ended.stop()
+        lab.let_pass(3.0)
+        assert rank_inside(lab) == (first.identity.priority, first.identity.beginning)
+    assert lab.components["lens"].said == [("started",)]
 
 
 def test_a_task_that_is_refused_as_another_holds_what_is_inside_says_which_one(tmp_path: Path) -> None:
