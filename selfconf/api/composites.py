@@ -57,7 +57,7 @@ REPLACING = 0.5
 LOOK_AT_REFUSED = 10.0
 """After how many seconds it is looked again whether an inside that was refused can be configured."""
 NEXT_LIFE = 0.5
-"""Seconds between two lives of a composite: one that still sees the last would leave, as another process has it."""
+"""Seconds between two lives of a composite: one that still sees the last takes it for another process, and leaves."""
 
 
 class _CompositeCode(Component):
@@ -284,6 +284,7 @@ class Composites:
         """Those whose inside can be configured from these advertisements."""
         self.living: dict[IRI, InsideOfComposite] = {}
         self._told: dict[IRI, str] = {}
+        self._between_lives: set[IRI] = set()
         self._looking: dict[IRI, Undo] = {}
         """What undoes the next look at those whose inside was refused."""
 
@@ -310,7 +311,7 @@ class Composites:
             if component in known:
                 self._end_unable(component)
             else:
-                self.living.pop(component).close()
+                self._end(component)
         for component in found:
             if component in self.living:
                 self._look_again(component)
@@ -327,11 +328,21 @@ class Composites:
         """Let a composite live no more whose inside cannot be configured; one that acts finds out what it lacks."""
         composite = self.living.get(component)
         if composite is not None and component not in self._able and not composite.runtime.active:
-            self.living.pop(component).close()
+            self._end(component)
+
+    def _end(self, component: IRI) -> None:
+        """Let a composite live no more, and again after a while if its inside can be configured by then."""
+        self.living.pop(component).close()
+        self._between_lives.add(component)
+        self._bus.later(NEXT_LIFE, partial(self._begin_anew, component))
+
+    def _begin_anew(self, component: IRI) -> None:
+        self._between_lives.discard(component)
+        self._let_live(component)
 
     def _let_live(self, component: IRI) -> None:
-        """Let a composite live, unless it does, or its inside cannot be configured by now."""
-        if component in self._able and component not in self.living:
+        """Let a composite live, unless it does, or did a moment ago, or its inside cannot be configured."""
+        if component in self._able and component not in self.living and component not in self._between_lives:
             profile = self._advertisements[component].profile
             request_with, rested = partial(self._request, self._able[component]), partial(self._acts_no_more, component)
             self.living[component] = InsideOfComposite(self._bus, self._ecology, profile, request_with, rested)
@@ -360,8 +371,7 @@ class Composites:
         def able() -> None:
             held = composite.runner is not None or composite.runtime.activation.holds
             if not held and self.living.get(component) is composite:
-                self.living.pop(component).close()
-                self._bus.later(NEXT_LIFE, partial(self._let_live, component))
+                self._end(component)
 
         composite.prospect.look(usable, able)
 

@@ -8,12 +8,15 @@ from typing import Any
 
 import pytest
 
+from selfconf import files
+from selfconf.api.composites import NEXT_LIFE
 from selfconf.api.task import template
 from selfconf.configurator import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.discovery import EcologyView
 from selfconf.model.run_event import ComponentActivated, ComponentLost, InputConnected
 from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
 from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG, MemoryRun
@@ -712,6 +715,22 @@ def test_a_composite_that_acts_no_more_lives_no_more_if_its_inside_cannot_be_con
     lab.component("lens")
     lab.let_pass(3.0)
     assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
+
+
+def test_a_composite_begins_its_next_life_when_the_last_is_seen_no_more(tmp_path: Path) -> None:
+    lab = eye(tmp_path)
+    composites, advertised = lab.composites["home"], _advertised(tmp_path / "home")
+    first = composites.living[iri("eye")].runtime.life
+    composites.refresh({})
+    composites.refresh(advertised)
+    lab.let_pass(NEXT_LIFE / 2)
+    assert not composites.living
+    lab.let_pass(NEXT_LIFE)
+    assert composites.living[iri("eye")].runtime.life != first
+
+
+def _advertised(folder: Path) -> dict[IRI, Advertisement]:
+    return {one.component: one for path in folder.iterdir() for one in files.advertisements(path)[0]}
 
 
 @pytest.mark.parametrize("how", ["free", "new life", "another"])
