@@ -189,7 +189,7 @@ class InputSubscription:
             return
         if self.muted or (self.lost and not lost) or self._is_old(stamp):  # muted or lost while it was read
             return
-        if lost and not self._lives:  # it was on its way when the life of its source ended, or the source is cut off
+        if lost and not self._shows(stamp.life):  # it was on its way when that life ended, or its source is cut off
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
         self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
         self._events.deliver(
@@ -238,12 +238,16 @@ class InputSubscription:
         if not self._ended and not self._lives and self._heard_at < began:
             self._lose(self._heard_at)
 
+    def _shows(self, life: str) -> bool:
+        """Whether a life of the component is seen to live."""
+        return self._keys.life(self._wire.component, life) in self._lives
+
     def _look_for_sign(self, heard: float) -> None:
         """An output that was lost and has issued a signal since, as of some time, is lost again without a further sign.
 
-        That is a life of its component, or another signal, and so on.
+        That is the life that has issued it, or another signal, and so on.
         """
-        if self._ended or self._lives or self.lost:
+        if self._ended or self.lost or self._shows(self._life):
             return
         if self._heard_at > heard:
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))

@@ -317,6 +317,16 @@ def test_a_signal_from_before_the_end_of_the_life_of_its_source_feeds_for_a_mome
     assert late.came_to_rest()
 
 
+def test_a_late_signal_of_a_life_that_has_ended_feeds_for_a_moment_though_another_life_has_begun() -> None:
+    late = Late()
+    late.leave()
+    late.tracker.announce(KEYS.life(TRACKER, "u"))
+    assert late.came_to_rest()
+    late.issue(2)
+    assert late.stage.recorder.said[-1] == ("position", 2)
+    assert late.came_to_rest()
+
+
 @pytest.mark.parametrize("sign", ["signals", "a life"])
 def test_a_source_that_was_only_cut_off_feeds_again(sign: str) -> None:
     late = Late()
