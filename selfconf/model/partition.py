@@ -17,7 +17,7 @@ from decimal import Decimal
 
 from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.obstacle import Obstacle
-from selfconf.model.profile import Place, Profile
+from selfconf.model.profile import Place, Profile, WantedSignal
 from selfconf.model.term import IRI, Term
 
 ANY_VALUE = -1
@@ -106,6 +106,11 @@ class NearMiss:
         return self.obstacle.clause
 
 
+Unissuable = tuple[int | None, str | None, WantedSignal]
+"""What an input wants that no component to add could be known to issue: for a role by its number, or to be recruited
+(None), and by an output of that name, where an interaction asks for one."""
+
+
 @immutable
 class Partition:
     """F1 ... Fn in the order of the template's roles, each in the order in which candidates are tried."""
@@ -119,6 +124,9 @@ class Partition:
     unaddable: frozenset[int] = frozenset()
     """The roles, by number, for which no addition can be worded: their shapes contradict themselves, list who may play
     them, or ask of a free parameter what depends on alternatives, or what only pySHACL can tell."""
+
+    unissuable: frozenset[Unissuable] = frozenset()
+    """What candidates want that is not asked of components to add."""
 
     def mentioned(self, role: int) -> tuple[Mention, ...]:
         """The free parameters that the shape of a role, given by its number, mentions."""

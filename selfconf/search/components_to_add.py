@@ -125,8 +125,7 @@ def wanted_of(problem: Problem, role: int) -> Iterator[tuple[Output, ...]]:
         for link in problem.links[sink]:
             if link.source == role:
                 wanted = plain if link.output is None else by_name.setdefault(link.output, {})
-                for candidate in problem.candidates[sink]:
-                    wanted.update((port.wanted, None) for port in candidate.profile.required if _asks(link, port))
+                wanted.update(dict.fromkeys(_wanted_along(problem, sink, link)))
     names = set(by_name)
     others = []
     for one in plain:
@@ -140,6 +139,15 @@ def wanted_of(problem: Problem, role: int) -> Iterator[tuple[Output, ...]]:
         others.append(one.output(name))
     ways = itertools.product(*([one.output(name) for one in wanted] for name, wanted in by_name.items() if wanted))
     yield from ((*others, *chosen) for chosen in ways)
+
+
+def _wanted_along(problem: Problem, sink: int, link: Link) -> Iterator[WantedSignal]:
+    """Yield what the candidates of a sink want that a component to add could issue along an interaction."""
+    unissuable = problem.partition.unissuable
+    for candidate in problem.candidates[sink]:
+        for port in candidate.profile.required:
+            if _asks(link, port) and not (unissuable and (link.source, link.output, port.wanted) in unissuable):
+                yield port.wanted
 
 
 def _asks(link: Link, port: Input) -> bool:

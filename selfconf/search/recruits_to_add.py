@@ -57,7 +57,8 @@ def with_more_recruits(problem: Problem, added: AddRecruits) -> Problem:
 def _wanted(problem: Problem, role: int) -> tuple[Output, ...]:
     """Return an output for each signal that a candidate of a role requires, under names of its own."""
     wanted = {port.wanted: None for c in problem.candidates[role] for port in c.profile.required if port.signals}
-    return tuple(one.output(f"{one.signals[0].short}{number}") for number, one in enumerate(wanted))
+    issued = (one for one in wanted if (None, None, one) not in problem.partition.unissuable)
+    return tuple(one.output(f"{one.signals[0].short}{number}") for number, one in enumerate(issued))
 
 
 def _asked(problem: Problem, issued: Mapping[int, tuple[Output, ...]]) -> AddRecruits:

@@ -7,7 +7,7 @@ or not in time, keeps out the component whose input states it; an output that ca
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from operator import attrgetter
 from typing import NamedTuple, TypeVar
@@ -15,8 +15,8 @@ from typing import NamedTuple, TypeVar
 from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import NotJudged, Obstacle
-from selfconf.model.partition import Candidate, Partition, Recruit
-from selfconf.model.profile import Input, Output, Ports, Profile, shared_ports
+from selfconf.model.partition import Candidate, Partition, Recruit, Unissuable
+from selfconf.model.profile import Input, Output, Ports, Profile, WantedSignal, shared_ports
 from selfconf.model.template import Template
 from selfconf.model.term import IRI
 from selfconf.rdf.eligibility.output_shapes import OutputShape, Port, Seen, SeenOutputs
@@ -119,6 +119,41 @@ class Acceptance:
                 self._shapes[text] = _cannot_be_judged(error)
         return self._shapes[text]
 
+    def unissuable(
+        self, template: Template, partition: Partition, looked_at: Callable[[int], frozenset[IRI] | None]
+    ) -> frozenset[Unissuable]:
+        """What candidates want that is not asked of a component to be added, by role, or to be recruited.
+
+        It could not conform, or not as far as is known: where its component has to be as the shape asks, and as a role
+        asks. `looked_at` gives for each role the properties that it looks at, or None where these may be any.
+        """
+        place = {role.iri: number for number, role in enumerate(template.roles)}
+        accepting = [[*dict.fromkeys(_accepting(some))] for some in partition.candidates]
+        asked: dict[Unissuable, None] = {}
+        for one in template.interactions if any(accepting) else ():
+            for port in accepting[place[one.sink]]:
+                if one.input in (None, port.name):
+                    asked[place[one.source], one.output, port.wanted] = None
+        for role, some in zip(template.roles, accepting, strict=True):
+            asked.update(dict.fromkeys((None, None, port.wanted) for port in some if role.recruits))
+        seen = {source: None if source is None else looked_at(source) for source in {source for source, _, _ in asked}}
+        return frozenset(one for one in asked if not self._issuable(*one, seen[one[0]]))
+
+    def _issuable(
+        self, source: int | None, name: str | None, wanted: WantedSignal, looked_at: frozenset[IRI] | None
+    ) -> bool:
+        """Whether a component could be added that issues what is wanted, by an output of a name if that is given."""
+        shape = self._shape(wanted.condition.accepts) if wanted.condition and wanted.condition.accepts else None
+        if not isinstance(shape, OutputShape):
+            return True  # no component that states a shape which cannot be judged is a candidate
+        if not shape.possible_for(wanted.output(name or ""), name is not None):
+            return False
+        asked = shape.of_component
+        if asked is None or looked_at is None:
+            return asked == frozenset()
+        above = self._hierarchy.superproperties
+        return not any(one in above(other) or other in above(one) for one in asked for other in looked_at)
+
     def obstacle(self, shape: str, output: Port, seen: Seen) -> Obstacle | None:
         """What keeps an output from being accepted by a shape, if anything does, or that it cannot be judged."""
         known = self._shape(shape)
@@ -170,6 +205,12 @@ def _stating(candidates: Sequence[Candidate | Recruit]) -> Iterator[Ports]:
     for ports in {id(ports): ports for ports in map(_PORTS, candidates)}.values():
         if any(map(_CONDITION, ports.inputs)) and any(_asked(ports)):
             yield ports
+
+
+def _accepting(candidates: Sequence[Candidate]) -> Iterator[Input]:
+    """The required inputs of candidates that ask for more than a type."""
+    for ports in _stating(candidates):
+        yield from (port for port in ports.inputs if port.condition and port.condition.accepts and not port.optional)
 
 
 def _asked(ports: Ports) -> Iterator[_Asked]:

@@ -12,11 +12,12 @@ from collections.abc import Callable, Iterator, Sequence
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import NotJudged, Obstacle, ShapeViolated
-from selfconf.model.profile import Profile
+from selfconf.model.profile import Output, Profile
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import shape_text
 from selfconf.rdf.eligibility.compiled_roles import compile_role
 from selfconf.rdf.eligibility.node_paths import WalkedStatements
+from selfconf.rdf.eligibility.supposed_conformance import could_conform
 from selfconf.rdf.shacl import PAIRS, misfit
 from selfconf.rdf.turtle import Document, Node, Triple, parse
 from selfconf.rdf.vocabulary import SC, SH, TYPE
@@ -119,6 +120,23 @@ class OutputShape:
             elif isinstance(obstacle, NotJudged) and not_judged is not None:
                 not_judged.update(dict.fromkeys(some, obstacle))
         return {*passed} if self._tests.complete or not passed else self._by_pyshacl(passed, seen, not_judged)
+
+    def possible_for(self, output: Output, named: bool) -> bool:
+        """Whether an output could conform that states so much, by the name that it has if it is `named`."""
+        names = {path: name for path, name in self._names.items() if isinstance(path, IRI)}
+        return could_conform(self._tests.tests, names, output, named, self._hierarchy)
+
+    @property
+    def of_component(self) -> frozenset[IRI] | None:
+        """The properties of the component of an output that the shape looks at; None if these may be any."""
+        found = set[IRI]()
+        for path in self._names:
+            steps = [*_steps(self._document, path)]
+            if SC.hasOutput in steps:
+                found.update(steps[steps.index(SC.hasOutput) + 1 :])
+                if steps[-1] == SC.hasOutput:
+                    return None
+        return frozenset(found)
 
     def obstacle(self, output: Port, seen: SeenOutputs) -> Obstacle | None:
         """What keeps an output from conforming, if anything does. Raises TemplateError where that cannot be judged."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -41,14 +42,21 @@ from selfconf.rdf.eligibility.advertisement_index import (
 )
 from selfconf.rdf.eligibility.alternatives import in_doubt, passable
 from selfconf.rdf.eligibility.compiled_roles import compile_role, left_to_judge, suppliers_of, with_named_suppliers
-from selfconf.rdf.eligibility.free_values import contradictory, lists_components, mentions_of, stated_on_paths
+from selfconf.rdf.eligibility.free_values import (
+    conjuncts,
+    contradictory,
+    lists_components,
+    looked_at,
+    mentions_of,
+    stated_on_paths,
+)
 from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
-from selfconf.rdf.eligibility.role_tests import CompiledRole
+from selfconf.rdf.eligibility.role_tests import CompiledRole, Count
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
 from selfconf.rdf.turtle import Document
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import SC, TYPE
 
 if TYPE_CHECKING:
     import rdflib
@@ -150,7 +158,15 @@ class Partitioner:
             self.task.template, found, lambda component: tuple(self.judge.visible([ecology[component]]))
         )
         self.not_judged |= self._acceptance.not_judged
-        return with_sent_requests(judged, self.hierarchy)
+        unissuable = self._acceptance.unissuable(self.task.template, judged, self._looked_at)
+        return with_sent_requests(replace(judged, unissuable=unissuable), self.hierarchy)
+
+    def _looked_at(self, number: int) -> frozenset[IRI] | None:
+        """The properties of which a role decides who may play it, and the type where it may exclude one."""
+        role = self.roles[number]
+        found = looked_at(self.document, role.iri)
+        excludes = not role.complete or any(isinstance(test, Count) for test in conjuncts(role.tests))
+        return found if found is None or excludes else found - {TYPE}
 
     def unjudged(self, profile: Profile) -> NotJudged | None:
         """Why a component plays no role, although it is eligible: what an input of it accepts cannot be judged."""

@@ -14,6 +14,7 @@ from selfconf.rdf.eligibility.partitioner import Partitioner
 from tests.lab import PREFIXES
 from tests.rdf.eligibility.test_output_shapes import OUTPUTS, home
 
+RDF = "@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> ."
 TASK = f"""{PREFIXES}:t a sc:Template ; sc:roles ( :sensor :display ) .
 :sensor a sc:Role ; sh:class :Sensor ; sc:feeds :display . :display a sc:Role ; sh:class :Display ."""
 
@@ -109,3 +110,48 @@ def test_an_output_that_takes_too_long_to_judge_feeds_nothing_and_is_named() -> 
     assert why.reason.startswith(
         "its output 'o' feeds no input that accepts some outputs only: matching the sh:pattern"
     )
+
+
+ON = "sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :on ) ; sh:in ( :Astrid ) ]"
+GOOD = "sh:property [ sh:path [ sh:inversePath sc:hasOutput ] ; sh:class :Good ]"
+
+
+@pytest.mark.parametrize(
+    ("role", "accepts", "proposed"),
+    [
+        ("", "sh:property [ sh:path sc:unit ; sh:hasValue unit:M ]", True),
+        ("", "sh:property [ sh:path sc:signalType ; sh:hasValue :Other ; sh:maxCount 1 ]", False),
+        ("", ON, True),
+        ("; sh:property [ sh:path :in ; sh:minCount 1 ]", ON, True),
+        ("; sh:property [ sh:path :on ; sh:in ( :Berta ) ]", ON, False),
+        ("; sh:not [ sh:class :Good ]", GOOD, False),
+        ("; sh:not [ sh:class :Good ]", ON, True),
+        ("", ON.replace(":on", "rdf:type"), True),
+        ("; sh:not [ sh:class :Astrid ]", ON.replace(":on", "rdf:type"), False),
+    ],
+)
+def test_no_component_is_asked_for_that_could_not_be_as_its_role_and_the_input_ask(
+    role: str, accepts: str, proposed: bool
+) -> None:
+    port = f'[ sc:name "i" ; sc:signalType :Pose ; sc:accepts [ {accepts} ] ]'
+    show = f"{PREFIXES} {RDF} :show a sc:Component, :Display ; sc:hasInput {port} ."
+    task = TASK.replace("sh:class :Sensor", f"sh:class :Sensor {role}")
+    answer = configure(template(task), read(show))
+    assert isinstance(answer, Refusal)
+    sensor = "add one more component for the role sensor"
+    fitting = f"{sensor} that issues Pose as the sc:accepts of its input asks"
+    both = f"{sensor} and one more component for the role display"
+    assert str(answer.repairs[0]) == (fitting if proposed else both)
+
+
+def test_no_component_is_asked_for_to_recruit_that_contradicts_itself() -> None:
+    only = (
+        PREFIXES
+        + ":t a sc:Template ; sc:roles ( :display ) . :display a sc:Role ; sh:class :Display ; sc:recruits true ."
+    )
+    for most, proposed in (("", True), ("; sh:maxCount 1", False)):
+        accepts = f"sc:accepts [ sh:property [ sh:path sc:signalType ; sh:hasValue :Other {most} ] ]"
+        port = f'[ sc:name "i" ; sc:signalType :Pose ; {accepts} ]'
+        answer = configure(template(only), read(f"{PREFIXES} :show a sc:Component, :Display ; sc:hasInput {port} ."))
+        assert isinstance(answer, Refusal)
+        assert any("to recruit" in str(one) for one in answer.repairs) is proposed
