@@ -93,9 +93,10 @@ class InputSubscription:
         self._life, self._sequence = "", 0
         """The newest signal that was delivered, by the life of its source and its number in it."""
         self._over = "", 0
-        """The last signal of a source that has failed since, which ends no blindness: it may be read after FAIL."""
+        """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
+        that is no sign that it issues, and ends no blindness."""
         self._queue = queue
-        self._stamps = StampReader()
+        self._stamps, self._stamps_on_arrival = StampReader(), StampReader()  # one for each thread
         self._heard_at = -JUST_COME
         """When the newest signal came, in seconds of the bus's clock."""
         self._understood_at = self._heard_at
@@ -160,12 +161,22 @@ class InputSubscription:
     # What arrives: on whatever thread it does.
 
     def _received(self, sample: Sample) -> None:
+        if self._over[0] and self._is_over(sample):
+            return
         self._heard_at = self._bus.now()
         if self.muted:
             self._queue.keep(0)
         grown = self._queue.append(sample)
         if grown and not self.muted:  # as many reads are due as there are signals
             self._code.signal(self._read)
+
+    def _is_over(self, sample: Sample) -> bool:
+        """Whether a signal that comes was issued before its source has failed, or has let go of its task."""
+        try:
+            _, stamp = self._stamps_on_arrival.read(sample.attachment)
+        except PeerError:
+            return False
+        return self._is_of_before(stamp)
 
     # What the component's code gets, on its thread.
 
@@ -198,9 +209,12 @@ class InputSubscription:
 
     def _is_old(self, stamp: Stamp) -> bool:
         """Whether a signal is late, doubled, or a latched one that was issued again for another input."""
-        if self.lost and stamp.life == self._over[0] and stamp.sequence <= self._over[1]:
-            return True
-        return stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE
+        late = stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE
+        return late or (self.lost and self._is_of_before(stamp))
+
+    def _is_of_before(self, stamp: Stamp) -> bool:
+        """Whether a signal was issued before its source has failed, or has let go of its task."""
+        return stamp.life == self._over[0] and 0 <= self._over[1] - stamp.sequence < LATE
 
     # What is noticed of the output, on the bus's thread.
 

@@ -13,10 +13,10 @@ from selfconf.bus.port import Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Cause, Fail, Stamp
+from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.input_subscription import BEGINNING, PATIENCE, UNSEEN, InputEvents
+from selfconf.sdk.input_subscription import BEGINNING, PATIENCE, UNSEEN, InputEvents, InputSubscription
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.signal_queue import EVENTS
 from tests.lab import Recorder
@@ -258,6 +258,13 @@ class Late:
         self.answer_nothing()
         self.issue(1)
 
+    @property
+    def subscriptions(self) -> dict[tuple[str, Wire], InputSubscription]:
+        """Those of the actuator."""
+        inputs = self.stage.runtime.inputs
+        assert isinstance(inputs, Inputs)
+        return inputs._subscriptions
+
     def issue(self, sequence: int) -> None:
         """A signal comes."""
         stamp = encode(Stamp(TRACKER, "t", sequence, 0.0))
@@ -297,6 +304,19 @@ def test_a_signal_from_before_its_source_let_go_of_its_task_feeds_nothing(before
     assert late.came_to_rest()
     late.issue(4)
     assert late.stage.recorder.said[-2:] == [("started",), ("position", 4)], "it acts again"
+
+
+def test_what_stands_by_has_not_just_issued_what_comes_late_of_another_task() -> None:
+    late = Late()
+    late.stage.call(
+        apply(2, US, {"position": (Wire(CAP, "velocity"),)}, standby={"position": (Wire(TRACKER, "pose"),)})
+    )
+    late.let_go(3)
+    late.issue(2)
+    (by,) = [one for key, one in late.subscriptions.items() if key[1].component == TRACKER]
+    assert not by.heard
+    late.issue(4)
+    assert by.heard
 
 
 def test_a_signal_from_after_its_source_let_go_of_a_task_is_news() -> None:
