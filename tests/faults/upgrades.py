@@ -197,8 +197,9 @@ class UpgradeWatch:
         return max((life.recorder.started_at for life in lives), default=0.0)
 
     def _is_fed(self, life: Life) -> bool:
+        """Whether what feeds a component acts and is in reach, and has issued something: else it is blind."""
         ports = {port for port, _ in life.followed}
-        return all(
+        return not life.runtime.code._blindness.blind and all(
             any(feeds(self._history, wire.component, life) for name, wire in life.followed if name == port)
             for port in ports
         )
@@ -212,7 +213,8 @@ class UpgradeWatch:
             if life.component in kept and stops(life) > stopped:
                 self._note(GOES_ON, f"{life.name} {life.runtime.life} has stopped, and acts for {agent.name} as before")
         stays = runs is not None and runs.assignments == going.before.assignments
-        if not (going.suffered or came_about or stays):
+        ended = state.ended or (state.phase is Phase.DISMANTLING and state.afterwards is Phase.STOPPED)
+        if not (going.suffered or came_about or stays or ended):
             what = state.phase.value if runs is None else f"running with {sorted(c.short for c in kept)}"
             self._note(STAYS, f"{agent.name} is {what}, after an upgrade that began at {going.began:.3f}")
         if came_about or not going.suffered:
