@@ -175,6 +175,11 @@ class Ambiguous:
 Fault = Missing | WrongCount | WrongShareOfValues | NotAmong | ConstraintFailed | Ambiguous
 
 
+def _subject_of(fault: Fault) -> str:
+    """What a fault is said of: the component, or its property."""
+    return "it" if isinstance(fault, Missing | WrongCount | WrongShareOfValues) else "its"
+
+
 @immutable
 class PropertyUnmet:
     """All that is wrong with one property: one obstacle, as one change of the property mends it."""
@@ -185,9 +190,8 @@ class PropertyUnmet:
 
     @property
     def clause(self) -> str:
-        """The obstacle as a clause: about the component where it lacks the property, else about the property."""
-        about_component = isinstance(self.faults[0], Missing | WrongCount | WrongShareOfValues)
-        return f"{'it' if about_component else 'its'} {self}"
+        """The obstacle as clauses: about the component where it lacks the property, else about the property."""
+        return "; ".join(f"{_subject_of(fault)} {fault.said(self.path.short)}" for fault in self.faults)
 
     def __str__(self) -> str:
         return "; ".join(fault.said(self.path.short) for fault in self.faults)

@@ -237,7 +237,8 @@ class Conflict:
         needs = [str(r) for r in self.requirements if isinstance(r, InputFed)]
         conditions = [f"one {name} for all" for name in self.parameters]
         if any(isinstance(r, OneRoleEach) for r in self.requirements):
-            conditions.append("a different component for each")
+            # A role that is named alone is at odds with itself, or with what would be recruited for it.
+            conditions.append("a different component for each" if len(self.roles) > 1 else "no component used twice")
         shared = f" with {listed(conditions)}" if conditions else ""
         so_that = f" so that {listed(needs)}" if needs else ""
         if len(self.roles) == 1:

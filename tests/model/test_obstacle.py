@@ -141,7 +141,10 @@ WORDED: list[tuple[Obstacle, str, str]] = [
     (
         unmet(WrongShareOfValues(1, 2, False), WrongShareOfValues(3, 1, True)),
         "has 1 of place that are as asked for, not at least 2; has 3 of place that are as asked for, not at most 1",
-        "it has 1 of place that are as asked for, not at least 2; has 3 of place that are as asked for, not at most 1",
+        (
+            "it has 1 of place that are as asked for, not at least 2; "
+            "it has 3 of place that are as asked for, not at most 1"
+        ),
     ),
     (NotJudged("too much"), "is not judged: too much", "it is not judged: too much"),
     *(
@@ -237,7 +240,9 @@ def test_a_constraint_says_what_is_wanted(constraint: str, words: str) -> None:
 def test_several_faults_of_a_property_are_one_obstacle() -> None:
     several = unmet(Missing(), failed("maxInclusive"))
     assert str(several) == "has no place; place is hall, not at most 5"
-    assert several.clause == "it has no place; place is hall, not at most 5"
+    assert several.clause == "it has no place; its place is hall, not at most 5"
+    limits = unmet(failed("minInclusive"), failed("maxInclusive"))
+    assert limits.clause == "its place is hall, not at least 5; its place is hall, not at most 5"
 
 
 def test_alternatives_that_lack_the_same_say_it_once() -> None:

@@ -80,6 +80,10 @@ WORDED: list[tuple[Reason, str]] = [
     ),
     (Conflict((EYE,), ("room",)), "the role eye cannot be played with one room for all"),
     (
+        Conflict((MIND,), requirements=(OneRoleEach(), InputFed(MIND, WantedSignal((IMAGE,))))),
+        "the role mind cannot be played with no component used twice so that mind gets the Image that it needs",
+    ),
+    (
         Conflict((EYE, MIND), requirements=(OneRoleEach(), InputFed(MIND, WantedSignal((IMAGE,))))),
         (
             "the roles eye and mind cannot all be played with a different component for each so that mind gets the "

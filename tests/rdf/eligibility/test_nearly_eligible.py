@@ -101,7 +101,7 @@ def test_what_only_pyshacl_can_judge_is_an_obstacle_like_any_other() -> None:
 def test_one_property_is_one_obstacle_with_all_that_is_wrong_with_it() -> None:
     text = f"{ROLE} sh:property [ sh:path :room ; sh:minCount 2 ; sh:in ( :kitchen :hall ) ] ."
     found = near(text, ":a a sc:Component, :A ; :room :cellar .")
-    assert found == [("a", "it has 1 of room, too few; room is cellar, not hall or kitchen")]
+    assert found == [("a", "it has 1 of room, too few; its room is cellar, not hall or kitchen")]
 
 
 def test_what_looks_alike_is_told_apart() -> None:
