@@ -126,6 +126,7 @@ class Inputs:
         """`read` makes of a value and its media type what the component receives; it may raise ValueError."""
         self._bus, self._keys, self._code, self._events, self._read_value = bus, keys, code, events, read
         self._depths = {port.name: port.depth for port in profile.signal_inputs}
+        self._required = [port.name for port in profile.required if not port.is_operation]
         self._subscriptions: dict[tuple[str, Wire], InputSubscription] = {}
         self._wanted: frozenset[tuple[str, Wire]] = frozenset()
         self._spare: frozenset[tuple[str, Wire]] = frozenset()
@@ -155,6 +156,9 @@ class Inputs:
                 continue
             same = before[port] if port in before and before[port].new == new else None  # a call that was repeated
             self._handovers[port] = same or Handover.beginning(now, old, new)
+        for port in self._required:
+            if not message.inputs.get(port) and port not in left:  # behind a composite may stand nothing just now
+                self._events.unfed(port)
         self._wanted, self._spare = frozenset(wanted), frozenset(spare)
         for key in wanted:
             self._subscriptions[key].unmute()

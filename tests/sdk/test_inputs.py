@@ -13,6 +13,7 @@ from selfconf.bus.port import Replies, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Wire
+from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.input_subscription import JUST_COME, PATIENCE, UNSEEN
 from selfconf.sdk.inputs import HANDOVER
 from selfconf.sdk.runtime import ComponentRuntime
@@ -20,6 +21,7 @@ from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,
+    DRIVE_PROFILE,
     KEYS,
     TASKS,
     THEM,
@@ -30,6 +32,7 @@ from tests.sdk.stage import (
     apply,
     follow,
     release,
+    reserve,
     silence,
 )
 
@@ -386,3 +389,18 @@ def test_an_output_that_stood_by_is_asked_for_what_it_issued_before() -> None:
     change.let_pass(0.4, change.tracker)
     assert len(change.answers) == 2
     assert change.stage.recorder.said[-1] == ("position", ODOMETRY.short)
+
+
+def test_an_actuator_that_starts_while_nothing_stands_behind_its_source_rests_until_something_does() -> None:
+    """A composite that feeds it is being repaired inside."""
+    stage = Stage(profile=DRIVE_PROFILE)
+    stage.call(reserve())
+    stage.call(apply(1))
+    assert stage.recorder.said == [("started",)]
+    stage.let_pass(TOLERATES + 0.1)
+    assert stage.recorder.said == [("started",), ("stopped",)]
+    tracker = stage.neighbour()
+    stage.call(follow(2))
+    tracker.component.emit("pose", 1)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[2:] == [("started",), ("position", 1)]
