@@ -9,7 +9,7 @@ that depends on nothing but what it is asked.
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from selfconf.bus.port import Bus
@@ -19,13 +19,12 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.deadline import TimeUp, deadline
 
 log = logging.getLogger(__name__)
 
 MOST_SECONDS = 0.5
-"""Seconds for the contingencies of one configuration; a component that there is no time for is searched for when it is
-lost."""
+"""Seconds after which no further component of a configuration is looked at, and that a search may have taken for more
+of its kind to be made beforehand: what there is no time for is searched for when it is needed."""
 REST = 10
 """How many times as long as they have taken it is until they are found out anew, while the ecology changes."""
 
@@ -49,32 +48,44 @@ class _Supposed(NamedTuple):
 class Contingencies:
     """Those of the one task that a configurator runs."""
 
-    def __init__(self, bus: Bus, request: RunRequest) -> None:
-        self._bus, self._request = bus, request
+    def __init__(
+        self,
+        bus: Bus,
+        request: RunRequest,
+        advertised: Callable[[], Mapping[IRI, Advertisement]],
+        runs: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """`advertised` is what a search is made among now, and `runs` whether the task does."""
+        self._bus, self._request, self._advertised, self._runs = bus, request, advertised, runs
         self._supposed: _Supposed | None = None
         """That for which they are found out now, or have been."""
         self._known: dict[IRI, Contingency | None] = {}
         """By the component that is lost, None where there is no configuration; replaced with what is supposed, and
         filled by another thread."""
-        self._next: _Supposed | None = None
-        """That for which they are to be found out next."""
+        self._next: tuple[frozenset[IRI], Configuration] | None = None
+        """For what they are to be found out next."""
         self._rested = 0.0
         """When they may be found out anew, by the clock of the bus."""
+        self.searched = 0.0
+        """How many seconds the last search has taken."""
 
-    def prepare(self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration) -> None:
+    def prepare(self, lost: frozenset[IRI], running: Configuration) -> None:
         """Find out, when there is time, what comes after `running` if one more component than the `lost` is lost.
 
         The inside of a composite has none, as its search also depends on what is outside, which may change unnoticed.
         """
         if self._request.outside is not None:
             return
-        waits, self._next = self._next is not None, _Supposed(found, lost, running)
+        waits, self._next = self._next is not None, (lost, running)
         if not waits:
             self._bus.later(max(0.0, self._rested - self._bus.now()), self._begin)
 
     def _begin(self) -> None:
-        supposed, self._next = self._next, None
-        if supposed is not None and supposed != self._supposed:
+        following, self._next = self._next, None
+        if following is None or not self._runs() or self.searched > MOST_SECONDS:
+            return
+        supposed = _Supposed(self._advertised(), *following)
+        if supposed != self._supposed:
             self._supposed, self._known = supposed, {}
             known = self._known
             self._request.at_leisure(lambda: self._find_out(supposed, known))
@@ -83,16 +94,16 @@ class Contingencies:
         """Search without each component that is not known about; interrupted, it goes on with the next one."""
         began = self._bus.now()
         try:
-            with deadline(MOST_SECONDS):
-                for component in supposed.running.components:
-                    if component not in known:
-                        lost = supposed.lost | {component}
-                        outcome = self._request.compose(supposed.found, lost, supposed.running)
-                        if isinstance(outcome, Configuration):
-                            known[component] = Contingency(outcome, dict(self._request.not_judged()))
-                        else:
-                            known[component] = None
-        except (TimeUp, SelfconfError):
+            for component in supposed.running.components:
+                if self._bus.now() - began > MOST_SECONDS:
+                    break
+                if component not in known:
+                    outcome = self._request.compose(supposed.found, supposed.lost | {component}, supposed.running)
+                    if isinstance(outcome, Configuration):
+                        known[component] = Contingency(outcome, dict(self._request.not_judged()))
+                    else:
+                        known[component] = None
+        except SelfconfError:
             pass  # the search is made when it is needed, and what is wrong with it is reported then
         except Exception:  # as a task that runs must go on
             log.exception("the search for a contingency broke")

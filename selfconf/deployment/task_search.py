@@ -40,7 +40,7 @@ class TaskSearch:
         """`give_up` ends the task where it cannot be searched for."""
         self._bus, self._ecology, self._request, self._liveness = ecology.bus, ecology, request, liveness
         self._state, self._step, self._report, self._give_up = state, step, report, give_up
-        self._contingencies = Contingencies(ecology.bus, request)
+        self._contingencies = Contingencies(ecology.bus, request, self._advertised, lambda: self._runs)
         self._left_out: set[IRI] = set()
         """The components that were reported to play no role, as they cannot be judged."""
         self._outdated: Undo = lambda: None
@@ -77,7 +77,7 @@ class TaskSearch:
                 outcome = outcome.told_of_held(usable)
             seconds = time.monotonic() - began
             composed = Composed(effect.attempt, outcome, frozenset(usable))
-            self._bus.wake_up(lambda: self._composed(composed, seconds, not_judged))
+            self._bus.wake_up(lambda: self._searched(composed, seconds, not_judged))
 
         self._outdated = self._request.aside(work)
 
@@ -86,10 +86,18 @@ class TaskSearch:
         state = self._state()
         if state.policy is Policy.REPAIR and state.target is not None:
             lost = frozenset(state.lost) | frozenset(state.taken)
-            self._contingencies.prepare(self._advertised(), lost, state.target)
+            self._contingencies.prepare(lost, state.target)
+
+    @property
+    def _runs(self) -> bool:
+        return self._state().phase is Phase.RUNNING
 
     def _advertised(self) -> Mapping[IRI, Advertisement]:
         return {component: found.advertisement for component, found in self._ecology.discovery.found.items()}
+
+    def _searched(self, composed: Composed, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
+        self._contingencies.searched = seconds
+        self._composed(composed, seconds, not_judged)
 
     def _composed(self, composed: Composed, seconds: float, not_judged: Mapping[IRI, NotJudged]) -> None:
         for component in sorted(not_judged.keys() - self._left_out):

@@ -12,7 +12,7 @@ import pytest
 
 from selfconf.composition import Composer
 from selfconf.deployment import Outside, RunRequest
-from selfconf.deployment.contingencies import REST, Contingencies
+from selfconf.deployment.contingencies import MOST_SECONDS, REST, Contingencies
 from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome
@@ -91,8 +91,8 @@ def test_nothing_is_known_about_an_ecology_that_has_changed(lab: Lab) -> None:
     assert running is not None
     found = {one: f.advertisement for one, f in agent.ecology.discovery.found.items()}
     request = RunRequest(task=task.task, compose=Composer(task).compose, at_leisure=at_once)
-    contingencies = Contingencies(lab.network.node(), request)
-    contingencies.prepare(found, frozenset(), running)
+    contingencies = Contingencies(lab.network.node(), request, lambda: found)
+    contingencies.prepare(frozenset(), running)
     lab.let_pass(0.1)
     lost = frozenset({iri("person-tracker")})
     known = contingencies.answer(dict(found), lost, running)
@@ -121,8 +121,8 @@ def test_what_is_known_is_what_the_search_answers(lab: Lab) -> None:
             continue
         composer = Composer(task)
         request = RunRequest(task=task.task, compose=composer.compose, at_leisure=at_once)
-        contingencies = Contingencies(lab.network.node(), request)
-        contingencies.prepare(found, before, running)
+        contingencies = Contingencies(lab.network.node(), request, lambda found=found: found)  # type: ignore[misc]
+        contingencies.prepare(before, running)
         lab.let_pass(0.01)
         for component in everything:
             known = contingencies.answer(found, before | {component}, running)
@@ -190,9 +190,9 @@ def test_an_ecology_that_changes_all_the_time_takes_a_share_of_the_time(
     now = node.now
     monkeypatch.setattr(node, "now", lambda: now() + spent[0])
     request = RunRequest(task=agent.request.task, compose=compose, at_leisure=slow)
-    contingencies = Contingencies(node, request)
+    contingencies = Contingencies(node, request, lambda: found)
     for lost in [*ADVERTISEMENTS] * 4:
-        contingencies.prepare(found, frozenset({iri(lost)}), running)
+        contingencies.prepare(frozenset({iri(lost)}), running)
         lab.let_pass(1.0)
     took = 0.1 * len(running.components)
     assert len(rounds) > 2
@@ -205,3 +205,18 @@ def test_the_inside_of_a_composite_has_none(lab: Lab) -> None:
     agent._search.prepare()
     lab.let_pass(1.0)
     assert len(asked.lost) == before
+
+
+@pytest.mark.parametrize("why", ["the last search took long", "the task runs no more"])
+def test_nothing_is_searched_for_beforehand_that_would_take_long_or_that_nobody_asks(lab: Lab, why: str) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    running = agent.state.target
+    assert running is not None
+    asked = Asked(agent.request.compose)
+    request = RunRequest(task=agent.request.task, compose=asked, at_leisure=at_once)
+    contingencies = Contingencies(lab.network.node(), request, dict, lambda: why != "the task runs no more")
+    contingencies.searched = MOST_SECONDS + 0.1 if why == "the last search took long" else 0.0
+    contingencies.prepare(frozenset(), running)
+    lab.let_pass(1.0)
+    assert asked.lost == []
