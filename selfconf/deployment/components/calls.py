@@ -81,6 +81,8 @@ SITE_ENDS = 1.0
 """Seconds for which a site is waited for that ends the process of a component that has not obeyed its release."""
 GONE = 2.5
 """Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
+HELD_BACK = 0.3
+"""Seconds for which a component that was adopted waits at most for a composite to say what stands behind it."""
 RESERVE_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
 
@@ -164,10 +166,29 @@ class Calls:
 
         One that was adopted is connected already: what stands behind a composite is asked before it hears of it anew.
         """
-        unknown = effect.adopted and self._ends.unknown(effect.inputs, effect.callers)
-        if unknown and not self._ends.is_composite(effect.component):  # those of a circle would wait for each other
+        if effect.adopted and self._is_to_wait(effect):
             self._held_back.append(effect)
-            return
+            self.bus.later(HELD_BACK, self._apply_held_back)
+        else:
+            self._apply(effect)
+
+    def _is_to_wait(self, effect: ApplyTo) -> bool:
+        """Whether a composite that it is connected to acts already, and so is about to say what stands behind it.
+
+        A composite itself does not wait: those of a circle would wait for each other.
+        """
+        held, unknown = self._state().held, self._ends.unknown(effect.inputs, effect.callers)
+        acts = any(one in held and held[one].acts for one in unknown)
+        return acts and not self._ends.is_composite(effect.component)
+
+    def _apply_held_back(self) -> None:
+        """Apply to those that were held back, whatever is known by now: a component waits for a second at most."""
+        held_back, self._held_back = self._held_back, []
+        for effect in held_back:
+            if effect.epoch == self._state().epoch:
+                self._apply(effect)
+
+    def _apply(self, effect: ApplyTo) -> None:
         life = self._lives.life(effect.component)
         if life is None or not self.ecology.lives_on(effect.component, life):
             self._ended(effect.component, life or "")
@@ -188,10 +209,8 @@ class Calls:
         """A component acts: connect others to what stands behind it, if that was not known before."""
         if self._ends.moved(component, answer.outputs, answer.callers):
             self._step(Rewired(component))  # before the answer: those that it calls hear of it, then all is complete
-        held_back, self._held_back = self._held_back, []
-        for effect in held_back:
-            if effect.epoch == self._state().epoch:
-                self.apply(effect)
+        if not any(map(self._is_to_wait, self._held_back)):
+            self._apply_held_back()
 
     def _ended(self, component: IRI, life: str) -> None:
         """A component that is to act has ended without a FAIL: its site may start it again."""
