@@ -275,7 +275,7 @@ class InputSubscription:
             return
         if fail.component != self._wire.component or not fail.life or fail.cause is Cause.YIELD:
             return
-        if fail.cause is Cause.LET_GO and not self.muted:
+        if fail.cause is Cause.LET_GO:
             self._look_whether_it_acts(fail)
         else:
             self._over = fail.life, fail.sequence
@@ -289,6 +289,8 @@ class InputSubscription:
                 self._look_whether_it_acts(fail)
             elif not replies.samples and (self._life != fail.life or self._sequence <= fail.sequence):
                 self._over = fail.life, fail.sequence
+                if self.muted:
+                    self._queue.keep(0)
                 self._be_lost()  # also where a signal has come meanwhile: it was on its way when the task was let go of
 
         self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, answered)

@@ -17,7 +17,7 @@ live, the new one takes its place, and the input has lost nothing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -126,7 +126,7 @@ class Inputs:
         """`read` makes of a value and its media type what the component receives; it may raise ValueError."""
         self._bus, self._keys, self._code, self._events, self._read_value = bus, keys, code, events, read
         self._depths = {port.name: port.depth for port in profile.signal_inputs}
-        self._required = [port.name for port in profile.required if not port.is_operation]
+        self._required = {port.name for port in profile.required if not port.is_operation}
         self._subscriptions: dict[tuple[str, Wire], InputSubscription] = {}
         self._wanted: frozenset[tuple[str, Wire]] = frozenset()
         self._spare: frozenset[tuple[str, Wire]] = frozenset()
@@ -156,15 +156,19 @@ class Inputs:
                 continue
             same = before[port] if port in before and before[port].new == new else None  # a call that was repeated
             self._handovers[port] = same or Handover.beginning(now, old, new)
-        for port in self._required:
-            if not message.inputs.get(port) and port not in left:  # behind a composite may stand nothing just now
-                self._events.unfed(port)
+        self._tell_unfed(left.keys(), message.inputs)
         self._wanted, self._spare = frozenset(wanted), frozenset(spare)
         for key in wanted:
             self._subscriptions[key].unmute()
             if key[0] in self._handovers and key in known:  # it stood by: what it issued before may be all it has
                 self._subscriptions[key].ask_for_last()
         self._let_go()
+
+    def _tell_unfed(self, known: Set[str], inputs: Mapping[str, tuple[Wire, ...]]) -> None:
+        """Tell of the required inputs that nothing feeds: behind a composite may stand nothing just now."""
+        for port in self._required - known:
+            if not inputs.get(port):
+                self._events.unfed(port)
 
     def _left_without(self, inputs: Mapping[str, tuple[Wire, ...]]) -> dict[str, frozenset[Wire]]:
         """The inputs that lose every output they follow, with these, to others of which none has just issued a signal.

@@ -284,6 +284,13 @@ class Late:
         self._asked.clear()
         self.stage.let_pass(0.01)
 
+    def answer(self, sequence: int) -> None:
+        """The tracker acts, and that was its last signal."""
+        for request in self._asked:
+            stamp = encode(Stamp(TRACKER, "t", sequence, 0.0))
+            request.reply(KEYS.output(TRACKER, "pose"), b"%d" % sequence, stamp)
+        self.answer_nothing()
+
     def came_to_rest(self) -> bool:
         """Whether the actuator is at rest, after the time that it may be blind."""
         self.stage.let_pass(TOLERATES + UNSEEN + 0.1)
@@ -313,10 +320,25 @@ def test_what_stands_by_has_not_just_issued_what_comes_late_of_another_task() ->
     )
     late.let_go(3)
     late.issue(2)
+    late.answer_nothing()
     (by,) = [one for key, one in late.subscriptions.items() if key[1].component == TRACKER]
     assert not by.heard
     late.issue(4)
     assert by.heard
+
+
+def test_what_stands_by_and_acts_on_for_another_task_still_has_its_last_signal() -> None:
+    late = Late()
+    standby = {"position": (Wire(TRACKER, "pose"),)}
+    late.stage.call(apply(2, US, {"position": (Wire(CAP, "velocity"),)}, standby=standby))
+    late.let_go(3)
+    late.answer(3)
+    change = encode(follow(3, gently=True))
+    late.stage.caller.ask(KEYS.call(late.stage.profile.component, "apply"), change, 5.0, lambda replies: None)
+    late.stage.let_pass(0.1)
+    late.answer(3)
+    late.stage.let_pass(0.1)
+    assert late.stage.recorder.said[-1] == ("position", 3)
 
 
 def test_a_signal_from_after_its_source_let_go_of_a_task_is_news() -> None:
