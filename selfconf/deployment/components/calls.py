@@ -79,6 +79,8 @@ CALL_ATTEMPTS = 3
 """How often a call is made to a component that answers, but has not obeyed: the call may have been lost."""
 SITE_ENDS = 1.0
 """Seconds for which a site is waited for that ends the process of a component that has not obeyed its release."""
+END_SEEN = 0.1
+"""Seconds after which the end of a life is seen whose process its site has ended."""
 GONE = 2.5
 """Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
 HELD_BACK = 0.3
@@ -321,10 +323,15 @@ class Calls:
             return
 
         def answered(replies: Replies) -> None:
-            if not replies.samples:
+            if replies.samples:
+                self.bus.later(END_SEEN, ended)
+            else:
                 otherwise()
+
+        def ended() -> None:
+            if self.ecology.lives_on(component, message.life):
+                otherwise()  # it was no process of the site that lives this life
                 return
-            self.ecology.ended(component_chunk(component), message.life)
             self._lives.leave_behind_if_ended(component)
             if not self._lives.lives_on(component):
                 self._lives.gone(component)
