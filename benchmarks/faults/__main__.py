@@ -44,7 +44,8 @@ class Series:
     def __init__(self, plans: Sequence[Plan], minutes: float, routed: bool, keep: Path | None = None) -> None:
         self._plans, self._number, self._routed = iter(plans), len(plans), routed
         self._deadline, self._keep = time.monotonic() + 60 * minutes, keep
-        self._turn = threading.Lock()
+        self._turn = threading.Condition()
+        self._at_work = 0
         self._halt = threading.Event()
         self.outcomes: list[Outcome] = []
 
@@ -60,11 +61,15 @@ class Series:
                 print("interrupted; trials that were under way do not count", file=sys.stderr, flush=True)
             finally:
                 self._halt.set()
+                with self._turn:  # a pool that is interrupted as it starts a thread does not know it
+                    self._turn.wait_for(lambda: not self._at_work)
         for one in working:
             one.result()
 
     def _work(self, folder: Path) -> None:
         ecology, last = None, None
+        with self._turn:
+            self._at_work += 1
         try:
             while (planned := self._next()) is not None:
                 ecology = ecology or Ecology(folder, self._routed, self._halt)
@@ -78,6 +83,9 @@ class Series:
         finally:
             if ecology is not None:
                 _leave(ecology, last)
+            with self._turn:
+                self._at_work -= 1
+                self._turn.notify_all()
 
     def _next(self) -> Plan | None:
         with self._turn:
