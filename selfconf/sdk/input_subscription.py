@@ -95,6 +95,9 @@ class InputSubscription:
         self._over = "", 0
         """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
         that is no sign that it issues, and ends no blindness."""
+        self._doubted: tuple[str, int] | None = None
+        """The same of a source that has let go of a task, until it has said whether it acts for another one, and while
+        nothing newer has come."""
         self._queue = queue
         self._stamps, self._stamps_on_arrival = StampReader(), StampReader()  # one for each thread
         self._heard_at = -JUST_COME
@@ -124,8 +127,11 @@ class InputSubscription:
 
     @property
     def heard(self) -> bool:
-        """Whether the output has just issued a signal, so that the input that follows it from now on is fed."""
-        return bool(self._queue) and self._bus.now() - self._heard_at < JUST_COME
+        """Whether the output has just issued a signal, so that the input that follows it from now on is fed.
+
+        None that it may have issued for a task of which it has let go.
+        """
+        return bool(self._queue) and self._doubted is None and self._bus.now() - self._heard_at < JUST_COME
 
     def ask_for_last(self) -> None:
         """Ask the output once more for its last signal."""
@@ -161,8 +167,13 @@ class InputSubscription:
     # What arrives: on whatever thread it does.
 
     def _received(self, sample: Sample) -> None:
-        if self._over[0] and self._is_over(sample):
-            return
+        over, doubted = self._over, self._doubted
+        if over[0] or doubted is not None:
+            stamp = self._stamp_of(sample)
+            if stamp is not None and _is_up_to(over, stamp):
+                return
+            if doubted is not None and stamp is not None and self._is_newer(doubted, stamp):
+                self._doubted = None
         self._heard_at = self._bus.now()
         if self.muted:
             self._queue.keep(0)
@@ -170,13 +181,17 @@ class InputSubscription:
         if grown and not self.muted:  # as many reads are due as there are signals
             self._code.signal(self._read)
 
-    def _is_over(self, sample: Sample) -> bool:
-        """Whether a signal that comes was issued before its source has failed, or has let go of its task."""
+    def _stamp_of(self, sample: Sample) -> Stamp | None:
+        """The stamp of a signal as it comes; None if that cannot be read."""
         try:
-            _, stamp = self._stamps_on_arrival.read(sample.attachment)
+            return self._stamps_on_arrival.read(sample.attachment)[1]
         except PeerError:
-            return False
-        return self._is_of_before(stamp)
+            return None
+
+    def _is_newer(self, last: tuple[str, int], stamp: Stamp) -> bool:
+        """Whether a signal was issued after the last one for a task: by the same life, or by another that lives."""
+        life, _ = last
+        return not _is_up_to(last, stamp) if stamp.life == life else self._shows(stamp.life)
 
     # What the component's code gets, on its thread.
 
@@ -210,11 +225,7 @@ class InputSubscription:
     def _is_old(self, stamp: Stamp) -> bool:
         """Whether a signal is late, doubled, or a latched one that was issued again for another input."""
         late = stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE
-        return late or (self.lost and self._is_of_before(stamp))
-
-    def _is_of_before(self, stamp: Stamp) -> bool:
-        """Whether a signal was issued before its source has failed, or has let go of its task."""
-        return stamp.life == self._over[0] and 0 <= self._over[1] - stamp.sequence < LATE
+        return late or (self.lost and _is_up_to(self._over, stamp))
 
     # What is noticed of the output, on the bus's thread.
 
@@ -282,13 +293,22 @@ class InputSubscription:
             self._lose(self._heard_at)
 
     def _look_whether_it_acts(self, fail: Fail) -> None:
-        """The component has let go of a task: it may act for another one, and then it answers with its last signal."""
+        """The component has let go of a task: it may act for another one, and then it answers with its last signal.
+
+        Until then no signal of before counts as one that has just come, and what comes later answers the question.
+        """
+        last = fail.life, fail.sequence
+        self._doubted = last
 
         def answered(replies: Replies) -> None:
-            if not replies.complete and not self._ended:
+            if self._ended or self._doubted != last:
+                return
+            if not replies.complete:
                 self._look_whether_it_acts(fail)
-            elif not replies.samples and (self._life != fail.life or self._sequence <= fail.sequence):
-                self._over = fail.life, fail.sequence
+                return
+            self._doubted = None
+            if not replies.samples:
+                self._over = last
                 if self.muted:
                     self._queue.keep(0)
                 self._be_lost()  # also where a signal has come meanwhile: it was on its way when the task was let go of
@@ -328,3 +348,9 @@ class InputSubscription:
             self._expect()
 
         self._deadline = self._bus.later(usual if self._sequence else min(seconds, usual), look)
+
+
+def _is_up_to(last: tuple[str, int], stamp: Stamp) -> bool:
+    """Whether a signal is that one of a life, by its number, or was issued before it."""
+    life, sequence = last
+    return stamp.life == life and 0 <= sequence - stamp.sequence < LATE

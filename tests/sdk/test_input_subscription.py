@@ -327,6 +327,23 @@ def test_what_stands_by_has_not_just_issued_what_comes_late_of_another_task() ->
     assert by.heard
 
 
+def test_what_stands_by_has_not_just_issued_what_it_may_have_issued_for_a_task_that_it_has_let_go_of() -> None:
+    late = Late()
+    standby = {"position": (Wire(TRACKER, "pose"),)}
+    late.stage.call(apply(2, US, {"position": (Wire(CAP, "velocity"),)}, standby=standby))
+    late.issue(2)
+    (by,) = [one for key, one in late.subscriptions.items() if key[1].component == TRACKER]
+    assert by.heard
+    late.let_go(3)
+    assert not by.heard, "it has not said yet whether it acts for another task"
+    late.issue(3)
+    assert not by.heard
+    late.issue(4)
+    assert by.heard
+    late.answer_nothing()
+    assert by.heard, "it acts, for another task or this one"
+
+
 def test_what_stands_by_and_acts_on_for_another_task_still_has_its_last_signal() -> None:
     late = Late()
     standby = {"position": (Wire(TRACKER, "pose"),)}
