@@ -7,7 +7,8 @@ source of it is lost, else not before its new sources have confirmed: make befor
 released when everything has confirmed.
 
 Why in the order of the IRIs: a task that waits for a component holds none that comes later, so tasks cannot wait for
-each other in a circle (Havender 1968). In a repair, which holds components already, one that is held by another task
+each other in a circle (Havender 1968). One that was asked in a deployment which began anew before the answer came
+counts as held. In a repair, which holds components already, one that is held by another task
 counts as taken, unless that task is of lower priority: it is made to let go.
 
 A repair that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
@@ -111,7 +112,8 @@ def _reserve(state: State, component: IRI) -> Reaction:
     target = state.target
     assert target is not None
     reserve = ReserveOf(component, state.epoch, wiring(target)[component], parameter_values(target)[component])
-    return replace(state, pending=state.pending | {(component, Call.RESERVE)}), (reserve,)
+    held = {**state.held, component: replace(state.held[component], asked=True)}
+    return replace(state, held=held, pending=state.pending | {(component, Call.RESERVE)}), (reserve,)
 
 
 def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
@@ -155,9 +157,9 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     if answer.call is Call.WAKE:
         return proceed(state)
     if answer.call is Call.RESERVE:
-        known = replace(held, life=answer.life, reserved=True)
+        known = replace(held, life=answer.life, asked=False, reserved=True)
         return proceed(replace(state, held={**state.held, answer.component: known}))
-    known = replace(held, life=answer.life, reserved=True, acts=True, confirmed=True)
+    known = replace(held, life=answer.life, asked=False, reserved=True, acts=True, confirmed=True)
     done = replace(state, held={**state.held, answer.component: known})
     assert done.order is not None
     waiting: Iterable[IRI] = done.order.after[answer.component]
@@ -218,7 +220,7 @@ def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:
     return (
         state.patient
         and not holder.acting
-        and not any(one > component for one in state.held if state.held[one].reserved)
+        and not any(one > component for one, held in state.held.items() if held.may_be_held)
     )
 
 

@@ -26,6 +26,7 @@ of this one makes it let go: everything comes to rest, sinks first, and is confi
 
 Changes for the better. What ran before is what is wanted again if such a change does not come about, whatever the
 policy: a component that was not part of it is only let go of when it is lost, or a task of higher priority asks for it.
+Where what ran loses a component meanwhile, a repair keeps the rest of it: that acts, and the better one may never.
 
 A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
 released again when it is seen again.
@@ -225,6 +226,10 @@ def _declined(state: State, event: Answered) -> Reaction:
     """A component has not done what it was asked: ask once more where that may help, else do without it."""
     repeats = state.repeats.get(event.component, 0)
     counted = replace(state, repeats={**state.repeats, event.component: repeats + 1})
+    if event.verdict is not None and event.call is Call.RESERVE:
+        counted = replace(
+            counted, held={**state.held, event.component: replace(state.held[event.component], asked=False)}
+        )
     if event.verdict is Verdict.STALE and _can_catch_up(event) and repeats < MOST_REPEATS:
         return deploying.deploy(replace(counted, epoch=max(state.epoch, event.newest)))
     if event.verdict is Verdict.NOT_HELD and repeats < MOST_REPEATS:
@@ -260,7 +265,7 @@ def _busy(state: State, event: Answered) -> Reaction:
 
 def _reserve_anew(state: State, component: IRI) -> Reaction:
     """Reserve a component that does not act for this task, as it was not held any more, or not yet."""
-    forgotten = replace(state.held[component], reserved=False, active=False, acts=False, confirmed=False)
+    forgotten = replace(state.held[component], asked=False, reserved=False, active=False, acts=False, confirmed=False)
     return deploying.deploy(replace(state, held={**state.held, component: forgotten}))
 
 
@@ -342,7 +347,7 @@ def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
         return _dismantle(without, Phase.COMPOSING)
     if state.phase is Phase.DISCOVERING:
         return without, effects
-    return then(effects, _compose(replace(without, fallback=None)))
+    return then(effects, _compose(replace(without, target=state.fallback or state.target, fallback=None)))
 
 
 def _is_needed(state: State, component: IRI) -> bool:
@@ -514,7 +519,7 @@ def _reconnected(state: State) -> Reaction:
     if state.phase in (Phase.IDLE, Phase.DISMANTLING) or state.ended:
         return state, ()
     unsure = {component: replace(held, acts=False, confirmed=False) for component, held in state.held.items()}
-    return _discover(replace(state, held=unsure, fallback=None))
+    return _discover(replace(state, target=state.fallback or state.target, held=unsure, fallback=None))
 
 
 def _ranked(state: State, priority: int) -> Reaction:

@@ -48,6 +48,8 @@ class Held:
     values: Mapping[str, Term] = field(default_factory=dict)
     callers: Callers = field(default_factory=dict)
     life: str = ""
+    asked: bool = False
+    """Whether it was asked to be held for this task and has not answered: it may be held, as an answer can get lost."""
     reserved: bool = False
     """Whether it has said that it is held for this task."""
     active: bool = False
@@ -56,6 +58,11 @@ class Held:
     """Whether it has said that it acts, if with other inputs."""
     confirmed: bool = False
     """Whether it has said that it acts with these inputs and values, for these callers."""
+
+    @property
+    def may_be_held(self) -> bool:
+        """Whether it may be held for this task, as far as is known."""
+        return self.asked or self.reserved or self.active
 
 
 @immutable

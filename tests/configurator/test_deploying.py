@@ -333,6 +333,18 @@ def test_what_is_to_run_again_does_not_suffer_from_the_loss_of_what_it_does_with
     assert history.all_answer() == [Running(navigation(ODOMETRY))]
 
 
+@pytest.mark.parametrize("policy", Policy)
+def test_a_loss_before_a_better_configuration_has_come_about_changes_what_ran(policy: Policy) -> None:
+    history = History(replace(TASK, policy=policy)).running(navigation(ODOMETRY))
+    history.hear(Improvable(), Discovered())
+    history.composed(with_arm(navigation()))
+    history.hear(Failed(CONTROL, "1", Cause.CRASH))
+    if policy is Policy.REPAIR:
+        assert history.effects[-1] == Compose(history.state.attempt, frozenset({CONTROL}), navigation(ODOMETRY))
+    else:
+        assert history.state.phase is Phase.DISMANTLING
+
+
 def test_what_is_not_needed_any_more_is_released_sinks_first() -> None:
     history = History(TASK).running()
     history.hear(Failed(TRACKER, "1", Cause.CRASH))
@@ -480,6 +492,19 @@ def reserving(patient: bool = False) -> History:
     history.composed(navigation())
     history.all_answer(Call.WAKE)
     return history
+
+
+@pytest.mark.parametrize("answer", [None, Verdict.BUSY])
+def test_what_was_asked_before_a_deployment_began_anew_may_be_held_until_it_answers(answer: Verdict | None) -> None:
+    history = reserving(patient=True)
+    history.answer(CONTROL, Call.RESERVE)
+    if answer is not None:
+        history.busy(DRIVE, RESERVING)
+    history.hear(Failed(CONTROL, "1", Cause.CRASH))
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    effects = history.busy(CONTROL, RESERVING)
+    assert kinds(effects) == ([ReleaseFrom, Compose] if answer is None else [AwaitRelease])
 
 
 def test_a_component_of_a_task_of_lower_priority_is_waited_for() -> None:

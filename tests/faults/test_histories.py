@@ -65,6 +65,7 @@ def test_no_history_in_which_code_is_busy_or_hangs_on_breaks_an_invariant(batch:
         pytest.param(408360, PAPER, id="a site is back while the others are asked, before lives are followed"),
         pytest.param(742181, PAPER, id="an actuator is in `started` for longer than it may be blind"),
         pytest.param(930019, COMPOSED, id="what is outside changes while the inside is repaired"),
+        pytest.param(5001337, COMPOSED, id="the answer of what a task has reserved is lost, as another component ends"),
         pytest.param(403772, PAPER, id="a site is cut off after its answer, while another has not answered"),
     ],
 )

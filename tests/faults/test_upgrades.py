@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.effort import NIGHTLY
-from tests.faults.ecologies import CHOICE, COMPOSED, PAPER
+from tests.faults.ecologies import CHOICE, COMPOSED, PAPER, FaultyEcology
 from tests.faults.replay import played
 from tests.faults.script import KINDS, Recipe, with_upgrades, write
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
@@ -41,6 +41,20 @@ def test_no_history_of_upgrades_breaks_an_invariant(batch: int, folder: Path) ->
 )
 def test_a_history_of_upgrades_that_was_broken_once_is_not_any_more(seed: int, folder: Path) -> None:
     play_well(recipe(seed), folder)
+
+
+@pytest.mark.parametrize(
+    ("seed", "ecology", "large"),
+    [
+        pytest.param(3000747, CHOICE, False, id="what stood by has let go of a task, and has not said if it acts"),
+        pytest.param(3502067, CHOICE, True, id="what runs loses a source while what is better does not answer"),
+        pytest.param(2004121, COMPOSED, False, id="an upgrade begins before a composite says what stands behind it"),
+    ],
+)
+def test_another_history_of_upgrades_that_was_broken_once_is_not_any_more(
+    seed: int, ecology: FaultyEcology, large: bool, folder: Path
+) -> None:
+    play_well(Recipe(seed, ecology, busy=ecology is COMPOSED, large=large, upgrades=True), folder)
 
 
 @pytest.mark.parametrize(("seed", "ended"), [(28, [False, True]), (40, [True, False])])

@@ -32,7 +32,7 @@ def starves(history: History) -> Iterator[str]:
     """An input that was fed before an upgrade is fed while it goes on, if what fed it, and what is to, have not failed.
 
     An input without any of these is told of; not one that follows an output which has failed since it delivered, nor
-    one that a composite feeds which is being repaired inside.
+    one that a composite feeds which is being repaired inside, or which has not said yet what stands behind it.
     """
     for agent in history.agents:
         before = agent.state.fallback
@@ -45,6 +45,8 @@ def starves(history: History) -> Iterator[str]:
 def _starving(history: History, agent: TaskRunner, before: Configuration, life: Life) -> Iterator[str]:
     for port in life.runtime.profile.signal_inputs:
         old = sources(before, life.component, port.name)
+        if not history.watch.upgrades.has_followed(agent, life, port.name):
+            continue
         followed = [wire.component for name, wire in life.followed if name == port.name]
         if not old or not all(delivers(history, source, life) for source in old):
             continue
@@ -120,6 +122,8 @@ class Upgrade:
     """Whether what ran before has lost anything, or its configurator its way to it."""
     heard: dict[tuple[str, str], float] = field(default_factory=dict)
     """For each life and input, when it has heard last of what has fed it before the upgrade."""
+    followed: set[tuple[str, str]] = field(default_factory=set)
+    """Each life and input that has followed an output since it began."""
     acting: dict[str, tuple[Life, int]] = field(default_factory=dict)
     """The lives that have acted for the task all the time, each with how often it had stopped when it began."""
 
@@ -143,6 +147,11 @@ class UpgradeWatch:
             if going is not None:
                 self._follow(agent, state, going)
 
+    def has_followed(self, agent: TaskRunner, life: Life, port: str) -> bool:
+        """Whether an input has followed any output since an upgrade of a task began that goes on."""
+        going = self._going.get(agent)
+        return going is not None and (life.runtime.life, port) in going.followed
+
     def _begun(self, agent: TaskRunner, state: State) -> Upgrade:
         assert state.fallback is not None
         assert state.target is not None
@@ -164,6 +173,8 @@ class UpgradeWatch:
         going.acting = {name: one for name, one in going.acting.items() if name in acting}
         well = {life.component for life, _ in going.acting.values()} - state.lost.keys()  # one may be asked to yield
         going.suffered = going.suffered or not well.issuperset(going.before.components)
+        for life in self._acting(agent, going.before):
+            going.followed.update((life.runtime.life, port) for port, _ in life.followed)
         for life, _ in going.acting.values():
             self._look_at_inputs(life, going)
         if state.fallback is None and state.phase not in (Phase.RESERVING, Phase.DEPLOYING):
