@@ -44,6 +44,7 @@ from dataclasses import replace
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import Reaction, then
 from selfconf.configurator.effects import (
+    ApplyTo,
     Compose,
     Decline,
     Discover,
@@ -252,15 +253,31 @@ def _can_catch_up(event: Answered) -> bool:
 
 
 def _busy(state: State, event: Answered) -> Reaction:
-    """Another task holds a component: wait for it, or do without it."""
+    """Another task holds a component: wait for it, or do without it; nothing of this task follows it meanwhile."""
     if event.holder is not None and event.holder.task == state.task and not state.alone:
         return _stand_down(state)
-    if deploying.may_wait_for(state, event.component, event.holder):
-        if event.call is Call.RESERVE:
+    apart, effects = _disconnect(state, event.component)
+    if deploying.may_wait_for(apart, event.component, event.holder):
+        if event.call is Call.RESERVE and not effects:
             return deploying.await_release(state, event.component)
         if state.repeats[event.component] <= MOST_REPEATS:
-            return _reserve_anew(state, event.component)
-    return _lose(state, event.component, Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True))
+            return then(effects, _reserve_anew(apart, event.component))
+    busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True)
+    return then(effects, _lose(apart, event.component, busy))
+
+
+def _disconnect(state: State, component: IRI) -> Reaction:
+    """Let go of the outputs of a component that acts for another task: what follows them is fed by a stranger."""
+    epoch = state.epoch + 1
+    held, effects = dict(state.held), []
+    for one, mine in state.held.items():
+        inputs = {
+            port: tuple(wire for wire in wires if wire.component != component) for port, wires in mine.inputs.items()
+        }
+        if mine.active and one != component and inputs != mine.inputs:
+            held[one] = replace(mine, inputs=inputs, confirmed=False)
+            effects.append(ApplyTo(one, epoch, inputs, mine.values, mine.callers))
+    return (replace(state, epoch=epoch, held=held), tuple(effects)) if effects else (state, ())
 
 
 def _reserve_anew(state: State, component: IRI) -> Reaction:

@@ -550,13 +550,35 @@ def test_a_task_that_is_about_to_act_is_waited_for_by_a_patient_one_until_it_act
 def test_a_repair_whose_only_lack_is_held_by_a_task_of_lower_priority_waits_for_it() -> None:
     history = lost_tracker()
     history.answer(ODOMETRY, Call.WAKE)
-    assert history.busy(ODOMETRY, LOWER, Call.APPLY) == [WakeUp(ODOMETRY, history.state.epoch)]
+    assert history.busy(ODOMETRY, LOWER, Call.APPLY)[-1] == WakeUp(ODOMETRY, history.state.epoch)
     assert ODOMETRY not in history.state.lost
     assert reserved(history.answer(ODOMETRY, Call.WAKE)) == [ODOMETRY]
     assert kinds(history.busy(ODOMETRY, LOWER)) == [AwaitRelease]
     history.hear(Freed(ODOMETRY))
-    assert applied(history.answer(ODOMETRY, Call.RESERVE)) == [ODOMETRY, CONTROL]
+    assert applied(history.answer(ODOMETRY, Call.RESERVE)) == [ODOMETRY]
+    assert applied(history.answer(ODOMETRY, Call.APPLY)) == [CONTROL]
     assert history.all_answer() == [Running(navigation(ODOMETRY))]
+
+
+@pytest.mark.parametrize("holder", [OTHERS, LOWER])
+def test_nobody_follows_a_component_that_turns_out_to_act_for_another_task(holder: Holder) -> None:
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    history.composed(navigation(ODOMETRY))
+    assert {ODOMETRY, CONTROL} == {*applied(history.answer(ODOMETRY, Call.WAKE))}, "at once"
+    before = history.state.epoch
+    effects = history.busy(ODOMETRY, holder, Call.APPLY)
+    (apart,) = [effect for effect in effects if isinstance(effect, ApplyTo)]
+    assert (apart.component, apart.inputs["position"]) == (CONTROL, ())
+    assert apart.epoch > before, "it is obeyed whatever comes first"
+    if holder is LOWER:
+        assert reserved(history.all_answer(Call.WAKE)) == [ODOMETRY], "it is asked to let go of it"
+        assert kinds(history.busy(ODOMETRY, holder)) == [AwaitRelease], "nobody follows it any more"
+    else:
+        history.composed(navigation(ARM))
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert history.state.held[CONTROL].inputs["position"] != ()
 
 
 def test_what_is_given_up_while_it_was_waited_for_does_not_remember_that_this_task_waits() -> None:

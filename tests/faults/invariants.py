@@ -158,6 +158,23 @@ def strangers(history: History, component: IRI, agent: TaskRunner) -> Iterator[s
                     yield hold.claim.task
 
 
+def heeds_a_stranger(history: History) -> Iterator[str]:
+    """An actuator that acts follows nothing that acts for other tasks alone: what that issues is not meant for it.
+
+    What stands behind a composite acts for the inside of that.
+    """
+    insides = {inside.runner.supervisor for inside in history.insides() if inside.runner is not None}
+    for life in acting(history):
+        if life.runtime.profile.outputs or not is_on(life):
+            continue
+        mine = {supervisor for supervisor, acts in life.holds.items() if acts}
+        followed = {wire.component for _, wire in life.followed}
+        for source in acting(history) if mine else ():
+            theirs = {supervisor for supervisor, acts in source.holds.items() if acts}
+            if source.component in followed and theirs and not theirs & (mine | insides):
+                yield f"{life.name} follows {source.name}, which acts for {sorted(theirs)}"
+
+
 def runs_without(history: History) -> Iterator[str]:
     """A task is running only as long as each of its components acts for it, or its configurator is cut off, and knows.
 
@@ -237,6 +254,7 @@ STEPS = (
     Invariant("held is known", held_for_nothing, lambda history: retries(history) + travel(history)),
     Invariant("nobody obeys two", obeys_two),
     Invariant("no actuator acts on part", acts_on_part, lambda history: GRACE + LEASE + travel(history)),
+    Invariant("nobody heeds a stranger", heeds_a_stranger, lambda history: GRACE + LEASE + travel(history)),
     Invariant("no actuator acts blind", acts_blind, lambda h: TOLERATES + LEASE + GRACE + travel(h) + 1.0),
     Invariant("who hangs has failed", hangs_unnoticed, lambda history: 0.05),
     Invariant("what waits is bounded", network_overflows),

@@ -121,6 +121,14 @@ SHARES_ALL = {
 }
 SILENT = {f"{LIVENESS}.Liveness.audit": nothing, f"{RUNTIME}._let_go": lets_go_silently}
 """Nobody tells, and nobody asks, whether a component has let go."""
+LETS_GO_SILENTLY = Mutation(
+    {
+        **SILENT,
+        "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered, kept: answered({}),
+    },
+    (Action(2.0, "begin", "task-3"), Action(4.0, "mute", "task-1", "control"), LATER),
+)
+"""What has let go of one task is taken by another."""
 SECOND = Action(2.0, "begin", "task-2")
 BETTER = (Action(0.0, "crash", "tracker"), Action(5.0, "start", "tracker"))
 """The tracker would rather be had than odometry."""
@@ -138,13 +146,8 @@ MUTATIONS = {
     "each runs with its own": Mutation(SHARES_ALL, (SECOND,)),
     "held is known": RELEASES_NOTHING,
     "nobody obeys two": Mutation(SHARES_ALL, (SECOND, Action(4.0, "fail", "tracker"))),
-    "no actuator acts on part": Mutation(
-        {
-            **SILENT,
-            "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered, kept: answered({}),
-        },
-        (Action(2.0, "begin", "task-3"), Action(4.0, "mute", "task-1", "control"), LATER),
-    ),
+    "no actuator acts on part": LETS_GO_SILENTLY,
+    "nobody heeds a stranger": LETS_GO_SILENTLY,
     "no actuator acts blind": Mutation(
         {"selfconf.sdk.component_code.TOLERATES": 1e9}, (Action(2.0, "mute", "control", "drive"), LATER)
     ),
