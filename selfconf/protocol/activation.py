@@ -11,12 +11,13 @@ applied. `reserve` changes no phase: none of the components of a configuration a
 
 Before the table come three guards. A call of an older epoch than the newest that was obeyed for its task is STALE:
 epochs order the calls of one task, not of two, as their clocks may differ. A call of another configurator than the one
-that supervises the task is BUSY while that one is alive. A call of a task that cannot hold the component beside those
-that do is BUSY, and the task *waits*: higher priority first, then the earlier beginning. Once the component is free,
-it is *offered* to the first that waits; until that one has reserved it or the offer is over, tasks that come later are
-BUSY. An offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot
-come for it, as each waits for the other, would have it offered to them for ever. A task that has not come for it waits
-on, but no task is asked to yield for its sake until it asks again: its configurator may be gone.
+that supervises the task is BUSY while that one lives; one for which the component acts and that was not seen yet may
+have left while its last call was on its way. A call of a task that cannot hold the component beside those that do is
+BUSY, and the task *waits*: higher priority first, then the earlier beginning. Once the component is free, it is
+*offered* to the first that waits; until that one has reserved it or the offer is over, tasks that come later are BUSY.
+An offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot come
+for it, as each waits for the other, would have it offered to them for ever. A task that has not come for it waits on,
+but no task is asked to yield for its sake until it asks again: its configurator may be gone.
 
 A component that has failed stays failed for the epoch it failed in: an apply of that epoch, repeated or late, is
 REFUSED, or it would hide the failure. An actuator, a component without outputs, is never applied to by a task that does
@@ -133,15 +134,16 @@ def obey(
     shareable: bool = False,
     actuator: bool = False,
     gone: frozenset[str] = frozenset(),
+    unseen: frozenset[str] = frozenset(),
 ) -> Obedience:
     """Return what a call makes of an activation; `gone` are the supervisors whose life was seen to end.
 
-    `shareable` and `actuator` say what kind of component it is.
+    `unseen` are those that were not seen to live yet. `shareable` and `actuator` say what kind of component it is.
     """
     own = activation.hold(call.task)
     if call.epoch < activation.epoch_of(call.task):
         return activation, Verdict.STALE, ActivationStep.NONE
-    if own is not None and own.claim.supervisor not in (call.supervisor, *gone):
+    if own is not None and _is_anothers(own, call, gone, unseen):
         return activation, Verdict.BUSY, ActivationStep.NONE
     if isinstance(call, Release):
         after, step = drop(activation, (call.task,), call.epoch)
@@ -156,6 +158,12 @@ def obey(
     if served.phase is ActivationPhase.FAILED and own is not None and own.active and call.epoch == own.claim.epoch:
         return activation, Verdict.REFUSED, ActivationStep.NONE
     return _activate(served, call, gone), Verdict.DONE, _START[served.phase]
+
+
+def _is_anothers(hold: Hold, call: Claim, gone: frozenset[str], unseen: frozenset[str]) -> bool:
+    """Whether another configurator of the same task is to be obeyed than the one that calls."""
+    left = gone | unseen if hold.active else gone
+    return hold.claim.supervisor not in (call.supervisor, *left)
 
 
 def _activate(activation: Activation, call: Apply, gone: frozenset[str]) -> Activation:

@@ -279,6 +279,7 @@ class ComponentRuntime:
             shareable=self.profile.is_shareable,
             actuator=not self.profile.outputs,
             gone=self.supervision.gone,
+            unseen=self.supervision.unseen,
         )
         if verdict is not Verdict.DONE:
             self.activation = after

@@ -29,6 +29,11 @@ class Supervision:
         """The supervisors whose life was seen to end."""
         return frozenset(supervisor for supervisor, watched in self._watched.items() if watched.gone)
 
+    @property
+    def unseen(self) -> frozenset[str]:
+        """The supervisors that were not seen to live yet."""
+        return frozenset(supervisor for supervisor, watched in self._watched.items() if not watched.seen)
+
     def watch(self, supervisors: Collection[str]) -> None:
         """Watch exactly these supervisors, given by their liveliness keys."""
         for supervisor in [one for one in self._watched if one not in supervisors]:
@@ -45,6 +50,8 @@ class _Watched:
         self._bus, self._supervisor, self._orphaned = bus, supervisor, orphaned
         self.gone = False
         """Whether its life was seen to end."""
+        self.seen = False
+        """Whether it was seen to live."""
         self._grace: Undo | None = None
         self._watch: Undo | None = None
         self._begin_grace()  # until its life is seen for the first time
@@ -61,7 +68,7 @@ class _Watched:
         self._watch = self._bus.watch(self._supervisor, self._changed)
 
     def _changed(self, _: str, alive: bool) -> None:
-        self.gone = not alive
+        self.gone, self.seen = not alive, True
         if alive:
             self._end_grace()
         else:

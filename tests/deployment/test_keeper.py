@@ -12,6 +12,7 @@ import pytest
 from selfconf.bus.memory import Faults
 from selfconf.bus.port import Bus, Urgency
 from selfconf.composition import Composer
+from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.deployment.keeper import keeper_of
@@ -177,14 +178,14 @@ def composed(record: TaskRecord) -> RunRequest:
     return RunRequest(task=task.task, compose=Composer(task).compose, patient=True, priority=record.priority)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_who_follows_a_composite_goes_on_when_the_next_site_goes_on(tmp_path: Path, seed: int) -> None:
-    lab = Lab(tmp_path, seed, Faults(most_delay=0.1), COMPOSED.advertisements)
+def following(folder: Path, seed: int) -> tuple[Keepers, str, str, str]:
+    """A task that needs a composite and runs, its name, the site that runs it, and the next one."""
+    lab = Lab(folder, seed, Faults(most_delay=0.1), COMPOSED.advertisements)
     for site, names in COMPOSED.sites.items():
         lab.site(site, *names)
     for name in COMPOSED.processes:
         lab.component(name)
-    keepers = Keepers(lab, tmp_path / "disks", composed)
+    keepers = Keepers(lab, folder / "disks", composed)
     sites = (*COMPOSED.sites, *"abc")
     task = next(
         one
@@ -194,16 +195,45 @@ def test_who_follows_a_composite_goes_on_when_the_next_site_goes_on(tmp_path: Pa
     keepers.hand_over(TaskRecord(task, 1, beginning=5.0))
     assert lab.until(lambda: bool(keepers.running()))
     lab.let_pass(3.0)
+    return keepers, task, *keepers_in_turn(task, *sites)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_who_follows_a_composite_goes_on_when_the_next_site_goes_on(tmp_path: Path, seed: int) -> None:
+    keepers, _, keeper, _ = following(tmp_path, seed)
+    lab = keepers.lab
     drive, said = lab.components["drive"], list(lab.components["drive"].said)
     lost: list[str] = []
     lab.runtimes["drive"].inputs._events = replace(lab.runtimes["drive"].inputs._events, unfed=lost.append)
-    keepers.end(keepers_in_turn(task, *sites)[0])
+    keepers.end(keeper)
     lab.let_pass(10.0)
     assert (lost, drive.said) == ([], said)
     lab.components["tracker-1"].emit("track", "here")
     drive.ask("start")
     lab.let_pass(1.0)
     assert sorted(drive.said[len(said) :]) == [("position", "here"), ("start", "answered", iri("tracker-1"))]
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("after", [0.15, 0.2, 0.25, 0.3])
+def test_nothing_stops_when_the_first_site_is_back_while_the_next_one_takes_over(
+    tmp_path: Path, seed: int, after: float
+) -> None:
+    """The calls of that one are on their way when it lets go of the task, or are held back."""
+    keepers, task, first, following_one = following(tmp_path, seed)
+    lab = keepers.lab
+    said = {name: list(recorder.said) for name, recorder in lab.components.items()}
+    keepers.end(first)
+    assert lab.until(lambda: task in keepers.keepers[following_one].runners)
+    between = keepers.keepers[following_one].runners[task]
+    lab.let_pass(after)
+    keepers.begin(first)
+    assert lab.until(lambda: between.state.ended, 1.0)
+    calls: list[ApplyTo] = []
+    between._calls._apply = calls.append  # type: ignore[method-assign]
+    lab.let_pass(10.0)
+    assert {name: list(recorder.said) for name, recorder in lab.components.items()} == said
+    assert (keepers.running(), calls) == ([first], [])
 
 
 def drives(record: TaskRecord) -> RunRequest:

@@ -256,6 +256,17 @@ def test_a_release_of_a_task_that_does_not_hold_the_component_changes_nothing_fo
     assert after.holds == activation_in(ACTIVE).holds
 
 
+@pytest.mark.parametrize("phase", ActivationPhase)
+def test_of_two_configurators_of_one_task_the_second_goes_on_with_what_acts_if_the_first_was_not_seen_yet(
+    phase: ActivationPhase,
+) -> None:
+    before = activation_in(phase)
+    _, verdict, _ = obey(before, call_of(Apply, epoch=9, run=2), unseen=frozenset({supervisor(A)}))
+    assert verdict is (Verdict.BUSY if phase is IDLE else Verdict.DONE)
+    after, verdict, _ = obey(before, call_of(Reserve, B), unseen=frozenset({supervisor(A)}))
+    assert (verdict, after.holds) == (Verdict.BUSY, before.holds), "to other tasks it may be there"
+
+
 def test_a_supervisor_that_is_gone_stands_in_no_other_tasks_way() -> None:
     gone = frozenset({supervisor(A)})
     reserved, verdict, step = obey(activation_in(ACTIVE), call_of(Reserve, B), gone=gone)

@@ -94,6 +94,19 @@ def test_another_configurator_goes_on_with_the_task_without_a_stop_as_soon_as_th
     assert not stage.component.active
 
 
+def test_another_configurator_goes_on_with_the_task_of_one_whose_last_call_came_after_it_had_left() -> None:
+    stage = Stage()
+    stage.leave()
+    stage.let_pass(0.1)
+    stage.call(apply(1, US))
+    stage.others.announce(THEM)
+    stage.let_pass(GRACE / 2)
+    assert stage.call(apply(2, THEM)).verdict is Verdict.BUSY, "to other tasks it may be there"
+    assert stage.call(apply(1, THEM, task=TASKS[US])).verdict is Verdict.DONE
+    stage.let_pass(10 * GRACE)
+    assert stage.recorder.said == [("started",)]
+
+
 def test_a_configurator_that_is_gone_keeps_the_component_from_no_other_task() -> None:
     stage = Stage()
     stage.others.announce(THEM)

@@ -187,7 +187,7 @@ class Calls:
         """Apply to those that were held back, whatever is known by now: a component waits for a second at most."""
         held_back, self._held_back = self._held_back, []
         for effect in held_back:
-            if effect.epoch == self._state().epoch:
+            if effect.epoch == self._state().epoch and not self._state().ended:
                 self._apply(effect)
 
     def _apply(self, effect: ApplyTo) -> None:
