@@ -283,6 +283,8 @@ class Composites:
         self._able: Mapping[IRI, Inside] = {}
         """Those whose inside can be configured from these advertisements."""
         self.living: dict[IRI, InsideOfComposite] = {}
+        self._begun_as: dict[IRI, Advertisement] = {}
+        """As what each of them was advertised when its life began."""
         self._told: dict[IRI, str] = {}
         self._between_lives: set[IRI] = set()
         self._looking: dict[IRI, Undo] = {}
@@ -304,12 +306,13 @@ class Composites:
         for composite in self.living.values():
             composite.close()
         self.living.clear()
+        self._begun_as.clear()
 
     def _become(self, known: Mapping[IRI, Advertisement], found: Mapping[IRI, Inside], why: Mapping[IRI, str]) -> None:
         self._advertisements, self._able = known, found
         for component in [*self.living]:
             if component in known:
-                self._end_unable(component)
+                self._end_outdated(component)
             else:
                 self._end(component)
         for component in found:
@@ -324,15 +327,21 @@ class Composites:
             self._unable(why)
         self._told = dict(why)
 
-    def _end_unable(self, component: IRI) -> None:
-        """Let a composite live no more whose inside cannot be configured; one that acts finds out what it lacks."""
+    def _end_outdated(self, component: IRI) -> None:
+        """Let a composite live no more, unless it acts, whose inside cannot be configured, or is another by now.
+
+        One that acts finds out by itself what it lacks, and is what it was until it comes to rest.
+        """
         composite = self.living.get(component)
-        if composite is not None and component not in self._able and not composite.runtime.active:
+        if composite is None or composite.runtime.active:
+            return
+        if component not in self._able or self._advertisements[component] != self._begun_as[component]:
             self._end(component)
 
     def _end(self, component: IRI) -> None:
         """Let a composite live no more, and again after a while if its inside can be configured by then."""
         self.living.pop(component).close()
+        del self._begun_as[component]
         self._between_lives.add(component)
         self._bus.later(NEXT_LIFE, partial(self._begin_anew, component))
 
@@ -343,12 +352,14 @@ class Composites:
     def _let_live(self, component: IRI) -> None:
         """Let a composite live, unless it does, or did a moment ago, or its inside cannot be configured."""
         if component in self._able and component not in self.living and component not in self._between_lives:
-            profile = self._advertisements[component].profile
+            advertisement = self._begun_as[component] = self._advertisements[component]
             request_with, rested = partial(self._request, self._able[component]), partial(self._acts_no_more, component)
-            self.living[component] = InsideOfComposite(self._bus, self._ecology, profile, request_with, rested)
+            self.living[component] = InsideOfComposite(
+                self._bus, self._ecology, advertisement.profile, request_with, rested
+            )
 
     def _acts_no_more(self, component: IRI) -> None:
-        self._end_unable(component)
+        self._end_outdated(component)
         self._look_later(component)
 
     def _look_later(self, component: IRI) -> None:

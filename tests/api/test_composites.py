@@ -717,6 +717,24 @@ def test_a_composite_that_acts_no_more_lives_no_more_if_its_inside_cannot_be_con
     assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
 
 
+@pytest.mark.parametrize("acts", [True, False])
+def test_a_composite_that_is_another_by_now_begins_a_new_life_once_it_is_at_rest(tmp_path: Path, acts: bool) -> None:
+    glass = EYE["lens"].replace("lens-1", "glass-1").replace(":Lens", ":Glass")
+    lab = eye(tmp_path, EYE | {"glass": glass})
+    low = looking(lab, "Low", 0) if acts else None
+    advertised, lens = tmp_path / "home" / "eye.ttl", list(lab.components["lens"].said)
+    advertised.write_text(advertised.read_text().replace("sh:class :Lens", "sh:class :Glass"))
+    lab.let_pass(3.0)
+    assert lab.components["lens"].said == lens
+    if low is not None:
+        assert low.state.phase is Phase.RUNNING
+        low.stop()
+        lab.let_pass(3.0)
+    before = list(lab.components["lens"].said)
+    assert looking(lab, "High", 0).state.phase is Phase.RUNNING
+    assert (lab.components["lens"].said, lab.components["glass"].said) == (before, [("started",)])
+
+
 def test_a_composite_begins_its_next_life_when_the_last_is_seen_no_more(tmp_path: Path) -> None:
     lab = eye(tmp_path)
     composites, advertised = lab.composites["home"], _advertised(tmp_path / "home")
