@@ -60,8 +60,8 @@ class Contingencies:
         self._supposed: _Supposed | None = None
         """That for which they are found out now, or have been."""
         self._known: dict[IRI, Contingency | None] = {}
-        """By the component that is lost, None where there is no configuration; replaced with what is supposed, and
-        filled by another thread."""
+        """By the component that is lost, None where there is no configuration, or was no time to find it; replaced with
+        what is supposed, and filled by another thread."""
         self._next: tuple[frozenset[IRI], Configuration] | None = None
         """For what they are to be found out next."""
         self._rested = 0.0
@@ -91,7 +91,10 @@ class Contingencies:
             self._request.at_leisure(lambda: self._find_out(supposed, known))
 
     def _find_out(self, supposed: _Supposed, known: dict[IRI, Contingency | None]) -> None:
-        """Search without each component that is not known about; interrupted, it goes on with the next one."""
+        """Search without each component that is not known about; interrupted, it goes on with the next one.
+
+        Unless that has taken too long already: a search that is interrupted again and again would never rest.
+        """
         began = self._bus.now()
         try:
             for component in supposed.running.components:
@@ -110,6 +113,9 @@ class Contingencies:
         finally:
             now = self._bus.now()
             self._rested = now + REST * (now - began)
+            if now - began > MOST_SECONDS:
+                for component in supposed.running.components:
+                    known.setdefault(component, None)
 
     def answer(
         self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None

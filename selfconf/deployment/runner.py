@@ -233,8 +233,10 @@ class TaskRunner:
             self._search.prepare()
             if event.lives:
                 self._stand_by(self.state.target)
-        if isinstance(event, Composed) and self.state.phase is Phase.RUNNING and self.state.taken:
-            self._retries.look_whether_free()
+        if isinstance(event, Composed) and self.state.phase is Phase.RUNNING:
+            self._search.prepare()  # what was found, or is held by others, may be other than before
+            if self.state.taken:
+                self._retries.look_whether_free()
         if self.state.phase is not before:
             self._changed_phase(before)
 

@@ -50,12 +50,13 @@ class TaskSearch:
         """Search elsewhere, as a search must keep this configurator from nothing; unless its answer is known."""
         self._outdated()  # the answer of an earlier search is not looked at any more
         found, began = self._advertised(), time.monotonic()
-        known = self._contingencies.answer(found, effect.lost, effect.running)
+        despite = self._state().despite
+        known = None if despite else self._contingencies.answer(found, effect.lost, effect.running)
         if known is not None:
             composed = Composed(effect.attempt, known.configuration)
             self._composed(composed, time.monotonic() - began, known.not_judged)
             return
-        taken, refused = self._state().taken.keys(), self._state().refusal if self._state().despite else None
+        taken, refused = self._state().taken.keys(), self._state().refusal if despite else None
 
         def work() -> None:
             began = time.monotonic()

@@ -6,11 +6,13 @@ import random
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from selfconf.composition import Composer
+from selfconf.configurator import Improvable, Phase
 from selfconf.deployment import Outside, RunRequest
 from selfconf.deployment.contingencies import MOST_SECONDS, REST, Contingencies
 from selfconf.errors import TemplateError
@@ -18,7 +20,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
-from tests.deployment.tasks import TASK
+from tests.deployment.tasks import DRIVEN, SPARE, TASK
 from tests.lab import ADVERTISEMENTS, NAVIGATE, Lab, iri, task_of
 
 Question = tuple[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"]
@@ -72,6 +74,24 @@ def test_a_component_of_which_a_task_cannot_do_without_is_searched_for_anew(lab:
     assert lab.until(lambda: bool(lab.ended))
     assert asked.lost[before] == {"thinking-cap"}
     assert lab.ended[0] is not None
+
+
+def test_a_task_waits_for_all_that_may_help_and_not_only_for_what_was_found_beforehand(tmp_path: Path) -> None:
+    """What was free when that was found out has come to be held by others since."""
+    advertised = SPARE | {"third": SPARE["right"].replace(":right", ":third")}
+    lab = Lab(tmp_path, advertised=advertised)
+    lab.site("shared", *advertised)
+    for name in advertised:
+        lab.component(name)
+    agent = lab.agent(DRIVEN, (), patient=True, at_leisure=at_once)
+    assert lab.running(agent)
+    lab.let_pass(1.0)
+    for name in ("right", "third"):
+        assert lab.running(lab.agent(DRIVEN, (), name=f"holds-{name}"))
+    agent.reconsider()
+    lab.components["left"].fail("jammed")
+    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
+    assert {component for component, loss in agent.state.lost.items() if loss.busy} == {iri("right"), iri("third")}
 
 
 def test_two_losses_before_the_repair_are_searched_for(lab: Lab) -> None:
@@ -149,6 +169,49 @@ def test_what_was_interrupted_goes_on_with_the_next_component(lab: Lab) -> None:
     works[0]()
     alone = [{component.short} for component in agent.state.target.components]
     assert asked.lost[before:] == [*alone[:3], *alone[2:]]
+
+
+def test_what_was_interrupted_after_it_has_taken_too_long_is_not_begun_again(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    works = list[Callable[[], None]]()
+    agent, asked = prepared(lab, at_leisure=works.append)
+    before, now, spent = len(asked.lost), agent.bus.now, [0.0]
+    monkeypatch.setattr(agent.bus, "now", lambda: now() + spent[0])
+
+    def interrupted(*_: object) -> Outcome:
+        spent[0] += MOST_SECONDS + 0.1
+        raise KeyboardInterrupt
+
+    asked._compose, whole = interrupted, asked._compose
+    with pytest.raises(KeyboardInterrupt):
+        works[0]()
+    works[0]()
+    assert len(asked.lost) == before + 1
+    asked._compose = whole
+    lab.components["tracker"].fail("Astrid has left the picture")
+    assert lab.running(agent)
+    assert asked.lost[before + 1] == {"person-tracker"}, "it is searched for when it is needed"
+
+
+def test_what_another_task_has_taken_meanwhile_counts_beforehand(tmp_path: Path) -> None:
+    """As a task that changes for the better looks at what others hold from time to time."""
+    advertised = SPARE | {"third": SPARE["right"].replace(":right", ":third")}
+    lab = Lab(tmp_path, advertised=advertised)
+    lab.site("shared", *advertised)
+    for name in advertised:
+        lab.component(name)
+    agent = lab.agent(DRIVEN, (), upgrade=0.5, at_leisure=at_once)
+    asked = Asked(agent.request.compose)
+    agent._search._request = agent._search._contingencies._request = replace(agent.request, compose=asked)
+    assert lab.running(agent)
+    other = lab.agent(DRIVEN, (), name="other")
+    assert lab.running(other)
+    agent._step(Improvable())
+    lab.let_pass(2.0)
+    taken = {component.short for component in agent.state.taken}
+    assert len(taken) == 1
+    assert {"left", *taken} in asked.lost
 
 
 def test_a_search_that_cannot_be_made_is_told_when_it_is_needed(lab: Lab) -> None:
