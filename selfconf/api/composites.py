@@ -55,7 +55,10 @@ STARTING_INSIDE = 25.0
 REPLACING = 0.5
 """Seconds after which those outside hear that nothing stands behind an output: most repairs take less."""
 LOOK_AT_REFUSED = 10.0
-"""After how many seconds it is looked again whether an inside that was refused can be configured."""
+"""After how many seconds it is looked again whether an inside that was refused can be configured. The pause doubles
+with each life in which it does not run: perhaps the task that holds the composite holds what the inside lacks."""
+LONGEST_LOOK = 320.0
+"""The longest such pause, in seconds."""
 NEXT_LIFE = 0.5
 """Seconds between two lives of a composite: one that still sees the last takes it for another process, and leaves."""
 
@@ -113,6 +116,8 @@ class InsideOfComposite:
         self._silent: frozenset[str] = frozenset()
         """The outputs behind which nothing stands since a component inside was lost, or came to rest."""
         self.settled = False
+        self.has_run = False
+        """Whether an inside has run in this life."""
         self.ending = False
         self.dropped = 0
         self.runtime = ComponentRuntime(
@@ -252,6 +257,7 @@ class InsideOfComposite:
 
     def _settle(self, runs: bool) -> None:
         self.settled = runs
+        self.has_run |= runs
         waiting, self._waiting = self._waiting, []
         for action in waiting:
             action()
@@ -289,6 +295,8 @@ class Composites:
         self._between_lives: set[IRI] = set()
         self._looking: dict[IRI, Undo] = {}
         """What undoes the next look at those whose inside was refused."""
+        self._pauses: dict[IRI, float] = {}
+        """After how many seconds it is looked again at each of those that have begun a new life for that."""
 
     def refresh(self, advertisements: Mapping[IRI, Advertisement]) -> None:
         """Let those live whose inside can be configured from these advertisements, and no others."""
@@ -314,6 +322,7 @@ class Composites:
             if component in known:
                 self._end_outdated(component)
             else:
+                self._pauses.pop(component, None)
                 self._end(component)
         for component in found:
             if component in self.living:
@@ -366,7 +375,11 @@ class Composites:
         self._looking.pop(component, lambda: None)()
         composite = self.living.get(component)
         if composite is not None and composite.prospect is not None:
-            self._looking[component] = self._bus.later(LOOK_AT_REFUSED, partial(self._look_again, component))
+            self._looking[component] = self._bus.later(self._pause(composite), partial(self._look_again, component))
+
+    def _pause(self, composite: InsideOfComposite) -> float:
+        """After how many seconds it is looked again whether the inside of a composite can be configured."""
+        return LOOK_AT_REFUSED if composite.has_run else self._pauses.get(composite.profile.component, LOOK_AT_REFUSED)
 
     def _look_again(self, component: IRI) -> None:
         """Let a composite begin a new life if its inside was refused and can be configured, as tasks count it as lost.
@@ -382,6 +395,7 @@ class Composites:
         def able() -> None:
             held = composite.runner is not None or composite.runtime.activation.holds
             if not held and self.living.get(component) is composite:
+                self._pauses[component] = min(2 * self._pause(composite), LONGEST_LOOK)
                 self._end(component)
 
         composite.prospect.look(usable, able)

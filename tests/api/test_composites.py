@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 
 from selfconf import files
-from selfconf.api.composites import NEXT_LIFE
+from selfconf.api.composites import LOOK_AT_REFUSED, NEXT_LIFE
 from selfconf.api.task import template
 from selfconf.configurator import Phase
 from selfconf.deployment import TaskRunner
+from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.discovery import EcologyView
 from selfconf.model.run_event import ComponentActivated, ComponentLost, InputConnected
 from selfconf.model.term import IRI
@@ -779,6 +780,25 @@ def test_a_task_that_upgrades_returns_to_a_composite_once_its_inside_can_act_aga
     lab.let_pass(20.0)
     assert (low.state.phase, played(low)) == (Phase.RUNNING, {iri("eye"), iri("low")})
     assert [event for event in lab.acts("lost") if event.component == iri("eye")] == fails
+
+
+def test_a_composite_whose_inside_lacks_what_its_own_task_holds_is_tried_again_at_growing_intervals(
+    tmp_path: Path,
+) -> None:
+    lab = eye(tmp_path)
+    task = LOOK.replace(":source :sink", ":source :lens :sink").replace("SINK", "Low")
+    low = lab.agent(f"{task} :lens a sc:Role ; sh:class :Lens .", (), patient=True)
+    tried = list[int]()
+    for _ in range(4):
+        before = len(lab.acts("lost"))
+        lab.let_pass(300.0)
+        tried.append(len(lab.acts("lost")) - before)
+    assert (low.state.phase, low.configuration) == (Phase.REFUSED, None)
+    assert tried[0] < 300.0 / LOOK_AT_REFUSED
+    assert max(tried[2:]) <= 300.0 / TRY_AGAIN / 4, "the pause of the task doubles as well, while nothing begins anew"
+    low.stop()
+    lab.let_pass(3.0)
+    assert looking(lab, "High", 0).state.phase is Phase.RUNNING
 
 
 def played(agent: TaskRunner) -> set[IRI]:
