@@ -11,7 +11,7 @@ certain to be possible.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import chain
+from itertools import chain, combinations
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import immutable
@@ -19,6 +19,7 @@ from selfconf.model.partition import Mention
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest, SelfTest
+from selfconf.rdf.shacl import ValueTest, exclude
 from selfconf.rdf.tasks import shape_statements, suitable
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, SH, TYPE
@@ -138,7 +139,7 @@ class StatedOnPath:
 
     def passes(self, value: Term) -> bool:
         """Whether a value is like what each single value has to be."""
-        return all(one.passes(value) for test in self.above for one in test.each)
+        return all(one.passes(value) for one in self._each)
 
     @property
     def contradictory(self) -> bool:
@@ -149,7 +150,13 @@ class StatedOnPath:
             (allowed is not None and (len(allowed) < self.minimum or not required <= allowed))
             or not all(map(self.passes, required))
             or any(most < max(self.minimum, len(required)) for most in maxima)
+            or (self.minimum > 0 and any(exclude(*pair) for pair in combinations(self._each, 2)))
         )
+
+    @property
+    def _each(self) -> Iterator[ValueTest]:
+        """What each single value has to be like."""
+        return (one for test in self.above for one in test.each)
 
     def mentions(self, known: Mapping[IRI, Iterable[Term]]) -> Iterator[Mention]:
         """What is asked for each free parameter; `known` are values that each could have."""

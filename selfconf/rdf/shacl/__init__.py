@@ -1,10 +1,10 @@
 """SHACL without pySHACL: constraints on single values as compiled tests, and the syntax of shapes.
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
-makes tests of the constraints that can be. `misfit`, `unfit`, `of_values`, `said_twice`, `LITERAL`, `ONLY_WITH_A_PATH`,
-`STATED_ONCE` and `ILL_FORMED` say what may stand as a value of SHACL's own properties. `component_parameters` are the
-predicates by which a document constrains by components of its own. `pattern` is a regular
-expression that a text cannot make expensive; where that cannot be, it is `MatchTooCostly`.
+makes tests of the constraints that can be; two `exclude` each other if no value passes both. `misfit`, `unfit`,
+`of_values`, `said_twice`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE` and `ILL_FORMED` say what may stand as a value
+of SHACL's own properties. `component_parameters` are the predicates by which a document constrains by components of its
+own. `pattern` is a regular expression that a text cannot make expensive; where that cannot be, it is `MatchTooCostly`.
 Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
@@ -20,7 +20,7 @@ from selfconf.rdf.shacl.shape_syntax import (
     said_twice,
     unfit,
 )
-from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled
+from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude
 
 __all__ = [
     "ILL_FORMED",
@@ -33,6 +33,7 @@ __all__ = [
     "ValueTest",
     "compiled",
     "component_parameters",
+    "exclude",
     "misfit",
     "of_values",
     "pattern",

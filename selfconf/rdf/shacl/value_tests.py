@@ -37,6 +37,9 @@ PAIRS: Mapping[IRI, Callable[[int], bool]] = {
     SH.lessThanOrEquals: lambda order: order <= 0,
 }
 """The constraints that compare a value with those of another property of the node that has it."""
+_LOWER, _UPPER = (SH.minInclusive, SH.minExclusive), (SH.maxInclusive, SH.maxExclusive)
+_STRICT = (SH.minExclusive, SH.maxExclusive)
+_ANY: frozenset[type] = frozenset((IRI, BlankNode, Literal))
 _LENGTHS = frozenset((SH.minLength, SH.maxLength))
 _SOLE = frozenset((SH.nodeKind, SH.datatype, SH.minLength, SH.maxLength))
 """Constraints of which a shape may state only one."""
@@ -71,6 +74,48 @@ class PairTest:
 def _ordered(constraint: IRI, value: Term, other: Term) -> bool:
     order = _literals().order(value, other)
     return order is not None and PAIRS[constraint](order)
+
+
+def exclude(one: ValueTest, other: ValueTest) -> bool:
+    """Whether no value passes both of two tests, where that is certain: nothing lies between two limits, and so on."""
+    if _kinds(one).isdisjoint(_kinds(other)):
+        return True
+    first, second = sorted((one, other), key=lambda test: _SIDES.get(test.constraint, len(_SIDES)))
+    kinds = first.constraint, second.constraint
+    if kinds == (SH.datatype, SH.datatype):
+        return first.wanted != second.wanted
+    if kinds == (SH.minLength, SH.maxLength):
+        return _length(first.wanted) > _length(second.wanted)
+    if kinds[0] in _LOWER and kinds[1] in _UPPER:
+        order = _order_of_limits(first.wanted, second.wanted)
+        return order is not None and (order > 0 or (order == 0 and any(kind in _STRICT for kind in kinds)))
+    if kinds[0] in _LIMITS and kinds[1] == SH.datatype and second.wanted == STRING:
+        text = Literal("", STRING)
+        return isinstance(first.wanted, Literal) and _literals().order(text, first.wanted) is None
+    return False
+
+
+_SIDES = {kind: number for number, kind in enumerate((SH.minLength, SH.maxLength, *_LOWER, *_UPPER, SH.datatype))}
+"""The side on which a constraint stands when two are compared: lower limits first, datatypes last."""
+
+
+def _kinds(test: ValueTest) -> frozenset[type]:
+    """What a value that passes can be at all: an IRI, a blank node, a literal."""
+    if test.constraint == SH.nodeKind:
+        return frozenset(_KINDS.get(test.wanted, _ANY)) if isinstance(test.wanted, IRI) else _ANY
+    if test.constraint == SH.datatype or test.constraint in _LIMITS:
+        return frozenset((Literal,))
+    return frozenset((IRI, Literal)) if test.constraint == SH.pattern else _ANY
+
+
+def _length(wanted: Term) -> int:
+    return int(wanted.lexical) if isinstance(wanted, Literal) and wanted.lexical.isdecimal() else 0
+
+
+def _order_of_limits(low: Term, high: Term) -> int | None:
+    """How two limits compare: negative, zero or positive; None where they have no order."""
+    order: int | None = _literals().order(low, high)
+    return order
 
 
 def compiled(constraints: Mapping[IRI, list[Term]]) -> tuple[list[ValueTest], set[IRI]]:

@@ -254,6 +254,12 @@ def test_of_the_values_that_candidates_state_those_that_fail_another_test_are_to
         "sh:property [ sh:path rob:support ; sh:hasValue :Pippi ] , [ sh:path rob:support ; sh:in ( :par ) ]",
         "sh:property [ sh:path rob:support ; sh:hasValue :par ; sh:maxCount 0 ]",
         'sh:property [ sh:path rob:support ; sh:hasValue :par ; sh:pattern "Pippi$" ]',
+        "sh:property [ sh:path :p ; sh:minCount 1 ; sh:minInclusive 5 ; sh:maxInclusive 3 ]",
+        "sh:property [ sh:path :p ; sh:minCount 1 ; sh:minExclusive 5 ] , [ sh:path :p ; sh:maxInclusive 5.0 ]",
+        "sh:property [ sh:path :p ; sh:minCount 1 ; sh:minLength 5 ; sh:maxLength 3 ]",
+        "sh:property [ sh:path :p ; sh:minCount 1 ; sh:nodeKind sh:IRI ; sh:datatype xsd:string ]",
+        "sh:property [ sh:path :p ; sh:minCount 1 ; sh:datatype xsd:date ] , [ sh:path :p ; sh:datatype xsd:string ]",
+        "sh:property [ sh:path :p ; sh:minCount 1 ; sh:datatype xsd:string ; sh:minInclusive 3 ]",
     ],
 )
 def test_a_shape_may_contradict_itself_by_the_value_that_is_bound(shape: str) -> None:
@@ -284,6 +290,19 @@ def test_a_shape_may_contradict_itself_whatever_a_parameter_is(shape: str) -> No
 )
 def test_none_can_be_added_for_a_role_that_lists_its_components(shape: str, unaddable: bool) -> None:
     assert bool(partition(shape).unaddable) is unaddable
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "sh:minInclusive 5 ; sh:maxInclusive 3",
+        "sh:minCount 1 ; sh:minInclusive 3 ; sh:maxInclusive 3.0",
+        'sh:minCount 1 ; sh:minInclusive 3 ; sh:maxInclusive "2026-01-01"^^xsd:date',
+        "sh:minCount 1 ; sh:minLength 3 ; sh:maxLength 3 ; sh:nodeKind sh:IRI",
+    ],
+)
+def test_what_may_be_satisfied_is_no_contradiction(shape: str) -> None:
+    assert not partition(f"sh:property [ sh:path :p ; {shape} ]", bound=True).unaddable
 
 
 def test_a_component_that_may_state_nothing_can_be_eligible_whatever_the_lists_are() -> None:

@@ -8,9 +8,7 @@ and Containment*, ISWC 2020).
 
 from __future__ import annotations
 
-import datetime
 from collections.abc import Iterator
-from decimal import Decimal
 from itertools import islice
 from typing import NamedTuple
 
@@ -20,7 +18,7 @@ from rdflib.term import Node
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
 from selfconf.rdf.rdflib_terms import from_rdflib
-from selfconf.rdf.shacl import compiled
+from selfconf.rdf.shacl import ValueTest, compiled, exclude
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
 
 _KINDS: dict[Node, frozenset[type]] = {
@@ -168,45 +166,18 @@ def _kinds(statement: ShapeStatement) -> frozenset[type]:
     return _KINDS_OF.get(predicate, _ANY)
 
 
-# complexity: one rule for each pair of constraints, the cheap ones first
 def _exclude(one: ShapeStatement, other: ShapeStatement) -> bool:
-    """Whether no value satisfies both of two statements, neither of which names values."""
+    """Whether no value satisfies both of two statements, neither of which lists values."""
     if _kinds(one).isdisjoint(_kinds(other)):
         return True
-    (_, first, wanted), (_, second, asked) = one, other
-    if first == second:
-        return first in (SH.datatype, SH.hasValue) and wanted != asked
-    if {first, second} == {SH.minLength, SH.maxLength}:
-        low, high = (wanted, asked) if first == SH.minLength else (asked, wanted)
-        return _number(low) > _number(high)
-    if first in _UPPER and second in _LOWER:
-        return _empty(second, asked, first, wanted)
-    if first in _LOWER and second in _UPPER:
-        return _empty(first, wanted, second, asked)
-    limited = next((value for word, value in ((first, wanted), (second, asked)) if word in (*_LOWER, *_UPPER)), None)
-    datatype = next((value for word, value in ((first, wanted), (second, asked)) if word == SH.datatype), None)
-    return datatype == XSD.string and isinstance(limited, Literal) and not isinstance(limited.value, str)
+    if one[1] == other[1] == SH.hasValue:
+        return one[2] != other[2]
+    return exclude(_value_test(one), _value_test(other))
 
 
-def _number(value: Node) -> int:
-    return value.value if isinstance(value, Literal) and isinstance(value.value, int) else 0
-
-
-def _empty(lower: Node, low: Node, upper: Node, high: Node) -> bool:
-    """Whether nothing lies between two limits; only where it is certain how they compare."""
-    if not isinstance(low, Literal) or not isinstance(high, Literal):
-        return False
-    bottom, top = low.value, high.value
-    strict = lower == SH.minExclusive or upper == SH.maxExclusive
-    if isinstance(bottom, (int, float, Decimal)) and isinstance(top, (int, float, Decimal)):
-        return bottom > top or (strict and bottom == top)
-    if type(bottom) is type(top) is datetime.date or (
-        isinstance(bottom, datetime.datetime)
-        and isinstance(top, datetime.datetime)
-        and (bottom.tzinfo is None) == (top.tzinfo is None)
-    ):
-        return bool(bottom > top or (strict and bottom == top))
-    return False
+def _value_test(statement: ShapeStatement) -> ValueTest:
+    _, predicate, wanted = statement
+    return ValueTest(IRI.unchecked(str(predicate)), from_rdflib(wanted))
 
 
 def _allowed(normal: NormalForm, closed: ShapeStatement) -> set[Node]:
