@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import replace
 
 from selfconf.bus.port import Bus, Replies
@@ -27,12 +27,16 @@ class Holding:
     components: Mapping[IRI, Wants]
 
 
+WithoutConfigurator = Callable[[Set[str]], Sequence[Holding]]
+"""Gives what tasks hold whose configurator may have just gone, but for some tasks, given by their identities."""
+
+
 def ask_holders(
     bus: Bus,
     keys: Keys,
     own: str,
     done: Callable[[Mapping[IRI, Holder]], None],
-    without_configurator: Callable[[], Sequence[Holding]] = tuple,
+    without_configurator: WithoutConfigurator = lambda known: (),
 ) -> None:
     """Ask all configurators but the `own` one what they hold; `done` receives the holder of each component.
 
@@ -43,7 +47,7 @@ def ask_holders(
     def answered(replies: Replies) -> None:
         holdings = _holdings(replies, keys, own)
         known = {one.holder.task for one in holdings}
-        done(_first_holders([*holdings, *(one for one in without_configurator() if one.holder.task not in known)]))
+        done(_first_holders([*holdings, *without_configurator(known)]))
 
     bus.ask(keys.configurator_call("*", "status"), b"", STATUS, answered)
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import logging
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Set
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -199,13 +199,16 @@ class Keeper:
             elif runner is None and mine and not record.ended and not self._has_respite(task):
                 self._run(record)
 
-    def _without_configurator(self, task: str) -> list[Holding]:
-        """What each other task holds that is to be run, by its record, while it may be without a configurator."""
+    def _without_configurator(self, known: Set[str]) -> list[Holding]:
+        """What each task holds that is to be run, by its record, while it may be without a configurator.
+
+        Of those that are known to have one nothing is read, or the time to go on would grow with their square.
+        """
         found: list[Holding] = []
         if self.bus.now() - self._changed > ADOPTED:
             return found
         for record in self.folder.records.values():
-            if record.task == task or record.ended or not record.configuration or not self._requests.get(record.task):
+            if record.task in known or record.ended or not record.configuration or not self._requests.get(record.task):
                 continue
             try:
                 configuration = recorded_configuration(record.configuration)
@@ -233,7 +236,11 @@ class Keeper:
         runner = TaskRunner(
             self.bus,
             self.ecology,
-            replace(request, ended=ended, without_configurator=partial(self._without_configurator, record.task)),
+            replace(
+                request,
+                ended=ended,
+                without_configurator=lambda known: self._without_configurator({record.task, *known}),
+            ),
             clock=self._clock,
             task=record.task,
             beginning=record.beginning,

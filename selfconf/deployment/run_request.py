@@ -11,7 +11,7 @@ from dataclasses import KW_ONLY
 
 from selfconf.bus.port import Undo
 from selfconf.configurator import Policy
-from selfconf.deployment.holders import Holding
+from selfconf.deployment.holders import WithoutConfigurator
 from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
@@ -93,7 +93,7 @@ class RunRequest:
     explain: Callable[[Refusal, Callable[[Refusal], None]], None] = lambda refusal, found: None
     """Receives each refusal for which the task waits, and may hand it back with more facts for observers, from any
     thread."""
-    without_configurator: Callable[[], Sequence[Holding]] = tuple
+    without_configurator: WithoutConfigurator = lambda known: ()
     """What other tasks hold whose configurator has just gone, and with which the next is about to go on."""
     record: TaskRecord | None = None
     """The task as sites keep it, the answer to a program that asks which one it is; None: there is none."""

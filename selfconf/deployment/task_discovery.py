@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 from selfconf.configurator import Discovered, Event, State
 from selfconf.deployment.components import Liveness
-from selfconf.deployment.holders import Holding, ask_holders
+from selfconf.deployment.holders import WithoutConfigurator, ask_holders
 from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.holder import Holder
@@ -25,7 +25,7 @@ class TaskDiscovery:
         state: Callable[[], State],
         step: Callable[[Event], None],
         report: EventListener,
-        without_configurator: Callable[[], Sequence[Holding]] = tuple,
+        without_configurator: WithoutConfigurator = lambda known: (),
     ) -> None:
         """`name` is that of the configurator; `without_configurator` that of the `RunRequest`."""
         self._bus, self._ecology, self._name, self._liveness = ecology.bus, ecology, name, liveness

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,7 +16,9 @@ from selfconf.composition import Composer
 from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
+from selfconf.deployment.configuration_record import recorded_configuration
 from selfconf.deployment.keeper import keeper_of
+from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
@@ -276,6 +279,36 @@ def test_a_task_that_has_lost_something_takes_nothing_from_one_that_changes_hand
     assert tasks[first].state.phase is Phase.REFUSED
     tasks[second].stop()
     assert lab.until(lambda: tasks[first].state.phase is Phase.RUNNING), "it has waited for what the other has held"
+
+
+def test_the_time_to_go_on_with_tasks_does_not_grow_with_their_square(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    named = [f"task~{n}" for n in range(99) if "shared" not in keepers_in_turn(f"task~{n}", "shared", *"abc")][:12]
+    many = {f"drive-{n}": f":drive-{n} a sc:Component, :Drive ; sc:shareable false ." for n in range(len(named))}
+    lab = Lab(tmp_path, advertised=many)
+    lab.site("shared", *many)
+    for name in many:
+        lab.component(name)
+    keepers = Keepers(lab, tmp_path / "disks", drives)
+    for number, task in enumerate(named):
+        keepers.hand_over(TaskRecord(task, 1, beginning=float(number)))
+    assert lab.until(lambda: lab.active() == {*many}, 60.0)
+    lab.let_pass(5.0)
+    name, ended = max(keepers.keepers.items(), key=lambda one: len(one[1].runners))
+    tasks, read = {*ended.runners}, list[object]()
+    assert len(tasks) > 2
+
+    def counted(record: Mapping[str, Any]) -> Configuration:
+        read.append(record)
+        return recorded_configuration(record)
+
+    monkeypatch.setattr("selfconf.deployment.keeper.recorded_configuration", counted)
+    keepers.end(name)
+    lab.let_pass(5.0)
+    assert tasks <= {task for one in keepers.keepers.values() for task in one.runners}
+    assert len(read) <= 3 * len(tasks), "of what others go on with at the same moment some is read as well"
+    assert all(recorder.said == [("started",)] for recorder in lab.components.values())
 
 
 def test_a_task_that_was_ended_comes_to_rest_and_does_not_come_back(keepers: Keepers) -> None:
