@@ -339,22 +339,27 @@ class Composites:
     def _end_outdated(self, component: IRI) -> None:
         """Let a composite live no more, unless it acts, whose inside cannot be configured, or is another by now.
 
-        One that acts finds out by itself what it lacks, and is what it was until it comes to rest.
+        One that acts finds out by itself what it lacks, and is what it was until it has come to rest.
         """
         composite = self.living.get(component)
-        if composite is None or composite.runtime.active:
+        if composite is None or composite.runtime.active or composite.runner is not None:
             return
         if component not in self._able or self._advertisements[component] != self._begun_as[component]:
             self._end(component)
 
     def _end(self, component: IRI) -> None:
         """Let a composite live no more, and again after a while if its inside can be configured by then."""
-        self.living.pop(component).close()
+        composite = self.living.pop(component)
+        composite.close()
         del self._begun_as[component]
         self._between_lives.add(component)
-        self._bus.later(NEXT_LIFE, partial(self._begin_anew, component))
+        self._bus.later(NEXT_LIFE, partial(self._begin_anew, component, composite))
 
-    def _begin_anew(self, component: IRI) -> None:
+    def _begin_anew(self, component: IRI, last: InsideOfComposite) -> None:
+        """Let a composite live, if its inside can be configured, once that of its last life has come to rest."""
+        if last.runner is not None:
+            self._bus.later(NEXT_LIFE, partial(self._begin_anew, component, last))
+            return
         self._between_lives.discard(component)
         self._let_live(component)
 

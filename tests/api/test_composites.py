@@ -736,6 +736,20 @@ def test_a_composite_that_is_another_by_now_begins_a_new_life_once_it_is_at_rest
     assert (lab.components["lens"].said, lab.components["glass"].said) == (before, [("started",)])
 
 
+def test_a_composite_begins_no_life_before_its_inside_has_come_to_rest(tmp_path: Path) -> None:
+    lab = eye(tmp_path)
+    low, composites = looking(lab, "Low", 0), lab.composites["home"]
+    (before,) = composites.living.values()
+    low.stop()
+    assert lab.until(lambda: before.ending)
+    composites.refresh(_advertised(tmp_path / "home"))  # read anew, they are others
+    lab.until(lambda: before.runner is None or before not in composites.living.values())
+    assert before.runner is None
+    lab.let_pass(3.0)
+    assert before not in composites.living.values()
+    assert looking(lab, "High", 0).state.phase is Phase.RUNNING
+
+
 def test_a_composite_begins_its_next_life_when_the_last_is_seen_no_more(tmp_path: Path) -> None:
     lab = eye(tmp_path)
     composites, advertised = lab.composites["home"], _advertised(tmp_path / "home")
