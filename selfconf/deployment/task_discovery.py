@@ -10,7 +10,7 @@ from selfconf.deployment.holders import WithoutConfigurator, ask_holders
 from selfconf.deployment.run_request import EventListener
 from selfconf.discovery import Discovery, EcologyView
 from selfconf.model.holder import Holder
-from selfconf.model.run_event import AnswerRejected, EcologyAsked, EcologyDiscovered
+from selfconf.model.run_event import AnswerRejected, AnyRunEvent, EcologyAsked, EcologyDiscovered
 from selfconf.model.term import IRI
 
 
@@ -33,13 +33,19 @@ class TaskDiscovery:
         self._state, self._step, self._report = state, step, report
         self._asked = 0
         """How often the ecology was asked."""
+        self._told: tuple[AnyRunEvent, ...] = ()
+        """What was reported of the last answers."""
 
     def begin(self) -> None:
         """Ask the sites what they advertise, and meanwhile the other tasks what they hold.
 
         One question counts at a time: where an earlier one is not answered yet, its answer is older than this question.
+        A task that runs looks again and again whether there is something better: that is reported once it comes to
+        something else than before.
         """
-        self._report(EcologyAsked())
+        if not self._state().improving:
+            self._told = ()
+            self._report(EcologyAsked())
         self._asked += 1
         number = self._asked
         found: list[Discovery] = []
@@ -60,14 +66,24 @@ class TaskDiscovery:
         ask_holders(self._bus, self._ecology.keys, self._name, answered, self._without_configurator)
         self._ecology.discover(discovered)
 
+    def _tell(self, discovery: Discovery) -> None:
+        """Report what the ecology has answered, unless a task that looks again has heard the same before."""
+        told: list[AnyRunEvent] = [AnswerRejected(complaint) for complaint in discovery.complaints]
+        told.append(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
+        if self._told == tuple(told):
+            return
+        if self._told:
+            self._report(EcologyAsked())
+        for event in told:
+            self._report(event)
+        self._told = tuple(told)
+
     def _discovered(self, discovery: Discovery, holders: Mapping[IRI, Holder]) -> None:
         if self._state().ended:
             return
         self._ecology.discovery = discovery
         self._liveness.discovered(discovery)
-        for complaint in discovery.complaints:
-            self._report(AnswerRejected(complaint))
-        self._report(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
+        self._tell(discovery)
         number = self._asked
         shared = {component: holder for component, holder in holders.items() if self.shareable(component)}
         held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared)

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.deployment.retries import LET_GO_OF
 from selfconf.render.run_events import event_body
 from tests.deployment.tasks import DRIVEN, SPARE, contended
-from tests.lab import iri
+from tests.lab import Lab, iri
 
 
 @pytest.mark.parametrize(("patient", "act"), [(False, "refused"), (True, "waiting")])
@@ -25,3 +26,22 @@ def test_a_refusal_says_of_all_that_is_held_by_whom_and_since_when(tmp_path: Pat
         iri(name): (f"holds-{name}", one.identity.beginning) for name, one in zip(SPARE, holding, strict=True)
     }
     assert [one["task"] for one in event_body(event)["refusal"]["held"]] == ["holds-left", "holds-right"]
+
+
+def test_a_task_that_looks_again_and_again_for_something_better_tells_once_what_the_ecology_has(tmp_path: Path) -> None:
+    advertised = SPARE | {"third": SPARE["right"].replace(":right", ":third")}
+    lab = Lab(tmp_path, advertised=advertised)
+    lab.site("shared", *SPARE)
+    for name in SPARE:
+        lab.component(name)
+    assert lab.running(lab.agent(DRIVEN, (), name="other"))
+    agent = lab.agent(DRIVEN, (), upgrade=1.0)
+    assert lab.running(agent)
+    before = len(lab.events)
+    lab.let_pass(10 * LET_GO_OF)
+    assert agent.state.taken
+    assert lab.events[before:] == []
+    lab.site("another", "third")
+    lab.let_pass(10 * LET_GO_OF)
+    assert [event.act for event in lab.events[before:]] == ["query", "discovered"]
+    assert lab.events[-1].sites == ("another", "shared")  # type: ignore[attr-defined]
