@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 from selfconf.bus.port import Undo
 from selfconf.configurator import Compose, Composed, Event, Phase, Policy, State
@@ -16,12 +17,21 @@ from selfconf.discovery import EcologyView
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.obstacle import NotJudged
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import ComponentLeftOut, SearchEnded
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 
 log = logging.getLogger(__name__)
+
+
+class _Better(NamedTuple):
+    """The answer to a search for something better than what runs, and what it was about."""
+
+    found: Mapping[IRI, Advertisement]
+    lost: frozenset[IRI]
+    outcome: Outcome
+    not_judged: Mapping[IRI, NotJudged]
 
 
 class TaskSearch:
@@ -41,13 +51,19 @@ class TaskSearch:
         self._bus, self._ecology, self._request, self._liveness = ecology.bus, ecology, request, liveness
         self._state, self._step, self._report, self._give_up = state, step, report, give_up
         self._contingencies = Contingencies(ecology.bus, request, self._advertised, lambda: self._runs)
+        self._better: _Better | None = None
+        """What was answered last when the task ran and looked for something better."""
         self._left_out: set[IRI] = set()
         """The components that were reported to play no role, as they cannot be judged."""
         self._outdated: Undo = lambda: None
         """Abandons the search that was begun last."""
 
     def begin(self, effect: Compose) -> None:
-        """Search elsewhere, as a search must keep this configurator from nothing; unless its answer is known."""
+        """Search elsewhere, as a search must keep this configurator from nothing; unless its answer is known.
+
+        A task that runs looks again and again whether there is something better: it asks the same as long as nothing
+        has changed, and a search may take long.
+        """
         self._outdated()  # the answer of an earlier search is not looked at any more
         found, began = self._advertised(), time.monotonic()
         despite = self._state().despite
@@ -55,6 +71,10 @@ class TaskSearch:
         if known is not None:
             composed = Composed(effect.attempt, known.configuration)
             self._composed(composed, time.monotonic() - began, known.not_judged)
+            return
+        better, looks_again = self._better, self._runs
+        if looks_again and better is not None and (better.found, better.lost) == (found, effect.lost):
+            self._composed(Composed(effect.attempt, better.outcome), time.monotonic() - began, better.not_judged)
             return
         taken, refused = self._state().taken.keys(), self._state().refusal if despite else None
 
@@ -78,6 +98,8 @@ class TaskSearch:
                 outcome = outcome.told_of_held(usable)
             seconds = time.monotonic() - began
             composed = Composed(effect.attempt, outcome, frozenset(usable))
+            if looks_again and not isinstance(outcome, Undecided):
+                self._better = _Better(found, effect.lost, outcome, not_judged)
             self._bus.wake_up(lambda: self._searched(composed, seconds, not_judged))
 
         self._outdated = self._request.aside(work)

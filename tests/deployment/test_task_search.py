@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import pytest
 
 from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Improvable
+from selfconf.deployment.retries import LET_GO_OF
 from selfconf.errors import TemplateError
+from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome
+from selfconf.model.term import IRI
 from selfconf.rdf import conformance as shacl
-from tests.deployment.tasks import TASK
-from tests.lab import NAVIGATE, Lab
+from selfconf.rdf.advertisements import Advertisement
+from tests.deployment.tasks import DRIVEN, SPARE, TASK
+from tests.lab import NAVIGATE, Lab, iri
 
 
 def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,3 +66,33 @@ def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> No
     searches[2]()
     assert lab.running(agent)
     assert lab.active() == TASK | {"odometry"}
+
+
+def test_a_task_that_runs_searches_for_something_better_once_for_each_change(tmp_path: Path) -> None:
+    advertised = SPARE | {"third": SPARE["left"].replace(":left", ":third")}
+    lab = Lab(tmp_path, advertised=advertised)
+    lab.site("shared", *SPARE)
+    for name in SPARE:
+        lab.component(name)
+    first = lab.agent(DRIVEN, (), name="first")
+    assert lab.running(first)
+    agent, searches = lab.agent(DRIVEN, (), upgrade=1.0), list[frozenset[IRI]]()
+    compose = agent.request.compose
+
+    def counted(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+        if running is None:
+            searches.append(lost)
+        return compose(found, lost, running)
+
+    agent._search._request = replace(agent.request, compose=counted)
+    assert lab.running(agent)
+    lab.let_pass(10 * LET_GO_OF)
+    assert searches == [{iri("left")}] * 2, "to be configured, and to look for something better"
+    first.stop()
+    lab.let_pass(2 * LET_GO_OF)
+    assert lab.active() == {"left"}
+    assert searches[2:] == [frozenset()]
+    lab.site("another", "third")
+    lab.component("third")
+    lab.let_pass(2 * LET_GO_OF)
+    assert len(searches) == 4
