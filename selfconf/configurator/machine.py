@@ -226,11 +226,7 @@ def _answered(state: State, event: Answered) -> Reaction:
 def _declined(state: State, event: Answered) -> Reaction:
     """A component has not done what it was asked: ask once more where that may help, else do without it."""
     repeats = state.repeats.get(event.component, 0)
-    counted = replace(state, repeats={**state.repeats, event.component: repeats + 1})
-    if event.verdict is not None and event.call is Call.RESERVE:
-        counted = replace(
-            counted, held={**state.held, event.component: replace(state.held[event.component], asked=False)}
-        )
+    counted = replace(_told(state, event), repeats={**state.repeats, event.component: repeats + 1})
     if event.verdict is Verdict.STALE and _can_catch_up(event) and repeats < MOST_REPEATS:
         return deploying.deploy(replace(counted, epoch=max(state.epoch, event.newest)))
     if event.verdict is Verdict.NOT_HELD and repeats < MOST_REPEATS:
@@ -245,6 +241,13 @@ def _declined(state: State, event: Answered) -> Reaction:
     # Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough.
     again = silent and event.startable and event.call is not Call.WAKE and not repeats
     return _lose(counted, event.component, Loss(Cause.REFUSED, detail, event.life, False, not silent, again))
+
+
+def _told(state: State, event: Answered) -> State:
+    """Note that a component that has declined a reserve is not held by that."""
+    if event.verdict is None or event.call is not Call.RESERVE:
+        return state
+    return replace(state, held={**state.held, event.component: replace(state.held[event.component], asked=False)})
 
 
 def _can_catch_up(event: Answered) -> bool:
