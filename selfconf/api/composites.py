@@ -61,6 +61,11 @@ LONGEST_LOOK = 320.0
 """The longest such pause, in seconds."""
 NEXT_LIFE = 0.5
 """Seconds between two lives of a composite: one that still sees the last takes it for another process, and leaves."""
+OTHER_LIFE = 3.0
+"""Seconds between two looks whether another life of a composite is still seen: of two sites that advertise it, or of
+one whose host was cut off before it began anew."""
+OTHER_LIFE_CALL = 1.0
+"""Seconds that such a look may take."""
 
 
 class _CompositeCode(Component):
@@ -83,11 +88,18 @@ class InsideOfComposite:
     """What does as the calls of a configurator say to a composite: it runs the inside as a task."""
 
     def __init__(
-        self, bus: Bus, ecology: str, profile: Profile, request_with: RequestWith, rested: Callable[[], None]
+        self,
+        bus: Bus,
+        ecology: str,
+        profile: Profile,
+        request_with: RequestWith,
+        rested: Callable[[], None],
+        superseded: Callable[[InsideOfComposite], None],
     ) -> None:
         """What the inside reports and who ranks it is said here, the rest by `request_with`.
 
-        `rested` is called when the composite acts no more, as it is at rest or has failed.
+        `rested` is called when the composite acts no more, as it is at rest or has failed; `superseded` when it lives
+        no more, as another life of it is seen.
         """
         self._rested = rested
         self._bus, self._ecology, self.profile, self._request_with = bus, ecology, profile, request_with
@@ -121,7 +133,13 @@ class InsideOfComposite:
         self.ending = False
         self.dropped = 0
         self.runtime = ComponentRuntime(
-            bus, Keys(ecology), profile, _CompositeCode(), secrets.token_hex(4), inputs=self
+            bus,
+            Keys(ecology),
+            profile,
+            _CompositeCode(),
+            secrets.token_hex(4),
+            superseded=lambda reason: superseded(self),
+            inputs=self,
         )
 
     # What the runtime asks for.
@@ -355,13 +373,29 @@ class Composites:
         self._between_lives.add(component)
         self._bus.later(NEXT_LIFE, partial(self._begin_anew, component, composite))
 
+    def _superseded(self, composite: InsideOfComposite) -> None:
+        """A composite has left, as another life of it is seen: let it live again once that has ended."""
+        if self.living.get(composite.profile.component) is composite:
+            self._end(composite.profile.component)
+
     def _begin_anew(self, component: IRI, last: InsideOfComposite) -> None:
-        """Let a composite live, if its inside can be configured, once that of its last life has come to rest."""
+        """Let a composite live, if its inside can be configured, once that of its last life has come to rest.
+
+        And no other life of it is seen: it might be the one to leave, though it acts.
+        """
+
+        def seen(lives: tuple[str, ...]) -> None:
+            if lives and component in self._able:
+                self._bus.later(OTHER_LIFE, again)
+            else:
+                self._between_lives.discard(component)
+                self._let_live(component)
+
+        again = partial(self._begin_anew, component, last)
         if last.runner is not None:
-            self._bus.later(NEXT_LIFE, partial(self._begin_anew, component, last))
-            return
-        self._between_lives.discard(component)
-        self._let_live(component)
+            self._bus.later(NEXT_LIFE, again)
+        else:
+            self._bus.roll_call(Keys(self._ecology).lives(component), OTHER_LIFE_CALL, seen)
 
     def _let_live(self, component: IRI) -> None:
         """Let a composite live, unless it does, or did a moment ago, or its inside cannot be configured."""
@@ -369,7 +403,12 @@ class Composites:
             advertisement = self._begun_as[component] = self._advertisements[component]
             request_with, rested = partial(self._request, self._able[component]), partial(self._acts_no_more, component)
             self.living[component] = InsideOfComposite(
-                self._bus, self._ecology, advertisement.profile, request_with, rested
+                self._bus,
+                self._ecology,
+                advertisement.profile,
+                request_with,
+                rested,
+                self._superseded,
             )
 
     def _acts_no_more(self, component: IRI) -> None:

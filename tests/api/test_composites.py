@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from selfconf import files
-from selfconf.api.composites import LOOK_AT_REFUSED, NEXT_LIFE
+from selfconf.api.composites import LOOK_AT_REFUSED, NEXT_LIFE, OTHER_LIFE
 from selfconf.api.task import template
 from selfconf.configurator import Phase
 from selfconf.deployment import TaskRunner
@@ -760,6 +760,39 @@ def test_a_composite_begins_its_next_life_when_the_last_is_seen_no_more(tmp_path
     assert not composites.living
     lab.let_pass(NEXT_LIFE)
     assert composites.living[iri("eye")].runtime.life != first
+
+
+def test_a_composite_that_has_left_as_another_life_was_seen_lives_again_once_that_has_ended(tmp_path: Path) -> None:
+    """As where a host was cut off, and begins anew before the others have seen its end."""
+    lab = Lab(tmp_path, advertised=EYE)
+    ended = lab.network.node().announce(lab.keys.life(iri("eye"), "0"))
+    lab.site("home", *EYE)
+    for name in sorted(EYE.keys() - {"eye"}):
+        lab.component(name)
+    lab.let_pass(3 * OTHER_LIFE)
+    assert not lab.composites["home"].living
+    ended()
+    lab.let_pass(OTHER_LIFE + 2 * NEXT_LIFE)
+    assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
+
+
+def test_of_two_sites_that_advertise_a_composite_one_goes_on_when_the_other_has_ended(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=EYE)
+    sites = {name: lab.site(name, "eye", "lens") for name in ("home", "inn")}
+    lab.site("rest", *(EYE.keys() - {"eye", "lens"}))
+    for name in sorted(EYE.keys() - {"eye"}):
+        lab.component(name)
+    lab.let_pass(5.0)
+    (having,) = (name for name in sites if lab.composites[name].living)
+    (first,) = lab.composites[having].living.values()
+    low = looking(lab, "Low", 0)
+    lab.let_pass(60.0)
+    assert (low.state.phase, first.runtime.closed) == (Phase.RUNNING, False), "the other one does not begin beside it"
+    low.stop()
+    lab.let_pass(3.0)
+    lab.crash(sites[having])
+    lab.let_pass(10.0)
+    assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
 
 
 def _advertised(folder: Path) -> dict[IRI, Advertisement]:
