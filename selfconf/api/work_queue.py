@@ -22,6 +22,9 @@ that have begun at the same time want the processors too."""
 MOST_UNDISTURBED = 5.0
 """For how many seconds at most, where it was interrupted again and again: it is begun anew each time."""
 
+MOST_AT_LEISURE = 30.0
+"""For how many seconds something is done that nothing waits for: a search may go on for hours."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Work:
@@ -68,8 +71,8 @@ class WorkQueue:
         """Have `next` do something when there has been nothing else for a while, in place of what that was before.
 
         What comes in the middle of it is done first, and then this anew, after what waits for other owners and when
-        there has been nothing else for twice as long. Outside of the main thread, where nothing could end it, it is
-        forgotten.
+        there has been nothing else for twice as long. What takes longer than `MOST_AT_LEISURE` is ended and forgotten;
+        so is all outside of the main thread, where nothing could end it.
         """
         with self._more:
             before = self._leisurely.get(owner)
@@ -169,15 +172,27 @@ class WorkQueue:
             if not self._leisurely or self._until_leisure > 0:
                 return
             owner, one = min(self._leisurely.items(), key=lambda each: each[1].undisturbed)
-        over = True
+        over, too_long = True, threading.Event()
+        limit = threading.Timer(MOST_AT_LEISURE, self._end_leisure, (too_long,))
+        limit.daemon = True
+        limit.start()
         try:
             over = self.until_more(one.do) or threading.current_thread() is not threading.main_thread()
         finally:
+            limit.cancel()
+            over = over or too_long.is_set()
             with self._more:
                 if not over:
                     self._put_last(owner)
                 elif self._leisurely.get(owner) is one:
                     del self._leisurely[owner]
+
+    def _end_leisure(self, too_long: threading.Event) -> None:
+        """End what is done at leisure, as it takes too long."""
+        too_long.set()
+        with self._more:
+            if self._until_more is not None:
+                self._until_more()
 
     def _put_last(self, owner: str) -> None:
         """Let what was interrupted wait for a longer time in which there is nothing else, and for other owners."""

@@ -257,6 +257,25 @@ def test_what_is_interrupted_at_leisure_again_and_again_is_begun_more_and_more_r
     assert queue.next(0.0) is None
 
 
+def test_what_takes_too_long_at_leisure_is_ended_and_not_begun_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work_queue, "UNDISTURBED", 0.01)
+    monkeypatch.setattr(work_queue, "MOST_AT_LEISURE", 0.1)
+    queue, done = WorkQueue(), list[str]()
+
+    def search() -> None:
+        done.append("begun")
+        _forever(threading.Event())
+
+    queue.at_leisure(search, "patrol")
+    for _ in range(3):
+        assert queue.next(0.1) is None
+    assert done == ["begun"]
+    queue.at_leisure(lambda: done.append("tidied"), "tidy")
+    while len(done) == 1:
+        queue.next(1.0)
+    assert done == ["begun", "tidied"]
+
+
 def test_what_waits_for_leisure_holds_up_no_caller() -> None:
     queue, done = WorkQueue(), list[str]()
     queue.at_leisure(lambda: done.append("explained"), "patrol")
