@@ -10,13 +10,14 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from selfconf.bus.port import Bus
-from selfconf.configurator import State
+from selfconf.configurator import Loss, State
 from selfconf.deployment import RunRequest, ask_holders
 from selfconf.errors import SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, life_of
+from selfconf.protocol.messages import Cause
 from selfconf.rdf.advertisements import Advertisement
 
 SPENT_CALL = 1.0
@@ -29,10 +30,16 @@ class InsideProspect:
     def __init__(self, bus: Bus, ecology: str, request: RunRequest, state: State) -> None:
         """`request` and `state` are those of the task that was refused."""
         self._bus, self._keys, self._request, self._priority = bus, Keys(ecology), request, state.priority
-        self._spent = {one: frozenset((loss.life,)) for one, loss in state.lost.items() if not loss.busy}
-        """The lives of each component that was lost in which it cannot act; without a name, those that it lives now."""
+        self._spent = {one: _spent(loss) for one, loss in state.lost.items() if not loss.busy}
+        """The lives of each component that was lost in which it cannot act: where none was named, those that it lives
+        now; until these are known one without a name."""
         self._searched: object = None
         """Among what, and without what, a search has found nothing."""
+        for component in [one for one, spent in self._spent.items() if "" in spent]:
+            self._bus.roll_call(self._keys.lives(component), SPENT_CALL, partial(self._note_spent, component))
+
+    def _note_spent(self, component: IRI, keys: tuple[str, ...]) -> None:
+        self._spent[component] = frozenset(map(life_of, keys))
 
     def look(self, known: Mapping[IRI, Advertisement], able: Callable[[], None]) -> None:
         """Call `able` if the inside can be configured from what is advertised, in the rank that it had."""
@@ -53,10 +60,8 @@ class InsideProspect:
 
     def _lost(self, lives: Mapping[IRI, frozenset[str]]) -> frozenset[IRI]:
         """The components that were lost and live no life yet in which they may be able to act."""
-        for component, spent in self._spent.items():
-            if "" in spent:
-                self._spent[component] = lives[component]
-        return frozenset(component for component, spent in self._spent.items() if not lives[component] - spent)
+        spent = self._spent.items()
+        return frozenset(one for one, without in spent if "" in without or not lives[one] - without)
 
     def _search(
         self,
@@ -94,3 +99,8 @@ class InsideProspect:
             if not contested:
                 return True
             shared, without = shared - contested, without | contested
+
+
+def _spent(loss: Loss) -> frozenset[str]:
+    """The life in which a component was lost, perhaps without a name; none where one has ended that was not named."""
+    return frozenset() if loss.cause is Cause.CRASH and not loss.life else frozenset((loss.life,))

@@ -36,11 +36,13 @@ OTHER = f"""{PREFIXES}
 class Prospect:
     """The prospect of an inside that needs the lens, in a lab with that and a task that may hold it."""
 
-    def __init__(self, folder: Path, *, shareable: bool = False, zoom: int = 2, loss: Loss | None = None) -> None:
+    def __init__(
+        self, folder: Path, *, shareable: bool = False, zoom: int = 2, loss: Loss | None = None, living: bool = True
+    ) -> None:
         text = ADVERTISED["lens"].replace("SHAREABLE", f"sc:shareable {str(shareable).lower()} ;")
         self.lab = Lab(folder, advertised={**ADVERTISED, "lens": text})
         self.lab.site("home", *ADVERTISED)
-        for name in ADVERTISED:
+        for name in ADVERTISED if living else ():
             self.lab.component(name)
         self.lab.let_pass(3.0)
         task = task_of(INSIDE.replace("SETS", f"sc:sets [ sc:parameterType :Zoom ; sc:value {zoom} ]"), ())
@@ -98,6 +100,20 @@ def test_a_component_that_was_lost_counts_again_in_a_new_life(tmp_path: Path, li
     assert not prospect.able()
     prospect.lab.component("lens")
     prospect.lab.let_pass(3.0)
+    assert prospect.able()
+
+
+def test_a_component_that_did_not_live_counts_once_it_does_however_late_it_is_looked_at(tmp_path: Path) -> None:
+    prospect = Prospect(tmp_path, loss=Loss(Cause.REFUSED, "it does not run"), living=False)
+    prospect.lab.let_pass(1.0)
+    prospect.lab.component("lens")
+    prospect.lab.let_pass(3.0)
+    assert prospect.able()
+
+
+def test_a_component_of_which_a_life_has_ended_counts_in_the_next_one(tmp_path: Path) -> None:
+    prospect = Prospect(tmp_path, loss=Loss(Cause.CRASH, "it has begun another life"))
+    prospect.lab.let_pass(1.0)
     assert prospect.able()
 
 
