@@ -345,8 +345,9 @@ class Composites:
         for component in found:
             if component in self.living:
                 self._look_again(component)
-            else:
-                self._let_live(component)
+            elif component not in self._between_lives:
+                self._between_lives.add(component)
+                self._begin_life(component)
         for component, sentence in why.items():
             if self._told.get(component) != sentence:
                 self._complain(f"the composite {component} does not live: {sentence}")
@@ -371,17 +372,17 @@ class Composites:
         composite.close()
         del self._begun_as[component]
         self._between_lives.add(component)
-        self._bus.later(NEXT_LIFE, partial(self._begin_anew, component, composite))
+        self._bus.later(NEXT_LIFE, partial(self._begin_life, component, composite))
 
     def _superseded(self, composite: InsideOfComposite) -> None:
         """A composite has left, as another life of it is seen: let it live again once that has ended."""
         if self.living.get(composite.profile.component) is composite:
             self._end(composite.profile.component)
 
-    def _begin_anew(self, component: IRI, last: InsideOfComposite) -> None:
+    def _begin_life(self, component: IRI, last: InsideOfComposite | None = None) -> None:
         """Let a composite live, if its inside can be configured, once that of its last life has come to rest.
 
-        And no other life of it is seen: it might be the one to leave, though it acts.
+        And no other life of it is seen: of two that live it might be the one to leave, though it acts.
         """
 
         def seen(lives: tuple[str, ...]) -> None:
@@ -391,15 +392,15 @@ class Composites:
                 self._between_lives.discard(component)
                 self._let_live(component)
 
-        again = partial(self._begin_anew, component, last)
-        if last.runner is not None:
+        again = partial(self._begin_life, component, last)
+        if last is not None and last.runner is not None:
             self._bus.later(NEXT_LIFE, again)
         else:
             self._bus.roll_call(Keys(self._ecology).lives(component), OTHER_LIFE_CALL, seen)
 
     def _let_live(self, component: IRI) -> None:
-        """Let a composite live, unless it does, or did a moment ago, or its inside cannot be configured."""
-        if component in self._able and component not in self.living and component not in self._between_lives:
+        """Let a composite live, unless its inside cannot be configured by now."""
+        if component in self._able:
             advertisement = self._begun_as[component] = self._advertisements[component]
             request_with, rested = partial(self._request, self._able[component]), partial(self._acts_no_more, component)
             self.living[component] = InsideOfComposite(

@@ -795,6 +795,20 @@ def test_of_two_sites_that_advertise_a_composite_one_goes_on_when_the_other_has_
     assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
 
 
+def test_a_composite_that_lives_is_not_driven_out_by_one_that_comes_later(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=EYE)
+    first = lab.site("home", *EYE)
+    for name in sorted(EYE.keys() - {"eye"}):
+        lab.component(name)
+    lab.let_pass(3.0)
+    low = looking(lab, "Low", 0)
+    for number in range(6):  # of each two lives either may be the smaller one
+        lab.site(f"inn-{number}", "eye", "lens")
+    lab.let_pass(10.0)
+    assert (low.state.phase, lab.acts("lost")) == (Phase.RUNNING, [])
+    assert [name for name, composites in lab.composites.items() if composites.living] == [first.name]
+
+
 def _advertised(folder: Path) -> dict[IRI, Advertisement]:
     return {one.component: one for path in folder.iterdir() for one in files.advertisements(path)[0]}
 
