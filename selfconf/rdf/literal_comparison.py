@@ -2,14 +2,15 @@
 
 pySHACL also orders what has no order, a date and a number by the names of their datatypes, two IRIs by their letters,
 and so lets `sh:minInclusive 5` pass any date, and `sh:lessThan` too. Here only literals of one value space have an
-order, as in SPARQL; within `only_ordered` pySHACL asks for it here.
+order, as in SPARQL, and NaN has none; within `only_ordered` pySHACL asks for it here. There it also keeps blank nodes
+from `sh:minLength 0`, as SHACL has it (4.4.1): they have no length.
 
 Loading both takes longer than most configurations, so `selfconf.rdf.shacl` imports this module when a test needs it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from datetime import datetime, timedelta
 from decimal import Decimal
@@ -21,6 +22,7 @@ from pyshacl.constraints.core.property_pair_constraints import (
     LessThanConstraintComponent,
     LessThanOrEqualsConstraintComponent,
 )
+from pyshacl.constraints.core.string_based_constraints import MinLengthConstraintComponent
 from pyshacl.rdfutil.compare import compare_literal
 from rdflib.xsd_datetime import Duration
 
@@ -46,6 +48,8 @@ def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
     """How two literals compare: negative, zero or positive. Raises one of UNORDERED where they have no order."""
     if _value_space(one) != _value_space(other):
         raise TypeError("the two have no order")
+    if one.value != one.value or other.value != other.value:
+        raise TypeError("NaN is neither less nor greater than any number")
     if one.language:  # rdflib orders by the tag first, as it is written: `en` comes after `EN`
         return (str(one) > str(other)) - (str(one) < str(other))
     return _compare(one, other)
@@ -80,12 +84,24 @@ def _compared(
     return bool(wrong), [component.make_v_result(graph, focus, value_node=value) for value in wrong]
 
 
+def _long_enough(component: Any, least: Any, graph: Any, nodes: Mapping[Any, Iterable[Any]]) -> tuple[bool, Any]:
+    """What pySHACL wants to know of `sh:minLength`: whether it is violated, and the results."""
+    wrong = [
+        component.make_v_result(graph, focus, value_node=value)
+        for focus, values in nodes.items()
+        for value in values
+        if isinstance(value, rdflib.BNode) or len(component.value_node_to_string(value)) < least.value
+    ]
+    return bool(wrong), wrong
+
+
 _OURS: tuple[tuple[object, str, object], ...] = (
     (value_range_constraints, "compare_literal", _compare_in_order),
     (LessThanConstraintComponent, "_compare_lt", _less),
     (LessThanOrEqualsConstraintComponent, "_compare_ltoe", _less_or_equal),
+    (MinLengthConstraintComponent, "_evaluate_string_rule", _long_enough),
 )
-"""What pySHACL orders by: where it is, its name, and what takes its place."""
+"""What pySHACL compares by: where it is, its name, and what takes its place."""
 
 
 def well_typed(literal: Literal) -> bool:

@@ -89,6 +89,9 @@ def test_one_number_in_two_forms_is_equal() -> None:
         (typed("PT1H", "duration"), typed("5", "decimal")),
         (Literal("x", IRI("urn:x:own")), typed("5", "integer")),
         (typed("1.0", "decimal"), NAN),
+        (NAN, typed("1", "integer")),
+        (typed("1", "float"), NAN),
+        (NAN, NAN),
     ],
 )
 def test_what_has_no_order_is_told_so_and_raises_nothing(value: Term, limit: Term) -> None:
@@ -104,6 +107,20 @@ def test_in_the_block_pyshacl_lets_no_date_pass_a_limit_that_is_a_number() -> No
         with only_ordered():
             verdicts.append(pyshacl.validate(data, shacl_graph=shapes)[0])
     assert verdicts == [False, True, False]
+
+
+@pytest.mark.parametrize(
+    ("constraint", "value"), [("sh:maxInclusive 5", '"NaN"^^xsd:double'), ("sh:minLength 0", "[]")]
+)
+def test_in_the_block_pyshacl_lets_neither_nan_pass_a_limit_nor_a_blank_node_a_length(
+    constraint: str, value: str
+) -> None:
+    shape = f":s a sh:NodeShape ; sh:targetNode :a ; sh:property [ sh:path :p ; {constraint} ] ."
+    shapes = Graph().parse(data=PREFIXES + shape, format="turtle")
+    data = Graph().parse(data=f"{PREFIXES}:a :p {value} .", format="turtle")
+    with only_ordered():
+        assert not pyshacl.validate(data, shacl_graph=shapes)[0]
+    assert pyshacl.validate(data, shacl_graph=shapes)[0]
 
 
 @pytest.mark.parametrize("constraint", ["lessThan", "lessThanOrEquals"])

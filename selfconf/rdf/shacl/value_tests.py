@@ -177,8 +177,6 @@ def _passes(test: ValueTest, value: Term) -> bool:
     if test.constraint in _LENGTHS:
         least = test.constraint == SH.minLength
         number = int(str(wanted))
-        if least and number == 0:
-            return True
         return not isinstance(value, BlankNode) and (len(str(value)) >= number if least else len(str(value)) <= number)
     return not isinstance(value, BlankNode) and _expression(str(wanted), test.flags).finds(str(value))
 

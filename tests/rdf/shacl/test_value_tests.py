@@ -22,6 +22,8 @@ def number(text: str) -> Literal:
         (SH.minInclusive, number("5"), Literal("5.0", XSD.decimal), number("4")),
         (SH.maxExclusive, number("5"), number("4"), Literal("4")),
         (SH.minLength, number("2"), Literal("ab"), Literal("a")),
+        (SH.minLength, number("0"), Literal(""), BlankNode("_:a")),
+        (SH.maxInclusive, number("5"), Literal("-INF", XSD.double), Literal("NaN", XSD.double)),
         (SH.maxLength, number("2"), Literal("ab"), BlankNode("_:a")),
         (SH.pattern, Literal("^a+$"), Literal("aa"), Literal("ab")),
     ],
