@@ -73,7 +73,11 @@ def other_format(name: str, octets: bytes) -> RdfFormat | None:
 
 def conversion(name: str, found: RdfFormat) -> str:
     """The command that makes Turtle of a file; rdfpipe comes with rdflib, which selfconf needs."""
-    target = f"{name.removesuffix('.' + _ending(name)) if _ending(name) else name}.ttl"
+    if name.startswith("<"):  # the text came by a pipe: it is in no file
+        return f"rdfpipe -i {found.rdfpipe} -o turtle -"
+    stem = name.removesuffix("." + _ending(name)) if _ending(name) else name
+    # A shell empties the file that it writes to before the command reads it.
+    target = f"{stem}-turtle.ttl" if f"{stem}.ttl" == name else f"{stem}.ttl"
     return f"rdfpipe -i {found.rdfpipe} -o turtle {shlex.quote(name)} > {shlex.quote(target)}"
 
 

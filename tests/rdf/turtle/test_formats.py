@@ -115,6 +115,14 @@ def test_the_command_that_is_advised_makes_turtle(found: RdfFormat, tmp_path: Pa
     assert len(list(turtle.parse(made, "lamps.ttl").triples())) == len(list(turtle.parse(TEXT, "").triples()))
 
 
+def test_the_command_that_is_advised_never_writes_to_the_file_that_it_reads() -> None:
+    assert conversion("lamps.ttl", TRIG) == "rdfpipe -i trig -o turtle lamps.ttl > lamps-turtle.ttl"
+
+
+def test_what_came_by_a_pipe_is_converted_by_a_pipe() -> None:
+    assert conversion("<stdin>", RDF_XML) == "rdfpipe -i xml -o turtle -"
+
+
 @pytest.mark.parametrize(
     "text", [PREFIXES, "[] a <urn:x> .", '<urn:a> <urn:b> "{" .', "# { \n<urn:a> <urn:b> <urn:c> ."]
 )
