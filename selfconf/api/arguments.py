@@ -34,14 +34,22 @@ def listed_paths(paths: Paths) -> list[str | Path]:
 
 
 def checked_path(path: str | Path) -> Path:
-    """The path of a text. Raises AuthorError for a text that names none, and ProgrammerError for what is no text."""
+    """The path of a text. Raises AuthorError for a text that names none or one that cannot be looked for.
+
+    Raises ProgrammerError for what is no text.
+    """
     if not isinstance(path, str | os.PathLike):
         raise ProgrammerError(f"a path is text or a Path, not {path!r}")
     if not str(path):  # `Path` takes it for the current folder
         raise AuthorError("an empty text is no path; the current folder is '.'")
     if "\0" in str(path):
         raise AuthorError(f"a path holds no null character: {str(path)!r}")
-    return Path(path)
+    found = Path(path)
+    try:
+        found.exists()
+    except OSError as error:  # a name that is too long, or a folder into which only others may look
+        raise AuthorError(f"cannot read {found}: {error.strerror}") from None
+    return found
 
 
 def checked_text(text: str, what: str) -> str:

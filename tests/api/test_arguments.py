@@ -65,7 +65,9 @@ def test_a_word_is_an_option_or_is_answered_with_the_options() -> None:
     assert str(error.value) == "there is no colour 'green'; choose one of 'red', 'blue'"
 
 
-@pytest.mark.parametrize(("path", "why"), [("", "the current folder is"), ("a\0b", "no null character")])
+@pytest.mark.parametrize(
+    ("path", "why"), [("", "the current folder is"), ("a\0b", "no null character"), ("a" * 300, "File name too long")]
+)
 def test_a_text_that_names_no_path_is_refused_in_a_sentence(path: str, why: str) -> None:
     for call in (checked_path, listed_paths):
         with pytest.raises(AuthorError, match=why):
