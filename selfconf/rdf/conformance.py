@@ -65,6 +65,8 @@ _NOTHING = IRI("urn:selfconf:nothing")
 """A node about which nothing is said."""
 _NO_ORDER = (*UNORDERED, ReportableRuntimeError)
 """What comes through pySHACL where two values have no order; the last is its own, for blank nodes."""
+_TOO_DEEP = re.compile("Validation path too deep|Path traversal depth is too much")
+"""What pySHACL says where shapes within shapes, or the steps of a path, are more than it follows."""
 _SHAPE_AT_FAULT = (ShapeLoadError, ConstraintLoadError, ParseException)
 """What pySHACL raises where nothing but the shape can be at fault."""
 _ILL_FORMED = (
@@ -157,6 +159,8 @@ class _Judge:
         except _SHAPE_AT_FAULT:
             raise
         except _ILL_FORMED as error:
+            if _TOO_DEEP.match(str(error)):  # only where there are values so deep; a shape may come back to itself
+                return [NotJudged("the shape leads deeper into what it says than pySHACL follows")]
             if isinstance(error, _NO_ORDER):
                 return [ShapeViolated("Value cannot be compared")]
             return [NotJudged(f"pySHACL stops at what it says ({reason_of(error)})")]

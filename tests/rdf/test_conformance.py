@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from pyshacl.constraints import constraint_component
 
 from selfconf.errors import TemplateError
-from selfconf.model.obstacle import ShapeViolated
+from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
 from selfconf.rdf import conformance, rdflib_terms
 from selfconf.rdf.conformance import violations
@@ -182,3 +182,21 @@ def test_the_text_of_a_report_that_nothing_reads_is_not_written(monkeypatch: pyt
     found = violations(graphs[0], graphs[1], IRI("urn:x:shape"), NODES, "a.ttl")
     assert found.keys() == set(NODES)
     assert vars(constraint_component)["stringify_node"] is written  # put back where it was
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        "sh:path ( " + ":next " * 12 + ") ; sh:minCount 1",
+        "sh:path :next ; sh:property [ " * 17 + "sh:path :next" + " ]" * 17,
+    ],
+    ids=["steps of a path", "shapes within shapes"],
+)
+def test_what_lies_deeper_than_pyshacl_follows_is_not_judged(asked: str) -> None:
+    chain = ":good :next :n0 . " + "".join(f":n{number} :next :n{number + 1} . " for number in range(30))
+    graphs = [
+        rdflib_terms.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples())
+        for text in (chain, f":shape sh:property [ {asked} ] .")
+    ]
+    found = violations(graphs[0], graphs[1], IRI("urn:x:shape"), [IRI("urn:x:good")], "a.ttl")
+    assert found == {NODES[0]: [NotJudged("the shape leads deeper into what it says than pySHACL follows")]}
