@@ -27,7 +27,7 @@ from selfconf.render.text import Name, refusal_text
 
 SENTENCES: Mapping[str, str] = {
     "query": "act 1  asking the ecology what it has",
-    "discovered": "act 2  {components} components at {sites}{missing}",
+    "discovered": "act 2  {components} at {sites}{missing}",
     "composed": "act 3  {found} in {milliseconds:.1f} ms",
     "watching": "act 4  listening to FAIL of {component}",
     "waking": "act 4  {component} is dormant; site {site} starts it",
@@ -61,6 +61,7 @@ def sentence(event: RunEvent, name: Name) -> str:
     if isinstance(event, SearchEnded):
         facts |= {"found": _outcome(event), "milliseconds": event.seconds * 1000}
     if isinstance(event, EcologyDiscovered):
+        facts["components"] = count(event.components, "component")
         facts["missing"] = "".join(f"; site {site} did not answer in full" for site in event.missing[:MANY])
         if len(event.missing) > MANY:
             facts["missing"] += f"; nor did {len(event.missing) - MANY} others"

@@ -119,6 +119,7 @@ def test_a_discovery_names_the_sites_that_did_not_answer_in_full() -> None:
     assert missing == (
         "act 2  2 components at home; site cellar did not answer in full; site attic did not answer in full"
     )
+    assert sentence(EcologyDiscovered(1, ("home",)), NAMES) == "act 2  1 component at home"
     assert sentence(EcologyDiscovered(0, ()), NAMES) == "act 2  0 components at no site"
 
 
