@@ -108,6 +108,7 @@ def read_ontology(
         if "LoadDocumentCallback" in message:
             message = "its @context is on the web, and is not fetched; write it into the file"
         line = error.lineno or (lines.number if found is RDF_XML else None)
+        message = " ".join(message.split())  # it may quote some lines of the file
         raise TurtleError(f"not {found.name}: {message}", file=source, line=line, column=error.offset) from None
     except MemoryError:
         raise TurtleError("a literal in it is larger than can be read", file=source) from None

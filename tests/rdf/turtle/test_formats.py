@@ -70,6 +70,7 @@ def test_the_triples_of_every_graph_of_an_ontology_count() -> None:
             '<?xml version="1.0"?>\n<rdf:RDF xmlns:rdf="http://x#">\n<b></c>\n</rdf:RDF>\n',
             "a.rdf:3: not RDF/XML",
         ),
+        ("a.rdf", "plain\ntext\n", "a.rdf:2: not RDF/XML: Unexpected text event: 'plain text"),
         ("a.nt", "<urn:a> <urn:b> <urn:c> .\n<urn:a> <urn:b> .\n", "a.nt:2:17: not N-Triples"),
         ("a.jsonld", '{\n"@id": "urn:a",}', "a.jsonld:2:"),
         ("a.jsonld", '{"@context": "https://example.org/context", "a": 1}', "not fetched"),
