@@ -11,7 +11,7 @@ from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, se
 from selfconf.api.collector import collector_at_rest, collector_looking_at_new
 from selfconf.api.ecology import Ecology
 from selfconf.api.ontologies import hierarchy_of
-from selfconf.api.places import Places
+from selfconf.api.places import Places, with_lines
 from selfconf.api.reading import described_in
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained, insides
@@ -248,10 +248,11 @@ class Inquiry:
         }
         """How many components are eligible for each role."""
         not_judged = sorted(self.composer.not_judged().items())
-        self.left_out: tuple[LeftOut, ...] = (
+        left_out = (
             *not_read,
             *(LeftOut(self._place(component), component, why.reason) for component, why in not_judged),
         )
+        self.left_out: tuple[LeftOut, ...] = tuple(with_lines(left_out, ecology.texts)) if left_out else ()
         """The components that play no role, or feed nothing, as what they say cannot be judged, or not in time."""
 
     def holder(self, role: Role, profile: Profile) -> Holder | None:

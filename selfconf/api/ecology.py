@@ -106,8 +106,13 @@ class Ecology(ABC):
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
-        """The advertisements that do not count, and why; an answer has those that its question could not judge."""
-        return self._left_out
+        """The advertisements that do not count, and why; an answer has those that its question could not judge.
+
+        Each has its line where the file or text can be read again.
+        """
+        from selfconf.api.places import with_lines  # it imports this module
+
+        return tuple(with_lines(self._left_out, self.texts)) if self._left_out else ()
 
     @property
     def complaints(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ by the task or the ecology that was read from it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -83,22 +83,14 @@ class Places:
         else:
             place = self._ecology[named].profile.place if named in self._ecology else None
         if place is not None and place.source in (*KEPT_TEXTS, GRAPH):
-            return Place(place.source, None if place.source == GRAPH else self._line_in_texts(named))
+            return Place(place.source, None if place.source == GRAPH else _line_in(self._texts_read, named))
         if place is None or not Path(place.source).is_file():
             return None  # it comes from another machine, whose lines cannot be looked up here
         return _with_line(named, place, self._read)
 
     @cached_property
     def _texts_read(self) -> list[_TextReadAgain]:
-        kept = [text for text in self._texts if text is not None and len(text) <= LARGEST_REREAD]
-        return [_TextReadAgain(text, "", "file:///") for text in kept]
-
-    def _line_in_texts(self, named: IRI) -> int | None:
-        """The line in the first of the texts that describes what is named, or else speaks of it."""
-        told = next((one.subjects[named] for one in self._texts_read if named in one.subjects), None)
-        if told is not None:
-            return told
-        return next((line for one in self._texts_read if (line := one.line_of(named)) is not None), None)
+        return _read_texts(self._texts)
 
     def placed(self, refusal: Refusal) -> Refusal:
         """The refusal with the place of each of its facts."""
@@ -113,12 +105,35 @@ class Places:
         return replace(fact, place=self.of(_spoken_of(fact)))
 
 
-def with_lines(left_out: Iterable[LeftOut]) -> Iterator[LeftOut]:
-    """Yield what was left out of an ecology with the lines where it is described."""
+def _read_texts(texts: Sequence[str | None]) -> list[_TextReadAgain]:
+    """The texts that are not too long to be read again."""
+    kept = [text for text in texts if text is not None and len(text) <= LARGEST_REREAD]
+    return [_TextReadAgain(text, "", "file:///") for text in kept]
+
+
+def _line_in(texts: Sequence[_TextReadAgain], named: IRI | BlankNode) -> int | None:
+    """The line in the first of some texts that describes what is named, or else speaks of it."""
+    told = next((one.subjects[named] for one in texts if named in one.subjects), None)
+    if told is not None:
+        return told
+    return next((line for one in texts if (line := one.line_of(named)) is not None), None)
+
+
+def with_lines(left_out: Collection[LeftOut], texts: Sequence[str | None] = ()) -> Iterator[LeftOut]:
+    """Yield what was left out of an ecology with the lines where it is described.
+
+    `texts` are those that the ecology was read from and that are in no file.
+    """
     read: FilesRead = {}
+    texts_read = _read_texts(texts) if any(one.place.source in KEPT_TEXTS for one in left_out) else []
     for one in left_out:
-        known = one.place.source in read or len(read) < MOST_REREAD
-        yield replace(one, place=_with_line(one.component, one.place, read)) if known else one
+        source = one.place.source
+        if one.place.line is not None or (source not in KEPT_TEXTS and source not in read and len(read) >= MOST_REREAD):
+            yield one
+        elif source in KEPT_TEXTS:
+            yield replace(one, place=Place(source, _line_in(texts_read, one.component)))
+        else:
+            yield replace(one, place=_with_line(one.component, one.place, read))
 
 
 def _with_line(named: IRI | BlankNode, place: Place, read: FilesRead) -> Place:

@@ -236,10 +236,8 @@ def complain_of(ecology: Ecology) -> None:
 
 
 def complain_of_left_out(left_out: Iterable[LeftOut]) -> None:
-    """Name on stderr what was left out of an ecology, each with its line where its file can be read."""
-    from selfconf.api.places import with_lines
-
-    for one in with_lines(left_out):
+    """Name on stderr what was left out of an ecology, each with its line where that is known."""
+    for one in left_out:
         complain(str(one))
 
 

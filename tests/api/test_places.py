@@ -62,10 +62,23 @@ def test_what_was_left_out_has_a_line_where_its_file_can_be_read(tmp_path: Path)
     for name in names:
         (tmp_path / name).write_text(PREFIXES + "# Malformed.\n:x a sc:Component .")
     expected = line(tmp_path / names[0], ":x a")
-    some = [*read(tmp_path).left_out, LeftOut(Place("elsewhere.ttl"), IRI("urn:x"), "it has no type")]
-    found = [str(one.place) for one in with_lines(some)]
+    elsewhere = LeftOut(Place("elsewhere.ttl"), IRI("urn:x"), "it has no type")
+    found = [str(one.place) for one in (*read(tmp_path).left_out, *with_lines([elsewhere]))]
     assert found[:MOST_REREAD] == [expected.replace(names[0], name) for name in names[:-1]]
     assert found[MOST_REREAD:] == [str(tmp_path / names[-1]), "elsewhere.ttl"]
+
+
+def test_what_a_text_or_an_answer_leaves_out_has_a_line_too(tmp_path: Path) -> None:
+    text = PREFIXES + "# Malformed.\n:x a sc:Component ."
+    (malformed,) = read(text).left_out
+    assert malformed.place == Place("<text>", text.count("\n") + 1)
+    path = "sh:property [ sh:path :p ; " * 20 + "sh:minCount 1" + " ]" * 20
+    task = sc.template(PREFIXES + f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; {path} .")
+    (tmp_path / "deep.ttl").write_text(
+        PREFIXES + "\n:z a :Z, sc:Component ; :p " + "[ :p " * 40 + "1" + " ]" * 40 + " ."
+    )
+    (not_judged,) = sc.configure(task, read(tmp_path)).left_out
+    assert str(not_judged.place) == line(tmp_path / "deep.ttl", ":z a")
 
 
 def test_only_what_is_named_by_a_relative_iri_is_read_by_the_parser_with_positions(
@@ -82,8 +95,7 @@ def test_only_what_is_named_by_a_relative_iri_is_read_by_the_parser_with_positio
     absolute, relative = tmp_path / "absolute.ttl", tmp_path / "relative.ttl"
     absolute.write_text(PREFIXES + "\n:x a sc:Component .")
     relative.write_text(PREFIXES + "\n\n<#x> a sc:Component .")
-    some = [*read(tmp_path).left_out]
-    assert {str(one.place) for one in with_lines(some)} == {line(absolute, ":x a"), line(relative, "<#x> a")}
+    assert {str(one.place) for one in read(tmp_path).left_out} == {line(absolute, ":x a"), line(relative, "<#x> a")}
     assert parsed == ["relative.ttl"]
 
 

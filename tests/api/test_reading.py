@@ -214,7 +214,7 @@ def test_of_two_advertisements_of_a_component_the_first_by_path_counts_and_the_o
     ecology = read(tmp_path / "b.ttl", tmp_path / "a.ttl")
     assert iri("Lamp") in ecology.components[iri("x")].types
     (left_out,) = ecology.left_out
-    assert (left_out.place, left_out.component) == (Place(str(tmp_path / "b.ttl")), iri("x"))
+    assert (left_out.place, left_out.component) == (Place(str(tmp_path / "b.ttl"), PREFIXES.count("\n") + 1), iri("x"))
     assert left_out.reason == f"it is advertised in {tmp_path / 'a.ttl'} already"
 
 
