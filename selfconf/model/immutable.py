@@ -1,9 +1,10 @@
 """Immutable values: `immutable` does to a class what `dataclass(frozen=True, slots=True)` does, in a fifth of the time.
 
 A data class compiles six methods for each class, one by one, which for the 150 classes of a site was a quarter of the
-time in which it starts. Here only `__init__` is compiled; the other methods are the same functions for all classes, or
-closures over the names of the fields. What `dataclasses` offers for data classes (`fields`, `replace`, `asdict`) works
-as usual, and type checkers see a frozen data class. A value holds what it maps in a `FrozenMapping`.
+time in which it starts. Here only `__init__` is compiled, and that when the class has its first value: most programs
+make values of some classes only. The other methods are the same functions for all classes, or closures over the names
+of the fields. What `dataclasses` offers for data classes (`fields`, `replace`, `asdict`) works as usual, and type
+checkers see a frozen data class. A value holds what it maps in a `FrozenMapping`.
 """
 
 from __future__ import annotations
@@ -34,18 +35,32 @@ else:
         own = frozenset(vars(cls))
         made = dataclasses.dataclass(init=False, repr=False, eq=False, slots=True)(cls)
         fields = dataclasses.fields(made)
-        methods = {**_SHARED, "__init__": _initializer(made, fields), **_comparison(fields)}
+        methods = {**_SHARED, "__init__": _Initializer(made), **_comparison(fields)}
         for name, method in methods.items():
             if name not in own:
                 setattr(made, name, method)
         return made
 
 
-def _initializer(cls: type, fields: Sequence[Field[Any]]) -> Callable[..., None]:
+class _Initializer:
+    """Stands for the `__init__` of a class until it is asked for, and is then replaced by it."""
+
+    __slots__ = ("_cls",)
+
+    def __init__(self, cls: type) -> None:
+        self._cls = cls
+
+    def __get__(self, value: object, owner: type | None = None) -> Any:
+        made = _initializer(self._cls)
+        type.__setattr__(self._cls, "__init__", made)
+        return made.__get__(value, owner)
+
+
+def _initializer(cls: type) -> Callable[..., None]:
     """Return an `__init__` that stores its arguments by the descriptors of the slots, which nothing can forbid."""
     known: dict[str, Any] = {"_missing": MISSING}
     parameters, body = ["self"], []
-    for field in sorted(fields, key=_by_keyword_only):
+    for field in sorted(dataclasses.fields(cls), key=_by_keyword_only):
         name = given = field.name
         if field.kw_only and "*" not in parameters:
             parameters.append("*")
