@@ -18,9 +18,10 @@ from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf.reasoning.closure import HIERARCHY, hierarchy
 from selfconf.rdf.turtle import document as turtle
+from tests.shipped import ontology_graphs
 
 OURS = "https://w3id.org/selfconf"
-GRAPHS = {path.stem: Graph().parse(path) for path in library.ontologies()}
+GRAPHS = ontology_graphs()
 APACHE = URIRef("https://www.apache.org/licenses/LICENSE-2.0")
 PROCESS = {"Input", "Output", "Parameter", "CompositeProcess", "hasInput", "hasOutput", "parameterType"}
 OWL_S = "http://www.daml.org/services/owl-s/"

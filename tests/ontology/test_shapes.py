@@ -15,10 +15,10 @@ from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.validation.shape_violations import reported_violations
 from selfconf.rdf.validation.well_formedness import shape_of_shapes
 from tests.bad_files import BAD, promised_codes
+from tests.shipped import shipped_shapes
 
 SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
-ALL = sum((Graph().parse(path) for path in library.shapes()), Graph())
-READ = ReadShapes(ALL)
+ALL, READ = shipped_shapes().all, shipped_shapes().read
 
 COMPONENTS = {
     SH.minCount: SH.MinCountConstraintComponent,

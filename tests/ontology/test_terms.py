@@ -10,13 +10,14 @@ from rdflib import DCTERMS, OWL, RDF, RDFS, SH, SKOS, XSD, Graph, Literal, Names
 from rdflib.collection import Collection
 
 from selfconf import library
+from tests.shipped import ontology_graphs
 
 SC = Namespace("https://w3id.org/selfconf#")
 ROB = Namespace("https://w3id.org/selfconf/robotics#")
 ROS2 = Namespace("https://w3id.org/selfconf/ros2#")
 VANN = Namespace("http://purl.org/vocab/vann/")
 ROOT = Path(__file__).resolve().parents[2]
-GRAPHS = {path.stem: Graph().parse(path) for path in library.ontologies()}
+GRAPHS = ontology_graphs()
 KINDS = {OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDF.Property}
 OURS = "https://w3id.org/selfconf"
 DECLARED = sum(GRAPHS.values(), Graph())

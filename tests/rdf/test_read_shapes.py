@@ -13,12 +13,11 @@ from pyshacl.errors import ValidationFailure
 from rdflib import SH, BNode, Graph, URIRef
 from rdflib.term import Node
 
-from selfconf import library
 from selfconf.rdf.read_shapes import ReadShapes
 from tests.bad_files import BAD
 from tests.lab import PREFIXES
+from tests.shipped import shape_graph
 
-SHIPPED = {path.stem: Graph().parse(path) for path in library.shapes()}
 FACTS = (SH.sourceShape, SH.focusNode, SH.value, SH.sourceConstraintComponent, SH.resultSeverity, SH.resultMessage)
 SHAPE = ":s a sh:NodeShape ; sh:targetClass :C ; sh:property [ sh:path :p ; sh:maxCount 1 ] ."
 QUERY = 'sh:sparql [ sh:select "SELECT $this WHERE {{ $this ?p 1 {} }}" ]'
@@ -41,12 +40,12 @@ def test_the_results_are_those_of_a_report(path: Path, kind: str) -> None:
         data.parse(path)
     except SyntaxError:
         data = graph(":a a sc:Component . :t a sc:Template . :k a sc:Task .")
-    _, report, _ = pyshacl.validate(data, shacl_graph=Graph() + SHIPPED[kind])
+    _, report, _ = pyshacl.validate(data, shacl_graph=Graph() + shape_graph(kind))
     assert isinstance(report, Graph)
     expected = Counter(
         tuple(fact(report.value(result, one)) for one in FACTS) for result in report.objects(None, SH.result)
     )
-    found = ReadShapes(SHIPPED[kind]).results(data)
+    found = ReadShapes(shape_graph(kind)).results(data)
     assert Counter(tuple(fact(result.get(one)) for one in FACTS) for result in found) == expected
 
 

@@ -16,10 +16,10 @@ from selfconf.rdf.validation.file_check import FileCheck, shapes_of
 from selfconf.rdf.validation.prefilter import prefilter
 from selfconf.rdf.validation.term_index import index_of
 from tests.lab import PREFIXES
+from tests.shipped import shipped_shapes
 
-TEXTS = tuple(path.read_text("utf-8") for path in library.shapes())
 HEAD = PREFIXES.count("\n")
-CHECK = FileCheck(shapes_of(*TEXTS), index_of([prefilter(path.read_bytes()) for path in library.ontologies()]))
+CHECK = FileCheck(shipped_shapes(), index_of([prefilter(path.read_bytes()) for path in library.ontologies()]))
 LAMP = ":lamp a sc:Component, :Lamp .\n"
 
 
@@ -84,7 +84,8 @@ def test_a_component_that_another_file_describes_as_well_is_told_with_that_file(
 
 
 def test_shapes_are_read_once_for_the_same_texts() -> None:
-    assert shapes_of(*TEXTS) is shapes_of(*TEXTS)
+    texts = [path.read_text("utf-8") for path in library.shapes()]
+    assert shapes_of(*texts) is shapes_of(*texts)
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rdflib import Graph
 
-from selfconf import library
 from selfconf.rdf.validation.prefilter import prefilter
-from selfconf.rdf.validation.shape_violations import Shapes, reported_violations
+from selfconf.rdf.validation.shape_violations import reported_violations
 from tests.effort import examples
+from tests.shipped import shipped_shapes
 
 HEAD = """\
 @prefix : <https://example.org/home#> .
@@ -34,7 +34,7 @@ GOOD = """
     rob:support :Astrid ; :weight 2.5 ; sc:preference 10 .
 :Astrid a rob:Robot ; rdfs:label "Astrid" .
 """
-SHAPES = Shapes.of(sum((Graph().parse(path) for path in library.shapes()), Graph()))
+SHAPES = shipped_shapes()
 
 TERMS = st.sampled_from(
     (

@@ -5,17 +5,14 @@ from __future__ import annotations
 import pytest
 from rdflib import SH, Graph, URIRef
 
-from selfconf import library
 from selfconf.model.diagnostic import Severity
 from selfconf.rdf.positions import parse_with_positions
-from selfconf.rdf.validation.shape_violations import Shapes, reported_violations, shape_violations
+from selfconf.rdf.validation.shape_violations import reported_violations, shape_violations
 from selfconf.rdf.vocabulary import SHAPES as NAMES
 from tests.lab import PREFIXES
+from tests.shipped import shipped_shapes
 
-ALL = Graph()
-for path in library.shapes():
-    ALL.parse(path)
-SHAPES = Shapes.of(ALL)
+SHAPES = shipped_shapes()
 HEAD = PREFIXES.count("\n")
 LAMP = ":lamp a sc:Component, :Lamp .\n"
 PORT = '[ sc:name "{}" ; sc:signalType :S ]'

@@ -7,7 +7,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from rdflib import SH, Graph, URIRef
 
-from selfconf import library
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import violations
@@ -19,11 +18,10 @@ from selfconf.rdf.vocabulary import SC
 from tests.effort import examples
 from tests.lab import PREFIXES, iri
 from tests.rdf.eligibility.test_compiler import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
+from tests.shipped import shipped_shapes
 
 TYPE = "<http://www.w3.org/1999/02/22-rdf-syntax-ns#type>"
-ALWAYS = Graph()
-for path in library.shapes():
-    ALWAYS.parse(path)
+ALWAYS = shipped_shapes().all
 
 
 def impossible(shape: str) -> bool:
