@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from selfconf.__main__ import COLLECTING
-from tests import schedule, shares
+from tests import messages, schedule, shares
 from tests.asked_here import ask_here
 from tests.effort import examples
 from tests.frozen import freeze_what_is_there
@@ -52,9 +52,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items.sort(key=_place)
 
 
-def pytest_collection_finish() -> None:
+def pytest_collection_finish(session: pytest.Session) -> None:
     """The collector of garbage has no need to look at what the tests are made of again and again."""
     freeze_what_is_there()
+    if hasattr(session.config, "workerinput"):
+        messages.keep_short(session.config)
 
 
 def _place(item: pytest.Item) -> int:

@@ -25,6 +25,7 @@ WHOLE = {
     "tests/api/test_ecology.py",
     "tests/api/test_living.py",
     "tests/api/test_run.py",
+    "tests/api/test_typed_programs.py",
     "tests/cli/test_untrusted.py",
     "tests/query/test_endpoint.py",
     "tests/serve/test_page.py",
@@ -35,7 +36,7 @@ WHOLE = {
     "tests/test_house.py",
     "tests/test_notebook.py",
 }
-"""Modules whose tests share something that takes seconds to make: an ecology, an endpoint, an album, a survey."""
+"""Modules whose tests share something that takes seconds to make: an ecology, an endpoint, an album, a type check."""
 BAD_FILES = ("test_a_bad_file_", "test_the_log_of_every_bad_file_", "test_every_constraint_is_broken_by_a_bad_file")
 """How the names of tests begin that share the reports about all files of `tests/bad`."""
 RECORDED = "tests/recorded/test_recorded.py"

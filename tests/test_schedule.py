@@ -33,14 +33,18 @@ def test_the_groups_are_of_modules_and_tests_that_exist() -> None:
 
 
 @pytest.mark.slow
-def test_a_test_that_hangs_has_failed_and_the_others_go_on(tmp_path: Path) -> None:
+def test_a_test_that_hangs_has_failed_and_the_others_go_on_and_errors_are_told(tmp_path: Path) -> None:
     (tmp_path / "conftest.py").write_text(
-        "from tests.schedule import scheduler\n"
+        "from tests.messages import keep_short\nfrom tests.schedule import scheduler\n"
         "def pytest_xdist_make_scheduler(config, log):\n    return scheduler(config, log)\n"
+        "def pytest_collection_finish(session):\n    keep_short(session.config)\n"
     )
     (tmp_path / "test_some.py").write_text(
         "import threading, pytest\ndef test_hangs():\n    threading.Event().wait()\n"
         "@pytest.mark.parametrize('number', range(8))\ndef test_passes(number):\n    pass\n"
+        "@pytest.fixture\ndef broken():\n    raise ValueError('before')\n"
+        "@pytest.fixture\ndef breaking():\n    yield\n    raise ValueError('after')\n"
+        "def test_is_never_begun(broken):\n    pass\ndef test_cannot_be_left(breaking):\n    pass\n"
     )
     bounded = "-o", "faulthandler_timeout=0.3", "-o", "faulthandler_exit_on_timeout=true"
     quiet = "-q", "-p", "no:cacheprovider", "-p", "no:hypothesispytest"
@@ -53,6 +57,8 @@ def test_a_test_that_hangs_has_failed_and_the_others_go_on(tmp_path: Path) -> No
         check=False,
     )
     assert ended.returncode == 1, ended.stderr
-    assert "1 failed, 8 passed" in ended.stdout
+    assert "1 failed, 9 passed, 2 errors" in ended.stdout
+    assert "ValueError: before" in ended.stdout
+    assert "ValueError: after" in ended.stdout
     assert "crashed while running 'test_some.py::test_hangs'" in ended.stdout
     assert "in test_hangs" in ended.stderr + ended.stdout, "it says where it was"
