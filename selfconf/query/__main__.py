@@ -3,8 +3,11 @@
 With the number of a socket as its argument it is a standing process, which answers many.
 """
 
+import gc
 import sys
 
 from selfconf.query import process, standing_process
 
-sys.exit(standing_process.main(int(sys.argv[1])) if len(sys.argv) > 1 else process.main())
+code = standing_process.main(int(sys.argv[1])) if len(sys.argv) > 1 else process.main()
+gc.freeze()  # what is left ends with the process, and need not be looked through for garbage
+sys.exit(code)
