@@ -14,7 +14,13 @@ def apartment() -> Apartment:
     return read_apartment()
 
 
-@pytest.fixture
-def plan() -> Graph:
-    """The PEIS-Home's Turtle as a graph that a test may change."""
+@pytest.fixture(scope="session")
+def plan_as_it_is() -> Graph:
+    """The PEIS-Home's Turtle as a graph."""
     return Graph().parse(PEIS_HOME, format="turtle")
+
+
+@pytest.fixture
+def plan(plan_as_it_is: Graph) -> Graph:
+    """The PEIS-Home's Turtle as a graph that a test may change."""
+    return Graph() + plan_as_it_is
