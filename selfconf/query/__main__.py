@@ -6,8 +6,13 @@ With the number of a socket as its argument it is a standing process, which answ
 import gc
 import sys
 
-from selfconf.query import process, standing_process
+if len(sys.argv) > 1:
+    from selfconf.query import standing_process
 
-code = standing_process.main(int(sys.argv[1])) if len(sys.argv) > 1 else process.main()
+    code = standing_process.main(int(sys.argv[1]))
+else:
+    from selfconf.query import process
+
+    code = process.main()
 gc.freeze()  # what is left ends with the process, and need not be looked through for garbage
 sys.exit(code)

@@ -23,9 +23,7 @@ import pyoxigraph as ox
 from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import in_command, options_named, setting
-from selfconf.query.endpoint import asked
 from selfconf.query.results import shown
-from selfconf.rdf.eligibility import ANY_COMPONENT, prefaced
 from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, only_reads, says
 from selfconf.render import Names
 
@@ -123,6 +121,9 @@ def _answering(question: Question) -> Iterator[QueryAnswer | Iterator[ox.Triple]
         dataset.load(sys.stdin.buffer.read())
         yield dataset.query(question.text, question.prefixes)
     else:
+        from selfconf.query.endpoint import asked  # loads HTTP, which an answer from a dataset does not need
+        from selfconf.rdf.eligibility import prefaced
+
         only_reads(question.text)
         with asked(question.endpoint, prefaced(question.text), patience=question.seconds) as found:
             yield found
@@ -132,6 +133,9 @@ def _remark(question: Question) -> str:
     """What explains an answer that is emptier than expected: an endpoint has its own idea of the default graph."""
     if question.endpoint is None or any(says(question.text, word) for word in ("GRAPH", "FROM")):
         return ""
+    from selfconf.query.endpoint import asked
+    from selfconf.rdf.eligibility import ANY_COMPONENT
+
     with contextlib.suppress(NetworkError), asked(question.endpoint, ANY_COMPONENT, patience=1.0) as found:
         if isinstance(found, ox.QueryBoolean) and not found:
             return (
