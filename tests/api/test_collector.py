@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from selfconf.api.collector import MANY_COMPONENTS, MANY_VALUES, SELDOM, collector_at_rest, collector_looking_at_new
+
+ROOT = Path(__file__).parents[2]
 
 
 class Loop:
@@ -18,14 +23,11 @@ class Loop:
         self.itself = self
 
 
-@pytest.fixture
-def unfrozen() -> Iterator[None]:
-    """Nothing is frozen, as a program begins, though the one that runs the tests may have frozen what it has."""
-    frozen = gc.get_freeze_count() > 0
-    gc.unfreeze()
-    yield
-    if frozen:
-        gc.freeze()
+def in_a_new_process(check: Callable[[], None]) -> None:
+    """Run a check where nothing is frozen, and little is there: to look at all that tests are made of takes seconds."""
+    command = f"from {check.__module__} import {check.__name__}; {check.__name__}()"
+    done = subprocess.run([sys.executable, "-c", command], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_the_collector_rests_and_is_as_it_was_afterwards() -> None:
@@ -39,8 +41,12 @@ def test_the_collector_rests_and_is_as_it_was_afterwards() -> None:
     assert gc.isenabled()
 
 
-@pytest.mark.usefixtures("unfrozen")
 def test_what_was_there_is_looked_at_once_all_is_over() -> None:
+    in_a_new_process(look_once_all_is_over)
+
+
+def look_once_all_is_over() -> None:
+    """Make garbage before and while the collector looks at what is new alone."""
     loop = Loop()
     gone = weakref.ref(loop)
     often = gc.get_threshold()
@@ -57,8 +63,12 @@ def test_what_was_there_is_looked_at_once_all_is_over() -> None:
     assert gc.get_threshold() == often
 
 
-@pytest.mark.usefixtures("unfrozen")
 def test_what_was_there_is_looked_at_where_there_are_few_components() -> None:
+    in_a_new_process(look_where_there_are_few_components)
+
+
+def look_where_there_are_few_components() -> None:
+    """Make garbage before there are few components."""
     loop = Loop()
     gone = weakref.ref(loop)
     with collector_looking_at_new(MANY_COMPONENTS - 1):
