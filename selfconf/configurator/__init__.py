@@ -5,8 +5,8 @@
 *What it hears*, each an `Event`: its task begins (`Accepted`), is taken over as it runs (`Adopted`), is handed over
 (`HandedOver`) or ends (`Stopped`); the ecology has answered (`Discovered`), and a search has (`Composed`); a component
 has `Answered` a `Call`, has `Failed`, is `Freed` by another task, is still not free (`WaitedLong`), has `Appeared`, or
-has others behind its outputs (`Rewired`); something better may be had (`Improvable`); the bus is back (`Reconnected`);
-the task is `Ranked` otherwise.
+has others behind its outputs (`Rewired`); one was lost a while ago (`LossLasts`); something better may be had
+(`Improvable`); the bus is back (`Reconnected`); the task is `Ranked` otherwise.
 
 *What is to be done*, each an `Effect`: ask the ecology (`Discover`), search (`Compose`); `WakeUp` a component, reserve
 it (`ReserveOf`), wait for it (`QueueFor`, `AwaitRelease`) or not (`Decline`), apply to it (`ApplyTo`), let go of it
@@ -47,6 +47,7 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
+    LossLasts,
     Ranked,
     Reconnected,
     Rewired,
@@ -81,6 +82,7 @@ __all__ = [
     "HandedOver",
     "Improvable",
     "Loss",
+    "LossLasts",
     "Phase",
     "Policy",
     "QueueFor",

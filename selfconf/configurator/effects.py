@@ -89,6 +89,8 @@ class ApplyTo:
     """Whether what an input followed before is let go of only when the new output delivers."""
     adopted: bool = False
     """Whether it has acted for the task already, for a configurator that is gone."""
+    rests: bool = False
+    """Whether a component that feeds nothing rests at once, as it follows nothing for now."""
 
 
 @immutable

@@ -122,6 +122,14 @@ class Rewired:
 
 
 @immutable
+class LossLasts:
+    """A component was lost a while ago; perhaps nothing has taken its place yet."""
+
+    long: bool = False
+    """Whether the configuration has been incomplete for longer than anything may act in it."""
+
+
+@immutable
 class Improvable:
     """What the task needs may be had from components that the strategy would rather have."""
 
@@ -155,6 +163,7 @@ Event = (
     | WaitedLong
     | Appeared
     | Rewired
+    | LossLasts
     | Improvable
     | Reconnected
     | Ranked

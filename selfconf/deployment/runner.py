@@ -31,6 +31,7 @@ from selfconf.configurator import (
     Finish,
     HandedOver,
     Loss,
+    LossLasts,
     Phase,
     QueueFor,
     Ranked,
@@ -73,6 +74,10 @@ from selfconf.protocol.messages import Status, Wire
 
 log = logging.getLogger(__name__)
 
+LASTS = 0.05
+"""Seconds after which a component that was lost is followed no more, if nothing has taken its place by then."""
+LASTS_LONG = 1.0
+"""Seconds for which actuators act on in a configuration that lacks a component: as long as without a configurator."""
 AT_LEISURE = 0.01
 """Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
 PULSE = 0.25
@@ -144,6 +149,8 @@ class TaskRunner:
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self._events: deque[Event] = deque()
         self._stepping = False
+        self._incomplete: object | None = None
+        """Since when what runs lacks a component: another object each time; None if it lacks none."""
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
@@ -226,6 +233,8 @@ class TaskRunner:
             self._notice(known)
         if self.state.target is None:
             self._record.taken_down()
+        if self.state.phase in (Phase.RUNNING, Phase.DISMANTLING):
+            self._incomplete = None
         for effect in effects:
             self._carry_out(effect)
         if isinstance(event, Appeared) and self.state.phase is Phase.RUNNING and self.state.target is not None:
@@ -306,6 +315,21 @@ class TaskRunner:
                 self._waking.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self._report(ComponentLost(component, loss.cause.value, loss.detail))
+                self._look_whether_it_lasts()
+
+    def _look_whether_it_lasts(self) -> None:
+        """A component was lost: look a moment later whether another has taken its place, and once more when it is long.
+
+        It is long if what runs has lacked one or another component for all that time.
+        """
+        self.bus.later(LASTS, lambda: self._step(LossLasts()))
+        if self._incomplete is None and any(held.acts for held in self.state.held.values()):
+            incomplete = self._incomplete = object()
+            self.bus.later(LASTS_LONG, partial(self._look_whether_it_lasts_long, incomplete))
+
+    def _look_whether_it_lasts_long(self, incomplete: object) -> None:
+        if self._incomplete is incomplete:
+            self._step(LossLasts(long=True))
 
     def _report(self, event: AnyRunEvent) -> None:
         """Note an event with its time, and report it when there is nothing more urgent to do."""

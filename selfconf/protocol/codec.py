@@ -372,7 +372,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (Apply, "standby"): _inputs,
     **{(kind, "callers"): _callers for kind in (Apply, CallAnswer, Moved)},
     (Reserve, "waits"): _truth,
-    (Apply, "gently"): _truth,
+    **{(Apply, member): _truth for member in ("gently", "rests")},
     (CallAnswer, "place"): _remark,
     (CallAnswer, "dropped"): _whole,
     (CallAnswer, "age"): _moment,

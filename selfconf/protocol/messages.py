@@ -91,6 +91,8 @@ class Apply(Claim):
     """For each operation of the component, by the name of its output, the components that may call it."""
     gently: bool = False
     """Whether an input is to follow the output before until the new one has issued a signal: make before break."""
+    rests: bool = False
+    """Whether an actuator of which a required input follows nothing rests at once, whatever it tolerates."""
 
 
 @immutable

@@ -30,6 +30,11 @@ class Blindness:
         """Whether a required input is unfed."""
         return not self._required.isdisjoint(self.unfed)
 
+    @property
+    def rests(self) -> bool:
+        """Whether a required input of an actuator is unfed."""
+        return self.blind and self._tolerates is not None
+
     def begin(self, port: str) -> bool:
         """Note on the bus's thread that an input is unfed; whether that is new."""
         if port in self.unfed:

@@ -139,6 +139,11 @@ class ComponentCode:
         if self.wanted and self._blindness.begin(port):
             self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
 
+    def rest_if_blind(self) -> None:
+        """Rest at once where a required input is unfed: its task lacks a component for longer than it may act on."""
+        if self._blindness.rests:
+            self._rest()
+
     def connection_changed(self, operation: str, connected: bool) -> None:
         """Tell the component that an operation that it needs is connected, or is no more."""
 
@@ -198,11 +203,11 @@ class ComponentCode:
             self._guarded("answered", action)
 
     def _rest(self) -> None:
-        """Be stopped until all inputs are fed again: the component is blind for longer than it tolerates."""
+        """Be stopped until all inputs are fed again: the component is blind, and that is not tolerated any longer."""
         turn = self.turn
 
         def rest() -> None:
-            if turn == self.turn and self.active and self._blindness.blind:
+            if turn == self.turn and self.active and self._blindness.blind and not self._resting:
                 log.warning("%s: an input is unfed; at rest until it is fed", self._name)
                 self._stop()
                 self._rests += 1

@@ -344,6 +344,8 @@ class ComponentRuntime:
                 self._tell_waiting("")
         self.inputs.follow(message)
         self.operations.follow(message)
+        if message.rests:
+            self.code.rest_if_blind()
 
     def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
         if self._after_start is waiting:

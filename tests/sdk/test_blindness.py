@@ -48,6 +48,33 @@ def driving(tolerates: float | None = None) -> tuple[Stage, ComponentRuntime]:
     return stage, tracker
 
 
+@pytest.mark.parametrize("tolerates", [None, 5.0])
+def test_an_actuator_whose_configuration_stays_incomplete_rests_at_once_and_starts_when_it_is_fed(
+    tolerates: float | None,
+) -> None:
+    stage, tracker = driving(tolerates)
+    stage.call(apply(2, US, {"position": ()}, {"goal": Literal("x")}, rests=True))
+    assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
+    stage.let_pass(2 * TOLERATES)
+    assert stage.recorder.said[2:] == [], "it has stopped once"
+    stage.call(follow(3, values={"goal": Literal("x")}))
+    tracker.component.emit("pose", 2)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[2:5] == [("goal", "x"), ("started",), ("fed", "position")]
+    assert stage.recorder.said[-1] == ("position", 2)
+
+
+def test_what_is_to_rest_acts_on_as_long_as_it_is_fed_and_so_does_what_feeds_others() -> None:
+    stage, _ = driving()
+    stage.call(follow(2, values={"goal": Literal("x")}, rests=True))
+    assert stage.recorder.said == []
+    source = Stage()
+    source.call(follow())
+    source.call(apply(2, US, {"position": ()}, rests=True))
+    source.let_pass(2 * TOLERATES)
+    assert ("stopped",) not in source.recorder.said
+
+
 @pytest.mark.parametrize(("tolerates", "seconds"), [(None, TOLERATES), (0.3, 0.3), (5.0, 5.0)])
 def test_an_actuator_rests_when_it_has_been_blind_for_longer_than_it_tolerates(
     tolerates: float | None, seconds: float

@@ -199,6 +199,7 @@ class Calls:
         claim = self._claim(effect.component, effect.epoch)
         calling = self._ends.callers(effect.callers)
         message = Apply(**claim, inputs=inputs, values=dict(effect.values), callers=calling, gently=effect.gently)
+        message = replace(message, rests=effect.rests)
         self._call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         known, before = self._connections.get(effect.component, (life, frozenset()))
