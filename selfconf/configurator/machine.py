@@ -572,11 +572,17 @@ def _rewired(state: State, component: IRI) -> Reaction:
     The component is one of this configuration, or the composite that this is the inside of, which is what is outside.
     """
     changed = frozenset((component,))
-    if state.phase is Phase.RUNNING:
+    if state.phase is Phase.RUNNING or _waits_for(state, changed):
         return deploying.rewire(state, changed)
     if component not in state.held and not any(deploying.is_wired_to(held, changed) for held in state.held.values()):
         return state, ()
     return replace(state, rewired=state.rewired | {component}), ()  # also while another configuration is looked for
+
+
+def _waits_for(state: State, components: frozenset[IRI]) -> bool:
+    """Whether a component, in a change for the better, does not answer before it is fed by what stood behind others."""
+    asked = (one for one, call in state.pending if call is Call.APPLY and one in state.held)
+    return state.fallback is not None and any(deploying.is_wired_to(state.held[one], components) for one in asked)
 
 
 def _reconnected(state: State) -> Reaction:

@@ -44,6 +44,7 @@ def test_a_history_of_upgrades_that_was_broken_once_is_not_any_more(seed: int, f
 
 
 BROKEN_ONCE = {
+    "what stands behind a better composite is silent, and is replaced": Recipe(990000411, COMPOSED, upgrades=True),
     "what stood by has let go of a task, and has not said if it acts": Recipe(3000747, CHOICE, upgrades=True),
     "what runs loses a source while what is better is silent": Recipe(3502067, CHOICE, large=True, upgrades=True),
     "an upgrade begins before a composite says what it is": Recipe(2004121, COMPOSED, busy=True, upgrades=True),
