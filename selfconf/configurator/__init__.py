@@ -18,6 +18,7 @@ lost (`Loss`). Of a configuration: which outputs each input follows (`wiring`), 
 `Callers`).
 """
 
+from selfconf.configurator.deploying import DEPLOYING
 from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
@@ -54,7 +55,7 @@ from selfconf.configurator.events import (
     Stopped,
     WaitedLong,
 )
-from selfconf.configurator.machine import DEPLOYING, step
+from selfconf.configurator.machine import step
 from selfconf.configurator.starting_order import Caller, Callers, callers, parameter_values, wiring
 from selfconf.configurator.state import Loss, Phase, Policy, State
 

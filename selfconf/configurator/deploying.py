@@ -46,6 +46,8 @@ from selfconf.model.term import IRI
 
 Reaction = tuple[State, tuple[Effect, ...]]
 """The next state, and what is to be done."""
+DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
+"""The phases of act 4."""
 MOST_ASKED = 40
 """How often a component is asked again that is to be taken from a task of lower priority, each time half a second
 later: one that obeys takes two seconds for that, and some more to come to rest."""

@@ -28,10 +28,6 @@ Changes for the better. What ran before is what is wanted again if such a change
 policy: a component that was not part of it is only let go of when it is lost, or a task of higher priority asks for it.
 Where what ran loses a component meanwhile, a repair keeps the rest of it: that acts, and the better one may never.
 
-What is lost is released, and may act for another task at once. What follows it is disconnected, unless it follows
-something else within a moment (`LossLasts`), or the answer is that another task holds it. If the configuration stays
-incomplete, what feeds nothing comes to rest, but is held on: no actuator acts for long on a part.
-
 A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
 released again when it is seen again.
 
@@ -42,13 +38,13 @@ an older epoch, or the result of an older search, changes nothing; no component 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from selfconf.configurator import deploying
-from selfconf.configurator.deploying import Reaction, then
+from selfconf.configurator.deploying import DEPLOYING, Reaction, then
+from selfconf.configurator.disconnecting import disconnect, loss_lasts
 from selfconf.configurator.effects import (
-    ApplyTo,
     Compose,
     Decline,
     Discover,
@@ -79,10 +75,9 @@ from selfconf.configurator.events import (
     Stopped,
     WaitedLong,
 )
-from selfconf.configurator.starting_order import InputWires, parameter_values, resting_next, wiring
+from selfconf.configurator.starting_order import parameter_values, resting_next, wiring
 from selfconf.configurator.state import Held, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
-from selfconf.model.profile import CALL_MARK
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -91,8 +86,6 @@ OBEYED = (Verdict.DONE, Verdict.STALE, Verdict.OTHER_LIFE)
 """The answers to a release after which a component obeys no older call of this task."""
 PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
 """The causes for which a component is started again: a site ends a process that hangs."""
-DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
-"""The phases of act 4."""
 MOST_REPEATS = 10
 """How often one component may make a deployment begin anew, by what it says of its epoch or of its holder."""
 MOST_AHEAD = 100 * 366 * 86_400_000
@@ -118,7 +111,7 @@ def step(state: State, event: Event) -> Reaction:
         case Failed():
             return _failed(state, event)
         case LossLasts():
-            return _loss_lasts(state, event.long)
+            return loss_lasts(state, event.long)
         case Freed():
             return _freed(state, event.component)
         case WaitedLong():
@@ -267,7 +260,7 @@ def _busy(state: State, event: Answered) -> Reaction:
     """Another task holds a component: wait for it, or do without it; nothing of this task follows it meanwhile."""
     if event.holder is not None and event.holder.task == state.task and not state.alone:
         return _stand_down(state)
-    apart, effects = _disconnect(state, frozenset((event.component,)))
+    apart, effects = disconnect(state, frozenset((event.component,)))
     if deploying.may_wait_for(apart, event.component, event.holder):
         if event.call is Call.RESERVE and not effects:
             return deploying.await_release(state, event.component)
@@ -275,57 +268,6 @@ def _busy(state: State, event: Answered) -> Reaction:
             return then(effects, _reserve_anew(apart, event.component))
     busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True)
     return then(effects, _lose(apart, event.component, busy))
-
-
-def _disconnect(state: State, components: frozenset[IRI]) -> Reaction:
-    """Let all that acts for this task follow some components no more: what they issue is for others, if for anybody."""
-    fewer = {
-        one: {port: tuple(w for w in wires if w.component not in components) for port, wires in mine.inputs.items()}
-        for one, mine in state.held.items()
-        if mine.active and one not in components
-    }
-    return _follow_fewer(state, {one: inputs for one, inputs in fewer.items() if inputs != state.held[one].inputs})
-
-
-def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires], rests: bool = False) -> Reaction:
-    """Let components follow less than before, in an epoch that is newer than that of any call which says otherwise."""
-    if not fewer:
-        return state, ()
-    epoch, held, effects = state.epoch + 1, dict(state.held), []
-    for one, inputs in fewer.items():
-        mine = state.held[one]
-        held[one] = replace(mine, inputs=inputs, confirmed=False)
-        effects.append(ApplyTo(one, epoch, inputs, mine.values, mine.callers, rests=rests))
-    return replace(state, epoch=epoch, held=held), tuple(effects)
-
-
-def _loss_lasts(state: State, long: bool) -> Reaction:
-    """Follow nothing that was lost a while ago; if that is long ago, nothing that feeds nothing acts on a part.
-
-    What lives of a lost component is free for others, which may let it act by now.
-    """
-    if state.phase not in (Phase.DISCOVERING, Phase.COMPOSING, *DEPLOYING):
-        return state, ()
-    followed = {wire.component for held in state.held.values() for wires in held.inputs.values() for wire in wires}
-    gone = frozenset(one for one in followed if one not in state.held or not state.held[one].active)
-    known, effects = _disconnect(state, gone)
-    if long and state.fallback is None:
-        known, more = _bring_to_rest(known, [one for one in known.held if one not in followed])
-        effects += more
-    return then(effects, deploying.deploy(known) if effects and state.phase in DEPLOYING else (known, ()))
-
-
-def _bring_to_rest(state: State, actuators: Iterable[IRI]) -> Reaction:
-    """Let actuators follow nothing, so that they rest; they are held on, and start last, as in a new deployment."""
-    resting = {
-        one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in state.held[one].inputs.items()}
-        for one in actuators
-        if state.held[one].acts and (one, Call.APPLY) not in state.pending
-    }
-    resting = {one: inputs for one, inputs in resting.items() if inputs != state.held[one].inputs}
-    known, effects = _follow_fewer(state, resting, rests=True)
-    held = {one: replace(mine, acts=mine.acts and one not in resting) for one, mine in known.held.items()}
-    return replace(known, held=held), effects
 
 
 def _reserve_anew(state: State, component: IRI) -> Reaction:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom, ReserveOf
 from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Stopped
 from selfconf.configurator.machine import step
@@ -12,6 +14,7 @@ from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.term import IRI, Literal
 from selfconf.protocol.messages import Verdict
 
+ARM = IRI("urn:c:arm")
 TEMPLATE = IRI("urn:t:navigate")
 TRACKER, ODOMETRY, CONTROL, DRIVE = (IRI(f"urn:c:{name}") for name in ("tracker", "odometry", "control", "drive"))
 EVERYBODY = (TRACKER, ODOMETRY, CONTROL, DRIVE)
@@ -19,6 +22,9 @@ REFUSAL = Refusal(TEMPLATE, (TooFewEligible(IRI("urn:r:position"), 1, 0),))
 GOAL = Literal("(AT BEDROOM)")
 OTHERS = Holder("tidy~2", 0, 5.0, "c2", acting=True)
 """Another task of the same priority, for which a component acts."""
+LOWER, RESERVING = replace(OTHERS, priority=-1), replace(OTHERS, acting=False)
+TASK = State(task="go~1")
+PATIENT = State(task="go~1", patient=True)
 
 
 def navigation(position: IRI = TRACKER) -> Configuration:
@@ -32,6 +38,16 @@ def navigation(position: IRI = TRACKER) -> Configuration:
         ),
         (Connection(position, "pose", CONTROL, "position"), Connection(CONTROL, "set", DRIVE, "velocity")),
         (ParameterSetting(CONTROL, "goal", GOAL),),
+    )
+
+
+def with_arm(configuration: Configuration) -> Configuration:
+    """A configuration with another actuator, which the controller does not feed and the first sensor does."""
+    sensor = configuration.components[0]
+    return replace(
+        configuration,
+        assignments=(*configuration.assignments, Assignment(IRI("urn:r:arm"), (ARM,))),
+        connections=(*configuration.connections, Connection(sensor, "pose", ARM, "target")),
     )
 
 

@@ -30,7 +30,6 @@ from selfconf.configurator.events import (
     Freed,
     HandedOver,
     Improvable,
-    LossLasts,
     Rewired,
     WaitedLong,
 )
@@ -41,12 +40,17 @@ from selfconf.model.holder import Holder
 from selfconf.model.term import IRI, Literal
 from selfconf.protocol.messages import Cause, Verdict, Wire
 from tests.configurator.builders import (
+    ARM,
     CONTROL,
     DRIVE,
     GOAL,
+    LOWER,
     ODOMETRY,
     OTHERS,
+    PATIENT,
     REFUSAL,
+    RESERVING,
+    TASK,
     TRACKER,
     History,
     applied,
@@ -54,24 +58,8 @@ from tests.configurator.builders import (
     navigation,
     released,
     reserved,
-    state_in,
+    with_arm,
 )
-
-LOWER, RESERVING = replace(OTHERS, priority=-1), replace(OTHERS, acting=False)
-TASK = State(task="go~1")
-PATIENT = State(task="go~1", patient=True)
-ARM = IRI("urn:c:arm")
-
-
-def with_arm(configuration: Configuration) -> Configuration:
-    """A configuration with another actuator, which the controller does not feed and the first sensor does."""
-    sensor = configuration.components[0]
-    return replace(
-        configuration,
-        assignments=(*configuration.assignments, Assignment(IRI("urn:r:arm"), (ARM,))),
-        connections=(*configuration.connections, Connection(sensor, "pose", ARM, "target")),
-    )
-
 
 # Waking and reserving.
 
@@ -560,77 +548,6 @@ def test_a_repair_whose_only_lack_is_held_by_a_task_of_lower_priority_waits_for_
     assert applied(history.answer(ODOMETRY, Call.RESERVE)) == [ODOMETRY]
     assert applied(history.answer(ODOMETRY, Call.APPLY)) == [CONTROL]
     assert history.all_answer() == [Running(navigation(ODOMETRY))]
-
-
-@pytest.mark.parametrize("holder", [OTHERS, LOWER])
-def test_nobody_follows_a_component_that_turns_out_to_act_for_another_task(holder: Holder) -> None:
-    history = History(TASK).running()
-    history.hear(Failed(TRACKER, "1", Cause.CRASH))
-    history.composed(navigation(ODOMETRY))
-    assert {ODOMETRY, CONTROL} == {*applied(history.answer(ODOMETRY, Call.WAKE))}, "at once"
-    before = history.state.epoch
-    effects = history.busy(ODOMETRY, holder, Call.APPLY)
-    (apart,) = [effect for effect in effects if isinstance(effect, ApplyTo)]
-    assert (apart.component, apart.inputs["position"]) == (CONTROL, ())
-    assert apart.epoch > before, "it is obeyed whatever comes first"
-    if holder is LOWER:
-        assert reserved(history.all_answer(Call.WAKE)) == [ODOMETRY], "it is asked to let go of it"
-        assert kinds(history.busy(ODOMETRY, holder)) == [AwaitRelease], "nobody follows it any more"
-    else:
-        history.composed(navigation(ARM))
-    history.all_answer()
-    assert history.state.phase is Phase.RUNNING
-    assert history.state.held[CONTROL].inputs["position"] != ()
-
-
-def with_dormant_source() -> History:
-    """What runs has lost a source, and the next one has to be started by its site, which takes long."""
-    history = History(TASK).running(with_arm(navigation()))
-    history.hear(Failed(TRACKER, "1", Cause.CRASH))
-    history.composed(with_arm(navigation(ODOMETRY)))
-    assert history.state.pending == {(ODOMETRY, Call.WAKE)}
-    return history
-
-
-def test_what_follows_a_component_that_was_lost_follows_it_no_longer_than_a_moment() -> None:
-    history = with_dormant_source()
-    before = history.state.epoch
-    apart = {effect.component: effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)}
-    assert apart.keys() == {CONTROL, ARM}
-    assert (apart[CONTROL].inputs["position"], apart[ARM].inputs["target"]) == ((), ())
-    assert not any(effect.rests for effect in apart.values())
-    assert all(effect.epoch > before for effect in apart.values())
-    assert history.hear(LossLasts()) == [], "they follow nothing that is lost any more"
-    assert history.state.held[DRIVE].confirmed
-    history.all_answer()
-    assert history.state.phase is Phase.RUNNING
-    assert history.state.held[CONTROL].inputs["position"] == (Wire(ODOMETRY, "pose"),)
-
-
-def test_no_actuator_acts_for_long_on_a_part_and_all_start_again_when_it_is_whole() -> None:
-    history = with_dormant_source()
-    history.hear(LossLasts())
-    rests = [effect for effect in history.hear(LossLasts(long=True)) if isinstance(effect, ApplyTo)]
-    assert [(effect.component, effect.inputs, effect.rests) for effect in rests] == [(DRIVE, {"velocity": ()}, True)]
-    history.answer(ODOMETRY, Call.WAKE)
-    history.all_answer(Call.WAKE, Call.RESERVE)
-    assert DRIVE not in applied(history.answer(ODOMETRY, Call.APPLY)), "actuators come last"
-    history.all_answer()
-    assert history.state.phase is Phase.RUNNING
-    assert history.state.held[DRIVE].inputs == wiring(navigation(ODOMETRY))[DRIVE]
-
-
-@pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.REFUSED, Phase.DISMANTLING, Phase.IDLE])
-def test_nothing_comes_of_a_loss_that_was_made_good_or_has_ended_the_task(phase: Phase) -> None:
-    history = History(state_in(phase))
-    assert history.hear(LossLasts(), LossLasts(long=True)) == []
-
-
-def test_actuators_act_on_in_what_ran_while_something_better_is_prepared() -> None:
-    history = History(TASK).running(navigation(ODOMETRY))
-    history.hear(Improvable(), Discovered())
-    history.composed(with_arm(navigation()))
-    assert history.hear(LossLasts(long=True)) == []
 
 
 def test_what_is_given_up_while_it_was_waited_for_does_not_remember_that_this_task_waits() -> None:

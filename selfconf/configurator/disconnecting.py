@@ -1,0 +1,72 @@
+"""What is lost is followed no more, and no actuator acts for long on a part of its configuration.
+
+A component that is lost is released, and if it lives it may act for another task at once. What follows it is
+disconnected, unless it follows something else within a moment (`LossLasts`), or as soon as another task is known to
+hold it: what it issues is not meant for this one. If the configuration stays incomplete, its actuators come to rest,
+but are held on; they start again when everything else acts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from selfconf.configurator import deploying
+from selfconf.configurator.deploying import DEPLOYING, Reaction, then
+from selfconf.configurator.effects import ApplyTo
+from selfconf.configurator.events import Call
+from selfconf.configurator.starting_order import InputWires
+from selfconf.configurator.state import Phase, State
+from selfconf.model.profile import CALL_MARK
+from selfconf.model.term import IRI
+
+
+def disconnect(state: State, components: frozenset[IRI]) -> Reaction:
+    """Let all that acts for this task follow some components no more: what they issue is for others, if for anybody."""
+    fewer = {
+        one: {port: tuple(w for w in wires if w.component not in components) for port, wires in mine.inputs.items()}
+        for one, mine in state.held.items()
+        if mine.active and one not in components
+    }
+    return _follow_fewer(state, {one: inputs for one, inputs in fewer.items() if inputs != state.held[one].inputs})
+
+
+def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires], rests: bool = False) -> Reaction:
+    """Let components follow less than before, in an epoch that is newer than that of any call which says otherwise."""
+    if not fewer:
+        return state, ()
+    epoch, held, effects = state.epoch + 1, dict(state.held), []
+    for one, inputs in fewer.items():
+        mine = state.held[one]
+        held[one] = replace(mine, inputs=inputs, confirmed=False)
+        effects.append(ApplyTo(one, epoch, inputs, mine.values, mine.callers, rests=rests))
+    return replace(state, epoch=epoch, held=held), tuple(effects)
+
+
+def loss_lasts(state: State, long: bool) -> Reaction:
+    """Follow nothing that was lost a while ago; if that is long ago, nothing that feeds nothing acts on a part.
+
+    What lives of a lost component is free for others, which may let it act by now.
+    """
+    if state.phase not in (Phase.DISCOVERING, Phase.COMPOSING, *DEPLOYING):
+        return state, ()
+    followed = {wire.component for held in state.held.values() for wires in held.inputs.values() for wire in wires}
+    gone = frozenset(one for one in followed if one not in state.held or not state.held[one].active)
+    known, effects = disconnect(state, gone)
+    if long and state.fallback is None:
+        known, more = _bring_to_rest(known, [one for one in known.held if one not in followed])
+        effects += more
+    return then(effects, deploying.deploy(known) if effects and state.phase in DEPLOYING else (known, ()))
+
+
+def _bring_to_rest(state: State, actuators: Iterable[IRI]) -> Reaction:
+    """Let actuators follow nothing, so that they rest; they are held on, and start last, as in a new deployment."""
+    resting = {
+        one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in state.held[one].inputs.items()}
+        for one in actuators
+        if state.held[one].acts and (one, Call.APPLY) not in state.pending
+    }
+    resting = {one: inputs for one, inputs in resting.items() if inputs != state.held[one].inputs}
+    known, effects = _follow_fewer(state, resting, rests=True)
+    held = {one: replace(mine, acts=mine.acts and one not in resting) for one, mine in known.held.items()}
+    return replace(known, held=held), effects

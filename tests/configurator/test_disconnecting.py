@@ -1,0 +1,100 @@
+"""What is lost is followed no more, and no actuator acts for long on a part of its configuration."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.configurator.effects import ApplyTo, AwaitRelease
+from selfconf.configurator.events import Call, Discovered, Failed, Improvable, LossLasts
+from selfconf.configurator.starting_order import wiring
+from selfconf.configurator.state import Phase
+from selfconf.model.holder import Holder
+from selfconf.protocol.messages import Cause, Wire
+from tests.configurator.builders import (
+    ARM,
+    CONTROL,
+    DRIVE,
+    LOWER,
+    ODOMETRY,
+    OTHERS,
+    TASK,
+    TRACKER,
+    History,
+    applied,
+    kinds,
+    navigation,
+    reserved,
+    state_in,
+    with_arm,
+)
+
+
+@pytest.mark.parametrize("holder", [OTHERS, LOWER])
+def test_nobody_follows_a_component_that_turns_out_to_act_for_another_task(holder: Holder) -> None:
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    history.composed(navigation(ODOMETRY))
+    assert {ODOMETRY, CONTROL} == {*applied(history.answer(ODOMETRY, Call.WAKE))}, "at once"
+    before = history.state.epoch
+    effects = history.busy(ODOMETRY, holder, Call.APPLY)
+    (apart,) = [effect for effect in effects if isinstance(effect, ApplyTo)]
+    assert (apart.component, apart.inputs["position"]) == (CONTROL, ())
+    assert apart.epoch > before, "it is obeyed whatever comes first"
+    if holder is LOWER:
+        assert reserved(history.all_answer(Call.WAKE)) == [ODOMETRY], "it is asked to let go of it"
+        assert kinds(history.busy(ODOMETRY, holder)) == [AwaitRelease], "nobody follows it any more"
+    else:
+        history.composed(navigation(ARM))
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert history.state.held[CONTROL].inputs["position"] != ()
+
+
+def with_dormant_source() -> History:
+    """What runs has lost a source, and the next one has to be started by its site, which takes long."""
+    history = History(TASK).running(with_arm(navigation()))
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    history.composed(with_arm(navigation(ODOMETRY)))
+    assert history.state.pending == {(ODOMETRY, Call.WAKE)}
+    return history
+
+
+def test_what_follows_a_component_that_was_lost_follows_it_no_longer_than_a_moment() -> None:
+    history = with_dormant_source()
+    before = history.state.epoch
+    apart = {effect.component: effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)}
+    assert apart.keys() == {CONTROL, ARM}
+    assert (apart[CONTROL].inputs["position"], apart[ARM].inputs["target"]) == ((), ())
+    assert not any(effect.rests for effect in apart.values())
+    assert all(effect.epoch > before for effect in apart.values())
+    assert history.hear(LossLasts()) == [], "they follow nothing that is lost any more"
+    assert history.state.held[DRIVE].confirmed
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert history.state.held[CONTROL].inputs["position"] == (Wire(ODOMETRY, "pose"),)
+
+
+def test_no_actuator_acts_for_long_on_a_part_and_all_start_again_when_it_is_whole() -> None:
+    history = with_dormant_source()
+    history.hear(LossLasts())
+    rests = [effect for effect in history.hear(LossLasts(long=True)) if isinstance(effect, ApplyTo)]
+    assert [(effect.component, effect.inputs, effect.rests) for effect in rests] == [(DRIVE, {"velocity": ()}, True)]
+    history.answer(ODOMETRY, Call.WAKE)
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    assert DRIVE not in applied(history.answer(ODOMETRY, Call.APPLY)), "actuators come last"
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert history.state.held[DRIVE].inputs == wiring(navigation(ODOMETRY))[DRIVE]
+
+
+@pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.REFUSED, Phase.DISMANTLING, Phase.IDLE])
+def test_nothing_comes_of_a_loss_that_was_made_good_or_has_ended_the_task(phase: Phase) -> None:
+    history = History(state_in(phase))
+    assert history.hear(LossLasts(), LossLasts(long=True)) == []
+
+
+def test_actuators_act_on_in_what_ran_while_something_better_is_prepared() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    history.hear(Improvable(), Discovered())
+    history.composed(with_arm(navigation()))
+    assert history.hear(LossLasts(long=True)) == []
