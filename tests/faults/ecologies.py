@@ -26,6 +26,8 @@ class FaultyEcology:
     """Values for parameters of either template; `{task}` stands for the name of the task."""
     preferred: tuple[str, ...] = ()
     """The processes in whose place another one may stand, but that tasks would rather have."""
+    tasks: tuple[str, ...] = ("task-1", "task-2", "task-3")
+    """The tasks there may be."""
 
     @property
     def processes(self) -> tuple[str, ...]:
@@ -121,4 +123,51 @@ CHOICE = FaultyEcology(
 )
 """The paper's task, with a second component for most of its roles that is not preferred."""
 
-ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED, CHOICE)}
+_SENSORS = ("sensor0a", "sensor0b", "sensor1a", "sensor2a", "sensor2b", "sensor3a")
+_DRIVES = ("drive0", "drive1", "drive2")
+
+
+def _sensing(numbers: tuple[int, ...], name: str) -> str:
+    """A task that needs some sensors and a drive, in the order given."""
+    roles = " ".join(f":role{number}" for number in numbers)
+    sensors = (
+        f":role{number} a sc:Role ; sh:class :Sensor{number} ; sc:feeds :drive-role ;"
+        " sc:sets [ sc:parameterType :Mode ; sc:value :goal ] ."
+        for number in numbers
+    )
+    return "\n".join(
+        [
+            f"{PREFIXES}:{name} a sc:Template ; sc:parameter :goal ; sc:roles ( {roles} :drive-role ) .",
+            ':goal a sc:Parameter ; sc:name "goal" ; sh:datatype xsd:string .',
+            *sensors,
+            ":drive-role a sc:Role ; sh:class :Drive .",
+        ]
+    )
+
+
+CROWDED = FaultyEcology(
+    "crowded",
+    {
+        "x": tuple(name for name in _SENSORS if name.endswith("a")),
+        "y": (*(name for name in _SENSORS if name.endswith("b")), *_DRIVES),
+    },
+    {
+        name: f":{name} a sc:Component, :S{name[1:-1]} ; sc:preference {-1 if name.endswith('b') else 0} ;"
+        ' sc:hasOutput [ sc:name "out" ; sc:signalType :Signal ] ;'
+        ' sc:hasParameter [ sc:name "mode" ; sc:parameterType :Mode ] .'
+        for name in _SENSORS
+    }
+    | {
+        name: f':{name} a sc:Component, :Drive ; sc:hasInput [ sc:name "in" ; sc:signalType :Signal ] .'
+        for name in _DRIVES
+    },
+    (),
+    _sensing((0, 1, 2), "whole"),
+    _sensing((3, 2, 1, 0), "part"),
+    (("goal", "(AT {task})"),),
+    ("sensor0a", "sensor2a"),
+    tuple(f"task-{number}" for number in range(1, 6)),
+)
+"""Five tasks that want the same few sensors and drives, in opposite order of their needs, and can share none."""
+
+ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED, CHOICE, CROWDED)}

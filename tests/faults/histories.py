@@ -56,7 +56,7 @@ ASKED = "asked"
 LOOKED_AGAIN = 1.0
 """Seconds that a task which waits may take to look again, as it does from time to time: it is undecided meanwhile."""
 TURNS = 3
-"""How often everybody speaks at most in the end, until every task is decided meanwhile."""
+"""How often everybody speaks at most in the end, until every task is decided meanwhile, and stays as it is."""
 
 
 Found = TypeVar("Found")
@@ -216,11 +216,12 @@ class History:
         self._come_into_order()
         for _ in range(TURNS):
             self._let_be_decided()
+            epochs = [agent.state.epoch for agent in self.agents]
             self._speak()
             self.lab.let_pass(SPOKEN)
             self._ask_all()
             self.lab.let_pass(SPOKEN)
-            if self.watch.all_decided():
+            if self.watch.all_decided() and epochs == [agent.state.epoch for agent in self.agents]:
                 break
         self.watch.end()
 

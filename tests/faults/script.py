@@ -11,9 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from selfconf.bus.memory import Faults
-from tests.faults.ecologies import PAPER, FaultyEcology
-
-TASKS = ("task-1", "task-2", "task-3")
+from tests.faults.ecologies import CROWDED, PAPER, FaultyEcology
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +115,8 @@ DISTURBING = ("fail", "crash", "hush", "refuse", "slow", "lose_power", "pause", 
 """What may happen while a task changes to what it would rather have, beside nothing."""
 PERIOD = 0.4
 """After how many seconds components issue signals again where tasks change for the better."""
+AT_ONCE = (0.0, 0.0, 0.001, 0.01, 0.5)
+"""Seconds after which the tasks of a crowd begin."""
 MOMENTS = (0.0, 0.001, 0.01, 0.1, 0.5, 1.5, 5.0)
 
 
@@ -127,8 +127,8 @@ def targets(ecology: FaultyEcology) -> dict[str, tuple[str, ...]]:
         "components": components,
         "callers": tuple(name for name in components if "sc:needsOperation" in ecology.advertisements[name]),
         "sites": sites,
-        "tasks": TASKS,
-        "all": (*components, *sites, *TASKS),
+        "tasks": ecology.tasks,
+        "all": (*components, *sites, *ecology.tasks),
     }
 
 
@@ -145,11 +145,13 @@ def write(seed: int, without: tuple[str, ...] = (), ecology: FaultyEcology = PAP
         most_delay=chance.choice((0.0005, 0.02, 0.2, 1.0)),
         most_event_delay=chance.choice((0.0, 0.0, 0.0, 0.1, 0.0 if "late" in without else 1.5)),
     )
-    clocks = {name: chance.choice((0.0, 0.0, -300.0, 300.0)) for name in TASKS}
+    clocks = {name: chance.choice((0.0, 0.0, -300.0, 300.0)) for name in ecology.tasks}
     dismantles = chance.random() < 0.3
-    tasks = {name: TaskPlan(chance.choice((0, 0, 0, 1, 2)), chance.random() < 0.7, dismantles) for name in TASKS}
+    tasks = {
+        name: TaskPlan(chance.choice((0, 0, 0, 1, 2)), chance.random() < 0.7, dismantles) for name in ecology.tasks
+    }
     starts = frozenset(name for name in ecology.processes if chance.random() < chance.choice((0.0, 0.5, 1.0)))
-    time, actions = 0.0, [Action(0.0, "begin", TASKS[0])]
+    time, actions = 0.0, [Action(0.0, "begin", ecology.tasks[0])]
     whom = targets(ecology)
     kinds = [kind for kind, (_, group) in KINDS.items() if kind not in without and whom[group]]
     weights = [KINDS[kind][0] for kind in kinds]
@@ -162,6 +164,15 @@ def write(seed: int, without: tuple[str, ...] = (), ecology: FaultyEcology = PAP
         seconds = chance.choice(PAUSES if kind == "pause" else SLOWNESS) if kind in ("pause", "slow") else 0.0
         actions.append(Action(time, kind, who, other, seconds))
     return Script(seed, ecology, faults, clocks, tasks, starts, tuple(actions))
+
+
+def with_crowd(script: Script) -> Script:
+    """The same script, in which most tasks begin at once, and each is of either template."""
+    chance, ecology = random.Random(f"crowd {script.seed}"), script.ecology
+    begins = [Action(chance.choice(AT_ONCE), "begin", task) for task in ecology.tasks[1:] if chance.random() < 0.6]
+    tasks = {name: replace(plan, drives=chance.random() < 0.6) for name, plan in script.tasks.items()}
+    actions = sorted((*script.actions, *begins), key=lambda action: action.time)
+    return replace(script, actions=tuple(actions), tasks=tasks)
 
 
 def with_upgrades(script: Script) -> Script:
@@ -224,5 +235,6 @@ class Recipe:
     def script(self) -> Script:
         """The script that is made."""
         written = write(self.seed, ecology=self.ecology)
-        upgrading = with_upgrades(written) if self.upgrades else written
+        crowded = with_crowd(written) if self.ecology is CROWDED else written
+        upgrading = with_upgrades(crowded) if self.upgrades else crowded
         return replace(with_busy_code(upgrading) if self.busy else upgrading, large=self.large)
