@@ -167,7 +167,10 @@ def _name(source: object) -> str:
 
 
 def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, ...]]:
-    """The advertisements of some documents, and what was left out: malformed ones, and second ones of a component."""
+    """The advertisements of some documents, and what was left out: malformed ones, and second ones of a component.
+
+    A file that is given by two paths is read twice, and advertises its components once.
+    """
     found: dict[IRI, Advertisement] = {}
     left_out: list[LeftOut] = []
     segments = SegmentCache()
@@ -179,8 +182,17 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
                 if found.setdefault(advertisement.component, advertisement) is not advertisement:
                     other = found[advertisement.component].profile.place
                     place = advertisement.profile.place or Place(name)
-                    left_out.append(LeftOut(place, advertisement.component, f"it is advertised in {other} already"))
+                    if other is None or not _is_same_file(other.source, place.source):
+                        left_out.append(LeftOut(place, advertisement.component, f"it is advertised in {other} already"))
         return AdvertisementIndex(found), tuple(left_out)
+
+
+def _is_same_file(one: str, other: str) -> bool:
+    """Whether two paths that differ lead to one file; the names of texts that are in no file do not."""
+    try:
+        return one != other and Path(one).samefile(other)
+    except OSError:
+        return False
 
 
 def listed_files(paths: Sequence[Path], endings: tuple[str, ...] = files.TURTLE) -> list[Path]:

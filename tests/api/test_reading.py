@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import io
+import os
 import sys
 import weakref
 from pathlib import Path
@@ -216,6 +217,15 @@ def test_of_two_advertisements_of_a_component_the_first_by_path_counts_and_the_o
     (left_out,) = ecology.left_out
     assert (left_out.place, left_out.component) == (Place(str(tmp_path / "b.ttl"), PREFIXES.count("\n") + 1), iri("x"))
     assert left_out.reason == f"it is advertised in {tmp_path / 'a.ttl'} already"
+
+
+def test_a_file_that_is_given_by_two_paths_advertises_its_components_once(tmp_path: Path) -> None:
+    (tmp_path / "a.ttl").write_text(PREFIXES + ":x a sc:Component, :Lamp .")
+    (tmp_path / "link.ttl").symlink_to("a.ttl")
+    relative = os.path.relpath(tmp_path / "a.ttl")
+    ecology = read(tmp_path, relative)
+    assert (list(ecology.components), ecology.left_out) == ([iri("x")], ())
+    assert [one.component for one in read(LAMP, LAMP).left_out] == [iri("lamp")]
 
 
 def test_an_advertisement_that_does_not_conform_is_left_out_and_the_rest_of_its_file_is_not() -> None:
