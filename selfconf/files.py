@@ -73,6 +73,8 @@ def stamps(
                         stamp = _stamp(entry)
                         if stamp is not None:
                             found[entry.path] = stamp
+        except FileNotFoundError:
+            continue  # it has gone since it was listed, as a file may have
         except OSError as error:
             wrong = AuthorError(f"cannot read the folder {folder}: {error.strerror}")
             if left_out is None:

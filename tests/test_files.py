@@ -56,6 +56,22 @@ def test_a_folder_that_cannot_be_read_is_not_passed_over_in_silence(ads: Path) -
         files.within(ads)
 
 
+def test_a_folder_that_goes_while_its_parent_is_looked_at_holds_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "gone").mkdir()
+    (tmp_path / "z.ttl").write_text(CLOCK)
+    scandir = os.scandir
+
+    def late(path: str) -> Iterator[os.DirEntry[str]]:
+        if path.endswith("gone"):
+            (tmp_path / "gone").rmdir()
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", late)
+    assert files.within(tmp_path) == [tmp_path / "z.ttl"]
+
+
 def test_a_site_says_once_what_it_cannot_read_and_serves_the_rest(ads: Path) -> None:
     (ads / "z.ttl").unlink()
     said: list[str] = []
