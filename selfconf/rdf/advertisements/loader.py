@@ -260,6 +260,7 @@ def read_advertisements(
 
     Raises TurtleError.
     """
+    turtle.check_turtle_1_1(text, source)
     segments = SegmentCache() if segments is None else segments
     subjects = inlined_document(text, source, base, segments)
     if subjects is None:

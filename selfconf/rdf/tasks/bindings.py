@@ -53,7 +53,7 @@ def _turtle_term(words: str, prefixes: Mapping[str, str]) -> Term:
         quads = list(ox.parse(f"{head}<urn:s> <urn:p> {words} .", format=ox.RdfFormat.TURTLE))
     except SyntaxError:
         quads = []
-    if len(quads) != 1:
+    if len(quads) != 1 or isinstance(quads[0].object, ox.Triple):
         raise BindingError(f"{words} is no Turtle term; write a CURIE, an <IRI>, a literal or plain words")
     return turtle.term(quads[0].object)
 

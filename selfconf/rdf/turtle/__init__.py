@@ -7,6 +7,7 @@ IRIs that stand for labelled blank nodes. `ntriples` and `to_turtle` write, and 
 `ox_term` makes a term of Oxigraph. `not_turtle` words a syntax error. `read_ontology` reads any format of RDF;
 `format_of` and `other_format` tell which one a file is in (`RdfFormat`), and `conversion` is the command that makes
 Turtle of it. `first_not_utf_8` finds the place where a text is not UTF-8, and `check_utf_8` refuses it.
+`check_turtle_1_1` refuses what only Turtle 1.2 has.
 """
 
 from selfconf.rdf.turtle.document import (
@@ -24,6 +25,7 @@ from selfconf.rdf.turtle.document import (
 from selfconf.rdf.turtle.encoding import check_utf_8, first_not_utf_8
 from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, other_format, read_ontology
 from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, to_turtle
+from selfconf.rdf.turtle.versions import check_turtle_1_1
 
 __all__ = [
     "SKOLEM",
@@ -32,6 +34,7 @@ __all__ = [
     "Node",
     "RdfFormat",
     "Triple",
+    "check_turtle_1_1",
     "check_utf_8",
     "conversion",
     "first_not_utf_8",

@@ -16,6 +16,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.turtle.versions import TAKES_RDF_1_2, check_turtle_1_1
 from selfconf.rdf.vocabulary import FIRST, NIL, REST, TYPE
 
 Node = IRI | BlankNode
@@ -125,6 +126,7 @@ def parse(text: str | bytes, source: str, base: str | None = None, predicates: I
 
     Raises TurtleError with line and column where it is not Turtle.
     """
+    check_turtle_1_1(text.encode() if isinstance(text, str) else text, source)
     reader = ox.parse(text, format=ox.RdfFormat.TURTLE, base_iri=base, rename_blank_nodes=True)
     try:
         return document_of(reader, source, base, predicates)
@@ -142,6 +144,8 @@ def document_of(reader: ox.QuadParser, source: str, base: str | None, predicates
             continue
         for node in (subject, predicate, value):
             if node not in known:
+                if isinstance(node, ox.Triple):
+                    raise SyntaxError(TAKES_RDF_1_2)
                 known[node] = term(node)
         statements[known[subject]].append((known[predicate], known[value]))
     return Document(source, dict(statements), dict(reader.prefixes), base)

@@ -21,6 +21,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle.document import Document, document_of
 from selfconf.rdf.turtle.encoding import check_utf_8
+from selfconf.rdf.turtle.versions import check_turtle_1_1
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _HEAD = 1 << 16
@@ -93,6 +94,8 @@ def read_ontology(
     found = format_of(source, octets)
     if found is RDF_XML and _NESTED_ENTITY.search(octets):
         raise TurtleError("an entity within an entity is not expanded; write it out", file=source)
+    if found not in (RDF_XML, JSON_LD):
+        check_turtle_1_1(octets, source, found.parser)
     lines = _Lines(octets)
     reader = ox.parse(
         lines if found is RDF_XML else octets,  # type: ignore[arg-type]  # of a file it calls `read` alone
