@@ -17,6 +17,7 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Release, Verdict
 from selfconf.render.run_events import event_body
 from selfconf.sdk.supervision import GRACE
+from tests.deployment.simulated import slow_code
 from tests.deployment.tasks import DRIVEN, TASK, contended
 from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
 
@@ -74,6 +75,29 @@ def test_repair_neither_stops_nor_starts_nor_sets_anew_what_runs(lab: Lab) -> No
     assert lab.components["control"].said == [("goal", "(AT BEDROOM)"), ("started",)]
     for name in ("sonar", "encoder", "drive"):
         assert lab.components[name].said == [("started",)]
+
+
+@pytest.mark.parametrize(("seconds", "rests"), [(0.5, False), (4.0, True)])
+def test_the_drive_rests_for_as_long_as_a_repair_takes_more_than_a_moment(
+    lab: Lab, seconds: float, rests: bool
+) -> None:
+    """The controller acts on, and could go on driving without a position."""
+    slow_code(lab, "odometry")
+    lab.components["odometry"].slow = seconds
+    lab.running(agent := lab.agent())
+    control, drive = lab.components["control"], lab.components["drive"]
+    lab.components["tracker"].fail("Astrid has left the picture")
+    for _ in range(16):
+        control.emit("set.velocity", {"v": 0.3})
+        lab.let_pass(0.1)
+    assert drive.said[-1] == (("stopped",) if rests else ("velocity", {"v": 0.3}))
+    assert ("stopped",) not in control.said
+    assert agent.state.held[iri("astrid-drive")].reserved, "it is held on"
+    lab.until(lambda: agent.state.phase is Phase.RUNNING)
+    control.emit("set.velocity", {"v": 0.1})
+    lab.let_pass(0.1)
+    assert drive.said[-1] == ("velocity", {"v": 0.1})
+    assert drive.said.count(("started",)) == 1 + rests
 
 
 def test_dismantling_first_stops_all_components_as_the_paper_does(lab: Lab) -> None:
