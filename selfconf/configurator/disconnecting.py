@@ -8,7 +8,7 @@ but are held on; they start again when everything else acts.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from selfconf.configurator import deploying
@@ -43,8 +43,8 @@ def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires], rests: bool = F
     return replace(state, epoch=epoch, held=held), tuple(effects)
 
 
-def loss_lasts(state: State, long: bool) -> Reaction:
-    """Follow nothing that was lost a while ago; if that is long ago, nothing that feeds nothing acts on a part.
+def loss_lasts(state: State, actuators: frozenset[IRI]) -> Reaction:
+    """Follow nothing that was lost a while ago, and let actuators rest, if that is so long ago.
 
     What lives of a lost component is free for others, which may let it act by now.
     """
@@ -52,19 +52,18 @@ def loss_lasts(state: State, long: bool) -> Reaction:
         return state, ()
     followed = {wire.component for held in state.held.values() for wires in held.inputs.values() for wire in wires}
     gone = frozenset(one for one in followed if one not in state.held or not state.held[one].active)
-    known, effects = disconnect(state, gone)
-    if long and state.fallback is None:
-        known, more = _bring_to_rest(known, [one for one in known.held if one not in followed])
-        effects += more
+    resting, effects = (state, ()) if state.fallback is not None else _bring_to_rest(state, actuators)
+    known, more = disconnect(resting, gone)
+    effects += more
     return then(effects, deploying.deploy(known) if effects and state.phase in DEPLOYING else (known, ()))
 
 
-def _bring_to_rest(state: State, actuators: Iterable[IRI]) -> Reaction:
+def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
     """Let actuators follow nothing, so that they rest; they are held on, and start last, as in a new deployment."""
     resting = {
-        one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in state.held[one].inputs.items()}
-        for one in actuators
-        if state.held[one].acts and (one, Call.APPLY) not in state.pending
+        one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in mine.inputs.items()}
+        for one, mine in state.held.items()
+        if one in actuators and mine.acts and (one, Call.APPLY) not in state.pending
     }
     resting = {one: inputs for one, inputs in resting.items() if inputs != state.held[one].inputs}
     known, effects = _follow_fewer(state, resting, rests=True)

@@ -125,8 +125,8 @@ class Rewired:
 class LossLasts:
     """A component was lost a while ago; perhaps nothing has taken its place yet."""
 
-    long: bool = False
-    """Whether the configuration has been incomplete for longer than anything may act in it."""
+    actuators: frozenset[IRI] = frozenset()
+    """What has no outputs of what is held, if the configuration has been incomplete for longer than that may act."""
 
 
 @immutable

@@ -111,7 +111,7 @@ def step(state: State, event: Event) -> Reaction:
         case Failed():
             return _failed(state, event)
         case LossLasts():
-            return loss_lasts(state, event.long)
+            return loss_lasts(state, event.actuators)
         case Freed():
             return _freed(state, event.component)
         case WaitedLong():

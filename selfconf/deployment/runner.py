@@ -329,7 +329,11 @@ class TaskRunner:
 
     def _look_whether_it_lasts_long(self, incomplete: object) -> None:
         if self._incomplete is incomplete:
-            self._step(LossLasts(long=True))
+            self._step(LossLasts(frozenset(filter(self._is_actuator, self.state.held))))
+
+    def _is_actuator(self, component: IRI) -> bool:
+        found = self.ecology.discovery.found.get(component)
+        return found is not None and not found.advertisement.profile.outputs
 
     def _report(self, event: AnyRunEvent) -> None:
         """Note an event with its time, and report it when there is nothing more urgent to do."""

@@ -77,7 +77,7 @@ def test_what_follows_a_component_that_was_lost_follows_it_no_longer_than_a_mome
 def test_no_actuator_acts_for_long_on_a_part_and_all_start_again_when_it_is_whole() -> None:
     history = with_dormant_source()
     history.hear(LossLasts())
-    rests = [effect for effect in history.hear(LossLasts(long=True)) if isinstance(effect, ApplyTo)]
+    rests = [effect for effect in history.hear(LossLasts(frozenset((DRIVE, ARM)))) if isinstance(effect, ApplyTo)]
     assert [(effect.component, effect.inputs, effect.rests) for effect in rests] == [(DRIVE, {"velocity": ()}, True)]
     history.answer(ODOMETRY, Call.WAKE)
     history.all_answer(Call.WAKE, Call.RESERVE)
@@ -90,11 +90,11 @@ def test_no_actuator_acts_for_long_on_a_part_and_all_start_again_when_it_is_whol
 @pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.REFUSED, Phase.DISMANTLING, Phase.IDLE])
 def test_nothing_comes_of_a_loss_that_was_made_good_or_has_ended_the_task(phase: Phase) -> None:
     history = History(state_in(phase))
-    assert history.hear(LossLasts(), LossLasts(long=True)) == []
+    assert history.hear(LossLasts(), LossLasts(frozenset((DRIVE, ARM)))) == []
 
 
 def test_actuators_act_on_in_what_ran_while_something_better_is_prepared() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
     history.hear(Improvable(), Discovered())
     history.composed(with_arm(navigation()))
-    assert history.hear(LossLasts(long=True)) == []
+    assert history.hear(LossLasts(frozenset((DRIVE, ARM)))) == []

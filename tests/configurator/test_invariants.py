@@ -51,6 +51,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
     CONTROL,
+    DRIVE,
     EVERYBODY,
     ODOMETRY,
     REFUSAL,
@@ -87,7 +88,7 @@ ONE_OF_EACH: list[Event] = [
     *(Freed(component) for component in EVERYBODY),
     *(WaitedLong(component, epoch) for component in EVERYBODY for epoch in (1, 101, 102)),
     LossLasts(),
-    LossLasts(long=True),
+    LossLasts(frozenset((DRIVE,))),
     Appeared({}),
     Appeared({TRACKER: "1"}),
     Appeared({TRACKER: "2", ODOMETRY: "1"}),
