@@ -90,7 +90,7 @@ class ApplyTo:
     adopted: bool = False
     """Whether it has acted for the task already, for a configurator that is gone."""
     rests: bool = False
-    """Whether a component that feeds nothing rests at once, as it follows nothing for now."""
+    """Whether an actuator is to rest, as it follows nothing for now, unless it tolerates more than a second of that."""
 
 
 @immutable

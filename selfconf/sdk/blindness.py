@@ -30,11 +30,6 @@ class Blindness:
         """Whether a required input is unfed."""
         return not self._required.isdisjoint(self.unfed)
 
-    @property
-    def rests(self) -> bool:
-        """Whether a required input of an actuator is unfed."""
-        return self.blind and self._tolerates is not None
-
     def begin(self, port: str) -> bool:
         """Note on the bus's thread that an input is unfed; whether that is new."""
         if port in self.unfed:
@@ -43,6 +38,14 @@ class Blindness:
         if self._timer is None and self._tolerates is not None and port in self._required:
             self._timer = self._bus.later(self._tolerates, self._too_long)
         return True
+
+    def has_lasted(self, seconds: float) -> None:
+        """Count each unfed input as unfed for so many seconds at least: as long as something has been amiss."""
+        since = self._bus.now() - seconds
+        self.unfed.update({port: min(since, known) for port, known in list(self.unfed.items())})
+        if self._timer is not None:
+            self._timer()
+            self._too_long()
 
     def end(self, port: str) -> bool:
         """Note on the thread of the component's code that an input is fed; whether it was unfed."""

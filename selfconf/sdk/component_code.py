@@ -139,10 +139,9 @@ class ComponentCode:
         if self.wanted and self._blindness.begin(port):
             self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
 
-    def rest_if_blind(self) -> None:
-        """Rest at once where a required input is unfed: its task lacks a component for longer than it may act on."""
-        if self._blindness.rests:
-            self._rest()
+    def blind_for(self, seconds: float) -> None:
+        """Count as blind for so many seconds, if at all: for so long something that its task needs has been lost."""
+        self._blindness.has_lasted(seconds)
 
     def connection_changed(self, operation: str, connected: bool) -> None:
         """Tell the component that an operation that it needs is connected, or is no more."""

@@ -40,6 +40,7 @@ from selfconf.protocol.messages import (
     Verdict,
     Wire,
 )
+from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
@@ -345,7 +346,7 @@ class ComponentRuntime:
         self.inputs.follow(message)
         self.operations.follow(message)
         if message.rests:
-            self.code.rest_if_blind()
+            self.code.blind_for(TOLERATES)
 
     def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
         if self._after_start is waiting:

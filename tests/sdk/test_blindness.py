@@ -48,12 +48,16 @@ def driving(tolerates: float | None = None) -> tuple[Stage, ComponentRuntime]:
     return stage, tracker
 
 
-@pytest.mark.parametrize("tolerates", [None, 5.0])
-def test_an_actuator_whose_configuration_stays_incomplete_rests_at_once_and_starts_when_it_is_fed(
-    tolerates: float | None,
+@pytest.mark.parametrize(("tolerates", "seconds"), [(None, 0.0), (0.3, 0.0), (5.0, 4.0)])
+def test_an_actuator_whose_configuration_stays_incomplete_rests_and_starts_when_it_is_fed(
+    tolerates: float | None, seconds: float
 ) -> None:
     stage, tracker = driving(tolerates)
     stage.call(apply(2, US, {"position": ()}, {"goal": Literal("x")}, rests=True))
+    if seconds:
+        stage.let_pass(seconds - 0.1)
+        assert stage.recorder.said == [("unfed", "position")]
+        stage.let_pass(0.2)
     assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
     stage.let_pass(2 * TOLERATES)
     assert stage.recorder.said[2:] == [], "it has stopped once"
