@@ -11,20 +11,24 @@ one constraint with many options propagates like all of its pairs, in a fraction
 components: if they have fewer groups than slots between them, there is no solution (Hall's theorem); an option whose
 group is in no matching is in no solution; and if they have exactly as many, each of these groups is played. That is
 what neither clause learning nor depth-first search sees in less than exponential time (pigeonholes, Latin squares).
+Where nothing but components exclude each other, the groups are the components, and matching has counted all but this.
 Nothing here depends on the order of options: what is removed or added is false or true of every solution.
 
 *Which groups.* From a group, its roles; then the group, disjoint from those before, that has options not covered yet in
 the most of these roles, which may bring in further roles; until all their options are covered, or there are more groups
-than slots.
+than slots, or are going to be: an option has an equal part in the slots of its role, so that no more groups than slots
+need a slot each between their options, on average.
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import accumulate, chain, pairwise
 
 from selfconf.model.immutable import immutable
+from selfconf.model.term import IRI
 from selfconf.search.engines.matching import HallSet, unmatchable
 from selfconf.search.reduction import NeedScope, Option, ReducedProblem
 
@@ -69,11 +73,15 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
     """
     needs = _fed_by_one(reduced)
     names = [option.component for options in reduced.options for option in options if option.component]
-    if not needs and (not distinct or len(set(names)) == len(names)):
+    shared = distinct and len(set(names)) < len(names)
+    if not needs and not shared:
         return ExclusiveGroups()
-    graph = _Conflicts(reduced, needs, distinct)
+    graph = _Conflicts(reduced, needs)
     if not any(graph.across):
-        return ExclusiveGroups()
+        of_components = _groups_of_components(reduced) if shared else ExclusiveGroups()
+        return replace(of_components, stated=frozenset(graph.stated))
+    if shared:
+        graph.add_components()
     groups = list(graph.groups())
     found = _Counting(graph, groups)
     found.run()
@@ -84,6 +92,55 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
         frozenset(_bits(found.excluded)),
         found.crowded,
     )
+
+
+def _groups_of_components(reduced: ReducedProblem) -> ExclusiveGroups:
+    """Return the groups where only components exclude each other: one for each that several roles share.
+
+    Counting then means components: where some roles share no component with any other, and have as many as slots.
+    """
+    same: dict[IRI, list[int]] = {}
+    roles_of: dict[IRI, list[int]] = {}
+    for number, option in enumerate(chain.from_iterable(reduced.options)):
+        if option.component:
+            same.setdefault(option.component, []).append(number)
+            roles_of.setdefault(option.component, []).append(option.kind.role)
+    groups = [some for some in same.values() if len(some) > 1]
+    if not groups:
+        return ExclusiveGroups()
+    asked = Counter(reduced.slots)
+    played: list[list[int]] = []
+    for roles, components in _connected(roles_of):
+        slots = sum(asked[role] for role in roles)
+        options = sum(len(reduced.options[role]) for role in roles)
+        if slots < len(components) or options > sum(len(same[component]) for component in components):
+            continue
+        if slots > len(components):
+            return ExclusiveGroups(groups, crowded=frozenset(roles))
+        if len(roles) > 1:
+            played += [same[component] for component in components]
+    return ExclusiveGroups(groups, played=played)
+
+
+def _connected(roles_of: Mapping[IRI, Sequence[int]]) -> Iterator[tuple[set[int], list[IRI]]]:
+    """Yield sets of roles that share components among themselves alone, given those of each, with these components."""
+    having: dict[int, list[IRI]] = {}
+    for component, roles in roles_of.items():
+        for role in roles:
+            having.setdefault(role, []).append(component)
+    met: set[int] = set()
+    for start in having:
+        if start in met:
+            continue
+        found, waiting, components = {start}, [start], dict[IRI, None]()
+        while waiting:
+            for component in having[waiting.pop()]:
+                if component not in components:
+                    components[component] = None
+                    waiting += set(roles_of[component]) - found
+                    found.update(roles_of[component])
+        met |= found
+        yield found, list(components)
 
 
 def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
@@ -108,7 +165,7 @@ def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
 class _Conflicts:
     """The graph of conflicts between options; sets of options are masks."""
 
-    def __init__(self, reduced: ReducedProblem, needs: Mapping[int, set[int]], distinct: bool) -> None:
+    def __init__(self, reduced: ReducedProblem, needs: Mapping[int, set[int]]) -> None:
         self.reduced = reduced
         self.options: list[Option] = [option for options in reduced.options for option in options]
         self.asked = Counter(reduced.slots)
@@ -119,9 +176,8 @@ class _Conflicts:
         self.across = [0] * len(self.options)
         """For each option the options of other roles that it excludes."""
         self.stated: set[int] = set()
-        self._by_needs(needs)
-        if distinct:
-            self._by_components()
+        if needs:
+            self._by_needs(needs)
 
     def _by_needs(self, fed_by: Mapping[int, set[int]]) -> None:
         fed_by = {source: often for source, needs in fed_by.items() if (often := self._often_supported(source, needs))}
@@ -184,7 +240,8 @@ class _Conflicts:
                     lacking[need] = [number]
         return lacking
 
-    def _by_components(self) -> None:
+    def add_components(self) -> None:
+        """Add the conflicts between options that are one component."""
         same: dict[str, int] = {}
         for number, option in enumerate(self.options):
             if option.component:
@@ -234,6 +291,8 @@ class _Counting:
         """The share of each of these in the slots: an option has an equal part in the slots of its role."""
         part = [graph.asked[role] / graph.of_role[role].bit_count() for role in graph.role]
         weights = [sum([part[option] for option in members]) for members in groups]
+        self.part = part
+        """The part of each option in the slots of its role."""
         for members, weight in zip(groups, weights, strict=True) if max(weights, default=0) >= ENOUGH else ():
             roles = frozenset([graph.role[option] for option in members])
             if len(roles) > 2:
@@ -242,6 +301,8 @@ class _Counting:
                 self.groups.append(_mask(members))
                 self.roles.append(roles)
                 self.weights.append(weight)
+        self.gain = sum([weight - 1 for weight in self.weights if weight > 1])
+        """By how much all groups that have more than one slot between them have more."""
         self.left = SHARES_PER_OPTION * len(graph.options)
         """How many groups may still be put together."""
         self.played: list[int] = []
@@ -272,13 +333,21 @@ class _Counting:
         shares: dict[int, int] = {}
         roles: set[int] = set()
         covered = wanted = slots = 0
+        surplus, gain = 0.0, self.gain
         best: int | None = start
         while best is not None:
             self.left -= 1
             share = self.groups[best] & ~covered
             shares[best] = share
             covered |= share
-            for role in self.roles[best] - roles if share == self.groups[best] else set(self._roles(share)) - roles:
+            whole = share == self.groups[best]
+            # Shares that cover all have as many slots between them as there are, so that for no more groups than slots
+            # they need one each, on average; none can have more than its group.
+            gain -= max(0.0, self.weights[best] - 1)
+            surplus += (self.weights[best] if whole else sum([self.part[option] for option in _bits(share)])) - 1
+            if surplus + gain < ENOUGH - 1:
+                return None
+            for role in self.roles[best] - roles if whole else set(self._roles(share)) - roles:
                 roles.add(role)
                 wanted |= graph.of_role[role]
                 slots += graph.asked[role]

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from benchmarks.search.families import distinct
 from benchmarks.search.further_families import colouring, latin, pigeonholes, queens, tour
 from selfconf.search.budget import Budget
 from selfconf.search.engines.exclusion import exclusive_groups
@@ -58,6 +59,12 @@ def test_pigeonholes_through_ports_are_refused_by_counting(
 )
 def test_what_has_as_many_groups_as_slots_has_each_of_them_played(problem: Problem) -> None:
     assert exclusive_groups(pruned(reduced(problem))).played
+
+
+def test_as_many_components_as_slots_are_all_played_where_nothing_else_excludes() -> None:
+    found = exclusive_groups(reduced(distinct(4, 4)))
+    assert [*map(list, found.played)] == [*map(list, found.groups)] == [[k, k + 4, k + 8, k + 12] for k in range(4)]
+    assert exclusive_groups(reduced(distinct(4, 3))).crowded == {0, 1, 2, 3}
 
 
 def test_groups_take_the_place_of_the_needs_that_they_state() -> None:
