@@ -20,7 +20,7 @@ from typing import Any
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.encoding import Encoding, Implied
 from selfconf.search.reduction import Constraint, Option, ReducedProblem
 
 SOLVER = "Minicard"
@@ -76,7 +76,7 @@ class ClauseSolver:
         """How many conflicts the next call has."""
         self._interrupted = False
         """Whether an interrupt has to be cleared after the call that it ends."""
-        self._counters = counters
+        self.counters = counters
         """Whether numbers beyond one, up to half of all, are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
         self.guards: dict[Constraint, int] = encoding.guards
@@ -84,8 +84,13 @@ class ClauseSolver:
         """For each role, the literals of its options."""
         self._top = encoding.top
         add = self._solver.add_clause
-        for clause in encoding.clauses():
-            add(clause)
+        for statement in encoding.statements:
+            if isinstance(statement, Implied):
+                literal = statement.literal
+                for one in statement.literals:
+                    add([-one, literal])
+            else:
+                add(statement)
         for literals, most, force in encoding.bounds:
             self.at_most(literals, most, force)
         self._solver.set_phases([literals[0] for literals in self.plays if literals])
@@ -114,7 +119,7 @@ class ClauseSolver:
         if most >= len(literals):
             return
         # Of most of them there is little to learn, and counting so far would take many clauses.
-        counted = self._counters and 1 < most <= len(literals) // 2
+        counted = self.counters and 1 < most <= len(literals) // 2
         if not force and not counted and self._solver.supports_atmost():
             self._solver.add_atmost(list(literals), most)
             return

@@ -22,7 +22,7 @@ constraints in force never make less possible. There are no groups then, as each
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
@@ -121,7 +121,7 @@ class Encoding:
     def _roles(self) -> None:
         for role, asked in self._asked.items():
             literals = self.plays[role]
-            force = self._in_force(Played(role))
+            force = self._in_force(Played(role)) if self._guarded else ()
             if len(literals) == 2 and literals[0] == -literals[1]:
                 continue
             self._at_most(literals, asked)
@@ -146,18 +146,16 @@ class Encoding:
 
     def _needs(self, stated: frozenset[int]) -> None:
         """Write the needs that are not stated otherwise."""
-        needing: dict[int, list[int]] = {}
+        needing: defaultdict[int, list[int]] = defaultdict(list)
         for options, literals in zip(self.reduced.options, self.plays, strict=True):
             for option, literal in zip(options, literals, strict=True):
                 for need in option.kind.needs:
-                    if need in needing:
+                    if need not in stated:
                         needing[need].append(literal)
-                    elif need not in stated:
-                        needing[need] = [literal]
         supporting = self._supporting(needing) if needing else {}
         add = self.statements.append
         for need, having in sorted(needing.items()):
-            force = self._in_force(Fed(need))
+            force = self._in_force(Fed(need)) if self._guarded else ()
             by_role = supporting[need]
             supports = by_role[0] if len(by_role) == 1 else [self._any_of(some) for some in by_role]
             if len(having) == 1:
@@ -171,14 +169,12 @@ class Encoding:
     def _supporting(self, needs: Collection[int]) -> dict[int, list[list[int]]]:
         """Return for some needs the literals of the options that support them, role by role."""
         found: dict[int, list[list[int]]] = {need: [] for need in needs}
+        few = len(found) < len(self.reduced.needs)
         for options, literals in zip(self.reduced.options, self.plays, strict=True):
-            of_role: dict[int, list[int]] = {}
+            of_role: defaultdict[int, list[int]] = defaultdict(list)
             for option, literal in zip(options, literals, strict=True):
-                for need in option.kind.supports:
-                    if need in of_role:
-                        of_role[need].append(literal)
-                    elif need in found:
-                        of_role[need] = [literal]
+                for need in found.keys() & option.kind.supports if few else option.kind.supports:
+                    of_role[need].append(literal)
             for need, some in of_role.items():
                 found[need].append(some)
         return found

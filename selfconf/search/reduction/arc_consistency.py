@@ -23,6 +23,8 @@ def consistent(
 
     `required` are the roles that must be played; only they constrain the variables.
     """
+    if not values and len(set[int]().union(*[kind.supports for kind in kinds])) == needs:
+        return set(), []  # each need has a support, of which none is removed: nothing has to be counted
     supports, needing = _counted(kinds, needs)
     removed: set[int] = set()
     removals: list[Removal] = []
