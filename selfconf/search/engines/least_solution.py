@@ -7,12 +7,13 @@ true, and a solver goes from one question to the next with it.
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
-begins; after `BRIEF` steps clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a
-process of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits for longer
-(`ALONE_OF_TWO`), and takes the place of clasp, which comes back when no engine has ended for long. Where there is one
-processor, they take turns, each twice as long as before. With a budget of steps it is always in turns, as a step has to
-mean the same on every machine. What one engine has settled the others take over, since the least solution is unique: so
-the answer is the same whichever engine finds it, and the time is that of the better one at each question.
+begins; where roles ask for many, it soon gets the counting as clauses too. After `BRIEF` steps clasp works beside it;
+where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
+would each take twice as long, so there CaDiCaL waits for longer (`ALONE_OF_TWO`), and takes the place of clasp, which
+comes back when no engine has ended for long. Where there is one processor, they take turns, each twice as long as
+before. With a budget of steps it is always in turns, as a step has to mean the same on every machine. What one engine
+has settled the others take over, since the least solution is unique: so the answer is the same whichever engine finds
+it, and the time is that of the better one at each question.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from contextlib import ExitStack
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.clause_learning import SECOND_SOLVER, ClauseSolver
+from selfconf.search.engines.clause_learning import FEW_TO_COUNT, SECOND_SOLVER, ClauseSolver
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival, processors
@@ -29,6 +30,10 @@ from selfconf.search.reduction import Option, ReducedProblem
 
 BRIEF = 1_000
 """Conflicts and questions of the first solver before it has company, and gets numbers beyond one as clauses."""
+BRIEF_COUNTING = 250
+"""Conflicts and questions before it gets them as clauses, where some are beyond `FEW_TO_COUNT`."""
+BRIEF_COUNTED = 500
+"""Conflicts and questions after that before it has company."""
 NEARLY = 2
 """Where one in this number of all slots is settled by then, the first solver has as many again."""
 ALONE = 10_000
@@ -108,7 +113,13 @@ class _Descent:
         self.plays = encoding.plays
         with ExitStack() as stack:
             first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
-            self.advance(first, BRIEF)
+            if any(FEW_TO_COUNT < bound.most <= len(bound.literals) // 2 for bound in encoding.bounds):
+                self.advance(first, BRIEF_COUNTING)
+                if not self.finished:
+                    first = self._counting(first, encoding, stack)
+                self.advance(first, BRIEF_COUNTED)
+            else:
+                self.advance(first, BRIEF)
             if not self.finished and len(self.settled) * NEARLY >= len(self.slots):
                 self.advance(first, BRIEF)  # to prepare company takes as long as hundreds of conflicts
             if not self.finished:
@@ -132,7 +143,7 @@ class _Descent:
 
         So they are something to learn about; until then that would have been a detour.
         """
-        if all(bound.most <= 1 for bound in encoding.bounds):
+        if first.clauses.counters or all(bound.most <= 1 for bound in encoding.bounds):
             return first
         return _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
 
@@ -241,11 +252,11 @@ class _Descent:
             return
         literals = self.plays[self.slots[turn.fixed]]
         if clauses.holds(literals[turn.rejected]):
-            self._settle(turn.rejected)
+            self._settle_along(clauses, turn.rejected)
             return
         found = clauses.ask((literals[turn.rejected],), self.budget, conflicts)
         if found is True:
-            self._settle(turn.rejected)
+            self._settle_along(clauses, turn.rejected)
         elif found is False:
             self.least_left = turn.rejected + 1
 
@@ -254,6 +265,12 @@ class _Descent:
         self.least_left = 0
         if len(self.settled) < len(self.slots):
             self.least_left = self._start(len(self.settled))
+
+    def _settle_along(self, clauses: ClauseSolver, number: int) -> None:
+        """Settle the next slot as the model has it, and those after it while that has their first options."""
+        self._settle(number)
+        while not self.finished and clauses.holds(self.plays[self.slots[len(self.settled)]][self.least_left]):
+            self._settle(self.least_left)
 
     def _settle_all(self, clauses: ClauseSolver) -> None:
         """Take a model as it is."""

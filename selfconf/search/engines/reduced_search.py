@@ -19,6 +19,9 @@ from selfconf.search.reduction import Option, ReducedProblem
 OPTION_HEADROOM = 32
 """For how many options more than those of the slots reached steps may be taken."""
 
+FEW_SLOTS = 3
+"""For how many slots of one role its options count."""
+
 
 def first_solution(
     reduced: ReducedProblem,
@@ -87,7 +90,9 @@ class ReducedSearch:
                     place += 1
                     if place > furthest:
                         furthest = place
-                        reach += len(waiting)
+                        # They are written down once for all slots of a role, so that they count for a few of many.
+                        if place <= FEW_SLOTS or slots[place - 1 - FEW_SLOTS] != role:
+                            reach += len(waiting)
                     # Slots of one role take options in ascending order: their permutations are the same solution.
                     cursor[place] = index if place < len(slots) and slots[place] == role else 0
                     continue
