@@ -2,7 +2,7 @@
 
 A literal for each option: it plays; of two, the second plays iff the first does not. Each role is played by exactly as
 many as it has slots; a component plays one role at most. An option with a need implies one of the options that support
-it, by way of a literal for the need where several options have it.
+it, by way of a literal where several options have the need: one for all needs that the same options support.
 A literal for each value of a variable, at most one of which holds: an option that constrains the variable implies one
 of the values that it admits, or none of those that it does not admit.
 
@@ -154,6 +154,7 @@ class Encoding:
                         needing[need].append(literal)
         supporting = self._supporting(needing) if needing else {}
         add = self.statements.append
+        feeding: dict[tuple[int, ...], int] = {}
         for need, having in sorted(needing.items()):
             force = self._in_force(Fed(need)) if self._guarded else ()
             by_role = supporting[need]
@@ -161,10 +162,17 @@ class Encoding:
             if len(having) == 1:
                 add([*force, -having[0], *supports])
                 continue
-            # One literal between both sides: a sum of clauses instead of a product.
-            fed = self.literal()
-            add([*force, -fed, *supports])
-            self.statements.append(Implied(fed, having))
+            if len(supports) == 1 and not force:
+                self.statements += [[-one, supports[0]] for one in having]
+                continue
+            # One literal between both sides, a sum of clauses instead of a product; and one for all needs that the same
+            # options support, unless each is put in force by itself.
+            known = (*force, *supports)
+            fed = feeding.get(known)
+            if fed is None:
+                fed = feeding[known] = self.literal()
+                add([*force, -fed, *supports])
+            add(Implied(fed, having))
 
     def _supporting(self, needs: Collection[int]) -> dict[int, list[list[int]]]:
         """Return for some needs the literals of the options that support them, role by role."""
