@@ -44,6 +44,10 @@ def named(node: Node) -> str:
     return f"<{SKOLEM}{node[2:]}>" if isinstance(node, BlankNode) else f"<{node}>"
 
 
+_NO_BASE = "No scheme found in an absolute IRI"
+"""What Oxigraph says of a relative IRI where it has no base."""
+
+
 class ListFault(Enum):
     """What is wrong with an RDF list."""
 
@@ -167,4 +171,6 @@ def not_turtle(error: SyntaxError | MemoryError, source: str, text: str | bytes)
         return TurtleError("a literal in it is over 16 MiB, which is more than can be read", file=source)
     head, found, tail = str(error.msg).partition(": ")
     message = tail if found and head.startswith("Parser error") else str(error.msg)
+    if message == _NO_BASE:
+        message = "this IRI is relative, and the text is in no file that it could start from; begin with @base <...> ."
     return TurtleError(f"not Turtle: {message}", file=source, line=error.lineno, column=error.offset)

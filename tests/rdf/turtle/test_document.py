@@ -149,3 +149,12 @@ def test_instances_are_those_that_the_document_itself_types() -> None:
     assert document.instances(iri("T")) == [iri("a")]
     assert (TYPE, iri("T")) in document.about(iri("a"))
     assert document.about(Literal("a")) == []
+
+
+def test_a_relative_iri_in_a_text_that_is_in_no_file_asks_for_a_base() -> None:
+    with pytest.raises(
+        TurtleError, match=r"not Turtle: this IRI is relative, .* begin with @base <\.\.\.> \.$"
+    ) as caught:
+        turtle.parse("<urn:a> <urn:b> <c> .", "<text>")
+    assert (caught.value.line, caught.value.column) == (1, 17)
+    assert turtle.parse("@base <urn:x:> . <urn:a> <urn:b> <c> .", "<text>").statements
