@@ -198,7 +198,8 @@ class TaskRunner:
         """Give the task another rank, and claim what it holds with that; what runs runs on."""
         ranked = replace(self.identity, priority=priority, beginning=beginning)
         if ranked != self.identity:
-            self.identity = self._calls.identity = ranked
+            self.identity = ranked
+            self._calls.rank(ranked)
             self._step(Ranked(priority))
 
     def issued_outside(self) -> dict[str, tuple[Wire, ...]]:

@@ -16,6 +16,7 @@ from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import ReleaseFrom
 from selfconf.configurator.events import Answered, Call
 from selfconf.configurator.state import Loss, State
+from selfconf.deployment.components.calling import Calling
 from selfconf.deployment.components.calls import Calls
 from selfconf.model.run_event import ComponentLost, RunEvent
 from selfconf.model.term import IRI
@@ -31,7 +32,7 @@ from tests.faults.script import PERIOD, Action, Script, TaskPlan
 from tests.faults.watch import ENDS, NOTED, STEPS
 from tests.lab import iri
 
-CLAIM, FOLLOW, SET, START = Calls._claim, Inputs.follow, ComponentCode._set, ComponentCode._start
+CLAIM, FOLLOW, SET, START = Calling.claim, Inputs.follow, ComponentCode._set, ComponentCode._start
 LOSE = machine._lose
 FOLLOW_CALLS, REPORT = Operations.follow, InsideOfComposite._report
 LATER = Action(20.0, "emit", "sonar")
@@ -47,7 +48,7 @@ def claims_to_release(self: Calls, effect: ReleaseFrom) -> None:
     self._step(Answered(effect.component, Call.RELEASE, effect.epoch, Verdict.DONE))
 
 
-def means_any_life(self: Calls, *arguments: Any) -> Any:
+def means_any_life(self: Calling, *arguments: Any) -> Any:
     """A configurator whose calls name no life, as those of an older one."""
     return {**CLAIM(self, *arguments), "life": ""}
 
@@ -112,7 +113,7 @@ class Mutation(NamedTuple):
 
 
 INPUTS = "selfconf.sdk.inputs.Inputs"
-CALLS, LIVENESS = "selfconf.deployment.components.calls", "selfconf.deployment.components.liveness"
+CALLING, CALLS, LIVENESS = (f"selfconf.deployment.components.{name}" for name in ("calling", "calls", "liveness"))
 RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
 SHARES_ALL = {
@@ -136,7 +137,7 @@ MUTATIONS = {
     "one life acts": Mutation(
         {
             f"{RUNTIME}._outlived": nothing,
-            f"{CALLS}.Calls._claim": means_any_life,
+            f"{CALLING}.Calling.claim": means_any_life,
         },
         (Action(1.0, "crash", "drive"), Action(2.0, "twins", "drive")),
     ),
@@ -152,7 +153,7 @@ MUTATIONS = {
         {"selfconf.sdk.component_code.TOLERATES": 1e9}, (Action(2.0, "mute", "control", "drive"), LATER)
     ),
     "who hangs has failed": Mutation({f"{RUNTIME}.hung": nothing}, (Action(0.0, "slow", "drive", "", 12.0),)),
-    "what waits is bounded": Mutation({f"{LIVENESS}.AUDIT": 0.05, f"{CALLS}.CALL": 100.0}),
+    "what waits is bounded": Mutation({f"{LIVENESS}.AUDIT": 0.05, f"{CALLING}.CALL": 100.0}),
     "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
     "nobody waits in vain": Mutation(
         {

@@ -1,6 +1,7 @@
 """How one task deals with the components of its ecology: what it asks of them, what they say, and whether they live.
 
-* `Calls` makes the calls to components: be reserved, act with these inputs, turn off. `Waking` has those live that are
+* `Calls` makes the calls to components: be reserved, act with these inputs, turn off; how one is made, and what becomes
+  of it, is in `calling`. `Waking` has those live that are
   dormant.
 * `ComponentMessages` receives what components say of themselves; `Liveness` follows their lives, and decides when one
   is believed to be dead.
