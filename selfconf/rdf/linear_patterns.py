@@ -17,17 +17,18 @@ from typing import Any
 
 from pyshacl.constraints import constraint_component
 from pyshacl.constraints.core import string_based_constraints
+from pyshacl.constraints.core.string_based_constraints import PatternConstraintComponent
 from rdflib.plugins.sparql import operators, processor
 
 from selfconf.rdf.replacements import replaced
-from selfconf.rdf.shacl import pattern
+from selfconf.rdf.shacl import Pattern, pattern, shacl_pattern
 
 
 class _Expression:
     """What pySHACL takes for a compiled regular expression; it asks whether there is a match, never which."""
 
-    def __init__(self, expression: str, flags: int) -> None:
-        self._pattern = pattern(expression, flags)
+    def __init__(self, expression: Pattern) -> None:
+        self._pattern = expression
 
     def search(self, text: str) -> bool:
         return self._pattern.finds(text)
@@ -42,7 +43,7 @@ class _LinearRe(ModuleType):
         return getattr(re, name)
 
     def compile(self, expression: str, flags: int = 0) -> _Expression:
-        return _Expression(expression, int(flags))
+        return _Expression(pattern(expression, int(flags)))
 
     def search(self, expression: str, text: str, flags: int = 0) -> bool:
         return pattern(expression, int(flags)).finds(text)
@@ -51,6 +52,16 @@ class _LinearRe(ModuleType):
         if not pattern(expression, int(flags)).finds(text):
             return text
         return re.sub(expression, replacement, text, count=count, flags=flags)
+
+
+_initialised = vars(PatternConstraintComponent)["__init__"]
+
+
+def _with_all_flags(component: Any, shape: Any) -> None:
+    """What pySHACL makes of a `sh:pattern`, with the flags s, x and q as well, which it passes over."""
+    _initialised(component, shape)
+    flags = "" if component.flags is None else str(component.flags)
+    component.compiled_cache = {rule: _Expression(shacl_pattern(str(rule), flags)) for rule in component.string_rules}
 
 
 _parse, _translate = vars(processor)["parseQuery"], vars(processor)["translateQuery"]
@@ -72,8 +83,9 @@ def _unread(graph: object, node: object) -> str:
 
 
 _LINEAR = _LinearRe("re")
-_INSTEAD: tuple[tuple[ModuleType, str, object], ...] = (
+_INSTEAD: tuple[tuple[object, str, object], ...] = (
     (string_based_constraints, "re", _LINEAR),
+    (PatternConstraintComponent, "__init__", _with_all_flags),
     (operators, "re", _LINEAR),
     (processor, "parseQuery", str),  # parsed by `_recalled`, where it has not been
     (processor, "translateQuery", _recalled),

@@ -4,11 +4,12 @@
 makes tests of the constraints that can be; two `exclude` each other if no value passes both. `misfit`, `unfit`,
 `of_values`, `said_twice`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE` and `ILL_FORMED` say what may stand as a value
 of SHACL's own properties. `component_parameters` are the predicates by which a document constrains by components of its
-own. `pattern` is a regular expression that a text cannot make expensive; where that cannot be, it is `MatchTooCostly`.
+own. `pattern` is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is
+`MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL.
 Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
-from selfconf.rdf.shacl.patterns import MatchTooCostly, pattern
+from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, shacl_pattern
 from selfconf.rdf.shacl.shape_syntax import (
     ILL_FORMED,
     LITERAL,
@@ -30,6 +31,7 @@ __all__ = [
     "STATED_ONCE",
     "MatchTooCostly",
     "PairTest",
+    "Pattern",
     "ValueTest",
     "compiled",
     "component_parameters",
@@ -38,5 +40,6 @@ __all__ = [
     "of_values",
     "pattern",
     "said_twice",
+    "shacl_pattern",
     "unfit",
 ]

@@ -96,6 +96,26 @@ def pattern(expression: str, flags: int = 0) -> Pattern:
     return Pattern(expression, flags)
 
 
+_HOLDS_SPACE = re.compile(r"(\\.|\[(?:\\.|[^\]\\])*\])|[ \t\r\n]+", re.DOTALL)
+"""White space in an expression, or what holds white space that counts: an escaped character, a class of characters."""
+
+
+def shacl_pattern(expression: str, flags: str) -> Pattern:
+    """A `sh:pattern` with its `sh:flags`, which are those of REGEX in SPARQL: i, m, s, x and q. Raises re.error.
+
+    x drops white space, but in classes of characters, and knows no comments, so it is not `re.VERBOSE`.
+    """
+    asked = flags.lower()  # as pySHACL reads them
+    options = re.NOFLAG
+    for letter, option in (("i", re.IGNORECASE), ("m", re.MULTILINE), ("s", re.DOTALL)):
+        options |= option if letter in asked else re.NOFLAG
+    if "q" in asked:
+        expression = re.escape(expression)
+    elif "x" in asked:
+        expression = _HOLDS_SPACE.sub(lambda found: found[1] or "", expression)
+    return pattern(expression, int(options))
+
+
 def _anchored(tree: Any) -> bool:
     """Whether a match can only begin where the text does."""
     first = (str(tree[0][0]), str(tree[0][1])) if len(tree) else ("", "")

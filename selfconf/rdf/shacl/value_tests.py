@@ -15,7 +15,7 @@ from types import ModuleType
 
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
-from selfconf.rdf.shacl.patterns import Pattern, pattern
+from selfconf.rdf.shacl.patterns import shacl_pattern
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
 
 _KINDS: Mapping[IRI, tuple[type, ...]] = {
@@ -149,16 +149,10 @@ def _compiles(test: ValueTest) -> bool:
     if test.constraint != SH.pattern or wanted.datatype != XSD.string:
         return False
     try:
-        _expression(wanted.lexical, test.flags)
+        shacl_pattern(wanted.lexical, test.flags)
     except re.error:
         return False
     return True
-
-
-def _expression(expression: str, flags: str) -> Pattern:
-    """A pattern as pySHACL reads it: of the flags, `i` and `m`."""
-    options = (re.IGNORECASE if "i" in flags.lower() else 0) | (re.MULTILINE if "m" in flags.lower() else 0)
-    return pattern(expression, int(options))
 
 
 @lru_cache(maxsize=1 << 16)
@@ -178,7 +172,7 @@ def _passes(test: ValueTest, value: Term) -> bool:
         least = test.constraint == SH.minLength
         number = int(str(wanted))
         return not isinstance(value, BlankNode) and (len(str(value)) >= number if least else len(str(value)) <= number)
-    return not isinstance(value, BlankNode) and _expression(str(wanted), test.flags).finds(str(value))
+    return not isinstance(value, BlankNode) and shacl_pattern(str(wanted), test.flags).finds(str(value))
 
 
 def _literals() -> ModuleType:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pyshacl
 import pytest
+import rdflib
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.shacl.value_tests import PairTest, ValueTest, compiled
 from selfconf.rdf.vocabulary import SH, XSD
 
@@ -54,3 +57,31 @@ def test_what_is_no_constraint_on_one_value_is_not_compiled() -> None:
 def test_a_pattern_that_is_none_and_two_datatypes_are_not_compiled() -> None:
     assert compiled({SH.pattern: [Literal("(")]}) == ([], set())
     assert compiled({SH.datatype: [XSD.integer, XSD.string]}) == ([], set())
+
+
+@pytest.mark.parametrize(
+    ("expression", "flags", "passing", "failing"),
+    [
+        ("a.b", "s", "a\nb", "ab"),
+        ("a.b", "", "axb", "a\nb"),
+        (" a b [ c] # ", "xi", "AB #", "a b"),
+        (r"a\ b", "x", "a b", "ab"),
+        ("a.b", "q", "a.b", "axb"),
+        ("^b", "m", "a\nb", "ab"),
+    ],
+)
+def test_flags_are_those_of_sparql_in_the_tests_and_in_pyshacl(
+    expression: str, flags: str, passing: str, failing: str
+) -> None:
+    test = ValueTest(SH.pattern, Literal(expression), flags)
+    assert (test.passes(Literal(passing)), test.passes(Literal(failing))) == (True, False)
+    shapes = rdflib.Graph()
+    shape, focus = rdflib.URIRef("urn:s"), rdflib.SH.targetNode
+    shapes.add((shape, rdflib.RDF.type, rdflib.SH.NodeShape))
+    shapes.add((shape, rdflib.SH.pattern, rdflib.Literal(expression)))
+    shapes.add((shape, rdflib.SH.flags, rdflib.Literal(flags)))
+    for text, conforms in ((passing, True), (failing, False)):
+        aimed = shapes + rdflib.Graph()
+        aimed.add((shape, focus, rdflib.Literal(text)))
+        with linear_patterns():
+            assert pyshacl.validate(rdflib.Graph(), shacl_graph=aimed)[0] is conforms
