@@ -53,6 +53,7 @@ from selfconf.configurator.effects import (
     QueueFor,
     ReleaseFrom,
     Unwatch,
+    WakeUp,
     Watch,
 )
 from selfconf.configurator.events import (
@@ -313,6 +314,10 @@ def _failed(state: State, event: Failed) -> Reaction:
         return state, ()
     if event.life and held.life and event.life != held.life:
         return state, ()
+    if event.life and not held.life and state.ended_lives.get(event.component) == event.life:
+        # It was lost already, and is held anew. Its site may have heard of that when the process seemed to run still.
+        asked = (event.component, Call.WAKE) in state.pending
+        return state, (WakeUp(event.component, state.epoch),) if asked else ()
     if event.cause is Cause.SILENCE and not held.confirmed:
         return state, ()  # it may not have begun
     startable = event.startable and event.cause in PROCESS_ENDS
@@ -347,6 +352,8 @@ def _lose(state: State, component: IRI, loss: Loss) -> Reaction:
         lost={**state.lost, component: loss},
         queued=state.queued - {component},
     )
+    if loss.cause in PROCESS_ENDS and loss.life:
+        without = replace(without, ended_lives={**state.ended_lives, component: loss.life})
     effects = (ReleaseFrom(component, epoch),)  # also what seems to be dead: it may hear, and not be heard
     if not _is_needed(state, component):
         return then(effects, deploying.deploy(replace(without, target=state.fallback or state.target, fallback=None)))

@@ -328,8 +328,9 @@ class ComponentProgram:
         """Raise FAIL for what the process was started for: a configurator may wait for one that has no life yet."""
         self._note(detail)
         for component in sorted(self._asked):
+            watch = self._watches.get(component)
             notice = self._bus.publisher(self._keys.fail(component), Urgency.EVENT)
-            notice.put(encode(Fail(component, "", 0, cause, detail)))
+            notice.put(encode(Fail(component, "" if watch is None else watch.last_life, 0, cause, detail)))
             notice.undeclare()
 
     def _note(self, text: str) -> None:

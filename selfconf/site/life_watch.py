@@ -58,6 +58,13 @@ class LifeWatch:
         """Whether the component has a life."""
         return bool(self._lives)
 
+    @property
+    def last_life(self) -> str:
+        """The life that the component has, or had last; empty if it had none, or it is not known which was the last."""
+        if self._life in self._had:
+            return self._life
+        return next(iter(self._had)) if len(self._had) == 1 else ""
+
     def is_life(self, life: str) -> bool:
         """Whether a life of the component is that of the process, as far as is known."""
         return life == self._life or (life in self._lives and self._life not in self._lives)

@@ -160,6 +160,20 @@ def test_the_failure_of_an_earlier_life_is_passed_over() -> None:
     assert history.state.phase is Phase.RUNNING
 
 
+@pytest.mark.parametrize("life", ["", "1"])
+def test_the_end_of_a_life_that_is_told_by_its_site_and_by_its_token_is_one_loss(life: str) -> None:
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, life, Cause.CRASH, startable=True))
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    assert (TRACKER, Call.WAKE) in history.state.pending
+    again = history.hear(Failed(TRACKER, "1", Cause.CRASH, startable=True))
+    assert again == [WakeUp(TRACKER, history.state.epoch)], "its site may have thought that it runs still"
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert history.hear(Failed(TRACKER, "1", Cause.CRASH)), "a failure of the life that is held now counts"
+
+
 def test_the_failure_of_a_stranger_is_passed_over() -> None:
     history = History().running()
     assert history.hear(Failed(ODOMETRY, "1", Cause.FAIL)) == []

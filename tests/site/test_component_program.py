@@ -108,6 +108,21 @@ def test_a_program_that_crashes_is_started_again_and_that_is_said(
     ] * 2
 
 
+@pytest.mark.parametrize(("lives", "said"), [((), ""), (("own",), "own"), (("own", "twin"), "")])
+def test_a_site_says_which_life_has_ended_if_that_is_known(
+    network: Network, tmp_path: Path, site: Callable[..., Site], lives: tuple[str, ...], said: str
+) -> None:
+    made, heard = site(python(NUMBERED)), fails(network)
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    for life in lives:
+        network.node().announce(KEYS.life(SLEEPER, life))
+    live(network, lambda: False, 0.1)
+    os.kill(runs(tmp_path)[-1], signal.SIGKILL)
+    assert live(network, lambda: bool(heard))
+    assert [fail.life for fail in heard] == [said]
+
+
 @pytest.mark.parametrize("code", [0, 2, 3])
 def test_whoever_asks_for_a_program_again_and_again_leaves_it_its_pauses_after_the_first(
     network: Network, tmp_path: Path, site: Callable[..., Site], code: int
