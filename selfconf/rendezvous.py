@@ -311,6 +311,11 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
     return found
 
 
+def suspended_sites(ecology: str) -> tuple[str, ...]:
+    """The names of the sites of an ecology that run on this machine and were stopped by a signal, as after Ctrl-Z."""
+    return tuple(site.site for site in local_sites(ecology) if stopped(site.process))
+
+
 def environment(ecology: str, endpoint: str, ontologies: Sequence[Path] = ()) -> dict[str, str]:
     """The variables by which a program that is started finds an ecology, and the ontologies of its parent."""
     found = {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}

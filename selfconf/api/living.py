@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -84,6 +85,7 @@ class LivingEcology(Ecology):
         self.name, self.endpoints, self._credentials = name, tuple(endpoints), credentials
         self._bus = member(name, endpoints, credentials)
         self._view = EcologyView(self._bus, name, beliefs(credentials), selects=True)
+        self._view.suspended_sites = partial(rendezvous.suspended_sites, name)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self._synchronous = SynchronousBus(self._bus)
@@ -110,9 +112,12 @@ class LivingEcology(Ecology):
 
     def discover(self) -> Discovery:
         """Acts 1 and 2 of the paper: ask everything that is alive what it advertises. Raises NetworkError."""
-        self.discovery = self._synchronous.wait(self._view.discover)
+        found = self._synchronous.wait(self._view.discover)
+        self.discovery = replace(found, missing=self._view.silent_sites(found))
+        suspended = {*self.discovery.missing} - {*found.missing}
         missing = (
-            f"site {site} lives, but did not answer in full; what it advertises may be missing"
+            f"site {site} {'is suspended' if site in suspended else 'lives, but did not answer in full'};"
+            " what it advertises may be missing"
             for site in self.discovery.missing
         )
         self._complaints = (*self.discovery.complaints, *missing)

@@ -8,6 +8,7 @@ from functools import partial
 from types import TracebackType
 from typing import NamedTuple
 
+from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.detached import task_record
 from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
@@ -113,6 +114,7 @@ class Run:
             policy=policy,
             patient=wait,
             believed=beliefs(credentials),
+            suspended_sites=partial(rendezvous.suspended_sites, ecology),
             priority=record.priority,
             upgrade=upgrade,
             aside=partial(self._work.work, owner=OF_TASK),

@@ -312,14 +312,10 @@ def _failed(state: State, event: Failed) -> Reaction:
     held = state.held.get(event.component)
     if held is None or state.phase is Phase.DISMANTLING:
         return state, ()
-    if event.life and held.life and event.life != held.life:
-        return state, ()
     if event.life and not held.life and state.ended_lives.get(event.component) == event.life:
-        # It was lost already, and is held anew. Its site may have heard of that when the process seemed to run still.
-        asked = (event.component, Call.WAKE) in state.pending
-        return state, (WakeUp(event.component, state.epoch),) if asked else ()
-    if event.cause is Cause.SILENCE and not held.confirmed:
-        return state, ()  # it may not have begun
+        return _lost_already(state, event.component)
+    if _passes_over(held, event):
+        return state, ()
     startable = event.startable and event.cause in PROCESS_ENDS
     if startable:  # the next life has not made the deployment begin anew
         state = replace(state, repeats={c: times for c, times in state.repeats.items() if c != event.component})
@@ -329,6 +325,17 @@ def _failed(state: State, event: Failed) -> Reaction:
     if not held.reserved:
         return state, ()  # another task is asked to let go of it, perhaps for this one
     return _let_go(state, event.component, loss)
+
+
+def _passes_over(held: Held, event: Failed) -> bool:
+    """Whether it is another life than the one that is held which has failed, or one silent that may not have begun."""
+    another = bool(event.life and held.life and event.life != held.life)
+    return another or (event.cause is Cause.SILENCE and not held.confirmed)
+
+
+def _lost_already(state: State, component: IRI) -> Reaction:
+    """A component is held anew whose last life was lost: have it woken again, as its site may have thought it alive."""
+    return state, (WakeUp(component, state.epoch),) if (component, Call.WAKE) in state.pending else ()
 
 
 def _let_go(state: State, component: IRI, loss: Loss) -> Reaction:

@@ -109,7 +109,7 @@ class State:
     watched: frozenset[IRI] = frozenset()
     lost: Mapping[IRI, Loss] = field(default_factory=dict)
     ended_lives: Mapping[IRI, str] = field(default_factory=dict)
-    """The life of each component of which the end, or the hanging, was the last loss: that is told in several ways."""
+    """The life of each component of which the end, or the hanging, was the last loss: the same may be heard again."""
     taken: Mapping[IRI, Holder] = field(default_factory=dict)
     """The components that tasks of the same or a higher priority hold, as of the last discovery.
 

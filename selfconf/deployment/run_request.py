@@ -6,7 +6,7 @@ name, its rank, and since when it runs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import KW_ONLY
 
 from selfconf.bus.port import Undo
@@ -73,6 +73,8 @@ class RunRequest:
     """Of several tasks that want one component, the one of the highest priority has it."""
     believed: Beliefs | None = None
     """With keys: the site that owns a component which several advertise, as far as a person has said so."""
+    suspended_sites: Callable[[], Iterable[str]] = tuple
+    """The sites of the ecology whose processes are known to be suspended, so that they may seem to be gone."""
     outside: Outside | None = None
     """What is outside of the task, if it is the inside of a composite."""
     upgrade: float | None = None

@@ -69,7 +69,7 @@ class TaskDiscovery:
     def _tell(self, discovery: Discovery) -> None:
         """Report what the ecology has answered, unless a task that looks again has heard the same before."""
         told: list[AnyRunEvent] = [AnswerRejected(complaint) for complaint in discovery.complaints]
-        told.append(EcologyDiscovered(len(discovery.found), discovery.sites, discovery.missing))
+        told.append(EcologyDiscovered(len(discovery.found), discovery.sites, self._ecology.silent_sites(discovery)))
         if self._told == tuple(told):
             return
         if self._told:

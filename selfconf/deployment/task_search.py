@@ -128,7 +128,7 @@ class TaskSearch:
         self._left_out |= not_judged.keys()
         outcome = composed.outcome
         if isinstance(outcome, Refusal):
-            outcome = replace(outcome, missing_sites=self._ecology.discovery.missing)
+            outcome = replace(outcome, missing_sites=self._ecology.silent_sites(self._ecology.discovery))
             composed = replace(composed, outcome=outcome)
         current = composed.attempt == self._state().attempt
         counts = current and not self._state().despite and self._state().phase is Phase.COMPOSING

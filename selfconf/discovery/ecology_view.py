@@ -47,6 +47,8 @@ class EcologyView:
         self.discovery = Discovery()
         self.aside: Callable[[Callable[[], None]], object] = lambda work: work()
         """Reads what the sites have answered; by default at once, where there is only one thread."""
+        self.suspended_sites: Callable[[], Iterable[str]] = tuple
+        """The sites that are known not to answer because their processes are suspended, however long ago."""
         self.known: dict[SiteLife, KnownSite] = {}
         """What the sites that live have answered before."""
         self._followed = False
@@ -145,6 +147,10 @@ class EcologyView:
         for undo in self._undo:
             undo()
         self._undo.clear()
+
+    def silent_sites(self, discovery: Discovery) -> tuple[str, ...]:
+        """The sites of which a discovery may lack something, sorted; of those that seem gone, the suspended ones."""
+        return tuple(sorted({*discovery.missing, *(set(self.suspended_sites()) - set(discovery.sites))}))
 
     def discover(self, done: Callable[[Discovery], None]) -> None:
         """Ask all sites what they advertise; `done` is called once, when all have answered or time is up.

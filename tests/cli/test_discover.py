@@ -53,6 +53,30 @@ def test_the_advertisements_of_a_site_that_is_killed_vanish(home: Home, capsys: 
     assert home.until(lambda: states() == {iri("person-tracker"): "absent"}, 5.0)
 
 
+def test_a_site_that_is_suspended_is_named_also_when_it_seems_to_be_gone(
+    home: Home, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))  # as on one machine
+    home.site("a", "ads/tracker.ttl")
+    second = home.site("b", "ads/drive.ttl", connect=(home.endpoint("a"),))
+    arguments = "--ecology", home.ecology, "--connect", home.endpoint("a")
+    second.send(signal.SIGSTOP)
+
+    def asked() -> tuple[list[str], list[str]]:
+        body = run(capsys, "discover", "--format", "json", *arguments).body
+        return body["sites"], body["missing"]
+
+    assert home.until(lambda: asked() == (["a"], ["b"]))
+    said = "site b is suspended; what it advertises may be missing"
+    assert said in run(capsys, "discover", *arguments).err
+    task = str(home.folder / "navigate.ttl")
+    wanted = run(capsys, "run", task, "--bind", "robot=:Astrid", "--bind", "goal=x", *arguments)
+    assert wanted.code == 1
+    assert "site b did not answer in full" in wanted.out + wanted.err
+    second.send(signal.SIGCONT)
+    assert home.until(lambda: asked() == (["a", "b"], []))
+
+
 def test_the_ecology_behind_an_endpoint_need_not_be_named(inhabited: Home, capsys: pytest.CaptureFixture[str]) -> None:
     body = run(capsys, "discover", "--format", "json", "--connect", inhabited.endpoint()).body
     assert body["ecology"] == inhabited.ecology
