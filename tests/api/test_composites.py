@@ -865,3 +865,39 @@ def test_a_composite_whose_inside_lacks_what_its_own_task_holds_is_tried_again_a
 def played(agent: TaskRunner) -> set[IRI]:
     """The components of what a task has deployed."""
     return set() if agent.configuration is None else set(agent.configuration.components)
+
+
+HINTED = {
+    "eye": """:eye a sc:Component, :Eye ; sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ] ;
+        sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ; sc:optional true ] ; sc:grounding [ sc:template :seeing ] .
+        :seeing a sc:Template ; sc:roles ( :lens ) ;
+            sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ; sc:of :lens ] ;
+            sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ; sc:of :lens ] .
+        :lens a sc:Role ; sh:class :Lens .""",
+    "lens": """:lens-1 a sc:Component, :Lens ; sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ] ;
+        sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ] .""",
+    "high": EYE["high"],
+} | {
+    f"hinter{number}": f""":hinter{number} a sc:Component, :Hinter ; sc:preference -{number} ;
+        sc:hasOutput [ sc:name "hint" ; sc:signalType :Hint ] ."""
+    for number in range(2)
+}  # fmt: skip
+"""A composite that can be fed or not, with a component inside that has to be fed."""
+
+
+def test_a_composite_does_not_fail_while_what_feeds_its_optional_input_is_replaced(tmp_path: Path) -> None:
+    lab = eye(tmp_path, HINTED)
+    node = lab.network.node()
+    task = LOOK.replace(":source :sink", ":hints :source :sink").replace("SINK", "High")
+    hints = ":hints a sc:Role ; sh:class :Hinter ; sc:feeds :source ."
+    agent = lab.agent(task + hints, (), aside=lambda work: node.later(1.0, work))
+    assert lab.running(agent)
+    lab.components["hinter0"].fail("it has no idea")
+    lab.let_pass(0.5)
+    assert agent.state.phase is Phase.COMPOSING
+    assert lab.runtimes["lens"].inputs.followed == set()
+    assert lab.running(agent)
+    lab.let_pass(0.1)
+    assert [event.component for event in lab.acts("lost")] == [iri("hinter0")]
+    ((_, wire),) = lab.runtimes["lens"].inputs.followed
+    assert wire.component == iri("hinter1")

@@ -48,9 +48,18 @@ class PortEnds:
         return found is not None and found.advertisement.profile.inside is not None
 
     def wires(self, connected: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
-        """The outputs behind those that feed each input, each with the longest pause that it promises."""
-        found = {port: tuple(one for wire in some for one in self._behind(wire)) for port, some in connected.items()}
-        return {port: some for port, some in found.items() if some}
+        """The outputs behind those that feed each input, each with the longest pause that it promises.
+
+        None for an input that follows nothing for now, and will be fed again: a composite is not to do without it, as
+        it does without one that is left out.
+        """
+        fed = {port: some for port, some in connected.items() if not some or not all(map(self._is_unfed, some))}
+        return {port: tuple(one for wire in some for one in self._behind(wire)) for port, some in fed.items()}
+
+    def _is_unfed(self, wire: Wire) -> bool:
+        """Whether an output is an input of the composite that is left out outside, where this is its inside."""
+        outside = self._outside
+        return outside is not None and wire.component == outside.composite and wire.output not in outside.received()
 
     def _behind(self, wire: Wire) -> tuple[Wire, ...]:
         if self._outside is not None and wire.component == self._outside.composite:

@@ -47,19 +47,19 @@ def test_what_stands_behind_a_composite_is_in_its_place(lab: Lab) -> None:
     assert found.wires({"in": (Wire(LOOKOUT, "picture"),)}) == {"in": inside["picture"]}
     assert found.callers({"show()": (Caller(LOOKOUT, "show()"), Caller(FILTER, "show()"))}) == {"show()": (FILTER,)}
     assert found.moved(LOOKOUT, {"picture": ()}, {"show()": (FILTER,)})
-    assert found.wires({"in": (Wire(LOOKOUT, "picture"),)}) == {}, "nothing issues it now"
+    assert found.wires({"in": (Wire(LOOKOUT, "picture"),)}) == {"in": ()}, "nothing issues it now"
+    assert found.wires({"in": ()}) == {"in": ()}
 
 
 def test_the_inside_of_a_composite_is_fed_and_called_by_what_is_outside(lab: Lab) -> None:
     outside = Outside(
         LOOKOUT,
-        lambda: {"light": (Wire(CAMERA, "lux"),)},
+        lambda: {"light": (Wire(CAMERA, "lux"),), "dim": ()},
         lambda operation: (DISPLAY,) if operation == "look()" else (),
     )
     found = ends(lab, outside)
-    assert found.wires({"in": (Wire(LOOKOUT, "light"),), "other": (Wire(LOOKOUT, "dark"),)}) == {
-        "in": (Wire(CAMERA, "lux"),)
-    }
+    wires = {"in": (Wire(LOOKOUT, "light"),), "later": (Wire(LOOKOUT, "dim"),), "other": (Wire(LOOKOUT, "dark"),)}
+    assert found.wires(wires) == {"in": (Wire(CAMERA, "lux"),), "later": ()}
     assert found.callers({"look()": (Caller(LOOKOUT, "look()"),)}) == {"look()": (DISPLAY,)}
 
 
