@@ -8,6 +8,7 @@ signal.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 
 from selfconf.bus.port import Bus, Undo
 
@@ -24,6 +25,8 @@ class Blindness:
         self.unfed: dict[str, float] = {}
         """The inputs that are unfed, each with the time since when, by the clock of the bus."""
         self._timer: Undo | None = None
+        self._amiss = inf
+        """Since when something has been amiss, by the clock of the bus, while an input is unfed."""
 
     @property
     def blind(self) -> bool:
@@ -41,9 +44,8 @@ class Blindness:
 
     def has_lasted(self, seconds: float) -> None:
         """Count each unfed input as unfed for so many seconds at least: as long as something has been amiss."""
-        since = self._bus.now() - seconds
-        self.unfed.update({port: min(since, known) for port, known in list(self.unfed.items())})
         if self._timer is not None:
+            self._amiss = self._bus.now() - seconds  # apart from `unfed`: the code's thread may take one out meanwhile
             self._timer()
             self._too_long()
 
@@ -61,14 +63,21 @@ class Blindness:
         self._look()
 
     def _look(self) -> None:
-        if not self.blind and self._timer is not None:
+        if self.blind:
+            return
+        self._amiss = inf
+        if self._timer is not None:
             self._timer()
             self._timer = None
 
     def _too_long(self) -> None:
         self._timer = None
         longest = max(
-            (self._bus.now() - since for port, since in list(self.unfed.items()) if port in self._required),
+            (
+                self._bus.now() - min(since, self._amiss)
+                for port, since in list(self.unfed.items())
+                if port in self._required
+            ),
             default=None,
         )
         if longest is None or self._tolerates is None:
