@@ -16,7 +16,7 @@ from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.effects import ApplyTo
 from selfconf.configurator.events import Call
 from selfconf.configurator.starting_order import InputWires
-from selfconf.configurator.state import Phase, State
+from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 
@@ -26,9 +26,14 @@ def disconnect(state: State, components: frozenset[IRI]) -> Reaction:
     fewer = {
         one: {port: tuple(w for w in wires if w.component not in components) for port, wires in mine.inputs.items()}
         for one, mine in state.held.items()
-        if mine.active and one not in components
+        if mine.active and one not in components and _follows(mine, components)
     }
-    return _follow_fewer(state, {one: inputs for one, inputs in fewer.items() if inputs != state.held[one].inputs})
+    return _follow_fewer(state, fewer)
+
+
+def _follows(held: Held, components: frozenset[IRI]) -> bool:
+    """Whether an input of a component follows one of some others."""
+    return any(wire.component in components for wires in held.inputs.values() for wire in wires)
 
 
 def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires], rests: bool = False) -> Reaction:
@@ -51,11 +56,27 @@ def loss_lasts(state: State, actuators: frozenset[IRI]) -> Reaction:
     if state.phase not in (Phase.DISCOVERING, Phase.COMPOSING, *DEPLOYING):
         return state, ()
     followed = {wire.component for held in state.held.values() for wires in held.inputs.values() for wire in wires}
+    followed -= _outside(state)
     gone = frozenset(one for one in followed if one not in state.held or not state.held[one].active)
-    resting, effects = (state, ()) if state.fallback is not None else _bring_to_rest(state, actuators)
-    known, more = disconnect(resting, gone)
+    act_on = state.fallback is not None or _lacks_actuators_alone(state)
+    resting, effects = (state, ()) if act_on else _bring_to_rest(state, actuators)
+    known, more = disconnect(resting, gone) if gone else (resting, ())
     effects += more
     return then(effects, deploying.deploy(known) if effects and state.phase in DEPLOYING else (known, ()))
+
+
+def _outside(state: State) -> set[IRI]:
+    """The composite that this is the inside of, if it is one: what follows that follows what is outside."""
+    if state.target is None:
+        return set()
+    return {connection.source for connection in state.target.connections}.difference(state.target.components)
+
+
+def _lacks_actuators_alone(state: State) -> bool:
+    """Whether everything else acts: then actuators may, and one that rests would be started again at once."""
+    if state.phase is not Phase.DEPLOYING or state.target is None or state.order is None:
+        return False
+    return all(state.held[one].confirmed for one in state.target.components if one not in state.order.actuators)
 
 
 def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
@@ -63,9 +84,9 @@ def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
     resting = {
         one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in mine.inputs.items()}
         for one, mine in state.held.items()
-        if one in actuators and mine.acts and (one, Call.APPLY) not in state.pending
+        if one in actuators and mine.active and (one, Call.APPLY) not in state.pending
     }
     resting = {one: inputs for one, inputs in resting.items() if inputs != state.held[one].inputs}
     known, effects = _follow_fewer(state, resting, rests=True)
-    held = {one: replace(mine, acts=mine.acts and one not in resting) for one, mine in known.held.items()}
-    return replace(known, held=held), effects
+    at_rest = {one: replace(known.held[one], acts=False) for one in resting}
+    return (replace(known, held={**known.held, **at_rest}) if at_rest else known), effects

@@ -151,7 +151,9 @@ class TaskRunner:
         self._events: deque[Event] = deque()
         self._stepping = False
         self._incomplete: object | None = None
-        """Since when what runs lacks a component: another object each time; None if it lacks none."""
+        """Since when what runs lacks a component: another object each time; None if it lacks none, or rests."""
+        self._looks, self._lost_since = False, False
+        """Whether a look is planned at what was lost, and whether more was lost since."""
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
@@ -324,13 +326,27 @@ class TaskRunner:
 
         It is long if what runs has lacked one or another component for all that time.
         """
-        self.bus.later(LASTS, lambda: self._step(LossLasts()))
-        if self._incomplete is None and any(held.acts for held in self.state.held.values()):
+        self._lost_since = True
+        if not self._looks:
+            self._look_soon()
+        if self._incomplete is None and any(held.active for held in self.state.held.values()):
             incomplete = self._incomplete = object()
             self.bus.later(LASTS_LONG, partial(self._look_whether_it_lasts_long, incomplete))
 
+    def _look_soon(self) -> None:
+        self._looks, self._lost_since = True, False
+        self.bus.later(LASTS, self._look_now)
+
+    def _look_now(self) -> None:
+        """Look once for all that was lost of late, as it may be thousands; and once more if some was later."""
+        self._looks = False
+        if self._lost_since:
+            self._look_soon()
+        self._step(LossLasts())
+
     def _look_whether_it_lasts_long(self, incomplete: object) -> None:
         if self._incomplete is incomplete:
+            self._incomplete = None  # what begins to act from now on may do so for as long if more is lost
             self._step(LossLasts(frozenset(filter(self._is_actuator, self.state.held))))
 
     def _is_actuator(self, component: IRI) -> bool:

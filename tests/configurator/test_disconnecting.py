@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from selfconf.configurator.effects import ApplyTo, AwaitRelease
-from selfconf.configurator.events import Call, Discovered, Failed, Improvable, LossLasts
+from selfconf.configurator.events import Call, Discovered, Event, Failed, Improvable, LossLasts, Reconnected
 from selfconf.configurator.starting_order import wiring
 from selfconf.configurator.state import Phase
+from selfconf.model.configuration import Connection
 from selfconf.model.holder import Holder
+from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Wire
 from tests.configurator.builders import (
     ARM,
@@ -98,3 +102,40 @@ def test_actuators_act_on_in_what_ran_while_something_better_is_prepared() -> No
     history.hear(Improvable(), Discovered())
     history.composed(with_arm(navigation()))
     assert history.hear(LossLasts(frozenset((DRIVE, ARM)))) == []
+
+
+LOST = Failed(TRACKER, "1", Cause.CRASH)
+
+
+@pytest.mark.parametrize("events", [(Reconnected(), LOST), (LOST, Reconnected())], ids=["before", "after"])
+def test_actuators_rest_that_may_act_though_nothing_is_sure_any_more(events: tuple[Event, ...]) -> None:
+    """The configurator was suspended, or cut off, before or after a component was lost."""
+    history = History(TASK).running()
+    history.hear(*events)
+    assert DRIVE in applied(history.hear(LossLasts(frozenset((DRIVE,)))))
+    history.hear(Discovered())
+    history.composed(navigation(ODOMETRY))
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert history.state.held[DRIVE].inputs == wiring(navigation(ODOMETRY))[DRIVE]
+
+
+def test_an_actuator_acts_on_while_only_another_actuator_is_started() -> None:
+    """It would be started again at once, as actuators do not wait for each other."""
+    history = History(TASK).running(with_arm(navigation()))
+    history.hear(Failed(ARM, "1", Cause.CRASH, startable=True))
+    history.composed(with_arm(navigation()))
+    history.answer(ARM, Call.WAKE)
+    history.answer(ARM, Call.RESERVE)
+    assert history.state.pending == {(ARM, Call.APPLY)}
+    assert history.hear(LossLasts(frozenset((DRIVE, ARM)))) == []
+
+
+def test_what_is_inside_of_a_composite_follows_what_is_outside_on_when_something_inside_is_lost() -> None:
+    whole = IRI("urn:c:whole")
+    ports = (Connection(whole, "hint", CONTROL, "hint"), Connection(CONTROL, "set", whole, "out"))
+    inside = replace(navigation(), connections=(*navigation().connections, *ports))
+    history = History(TASK).running(inside)
+    history.hear(LOST)
+    (apart,) = [effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)]
+    assert apart.inputs == {"position": (), "hint": (Wire(whole, "hint"),)}
