@@ -166,6 +166,20 @@ def _is_anothers(hold: Hold, call: Claim, gone: frozenset[str], unseen: frozense
     return hold.claim.supervisor not in (call.supervisor, *left)
 
 
+def in_the_way(
+    activation: Activation, call: Claim, gone: frozenset[str] = frozenset(), unseen: frozenset[str] = frozenset()
+) -> Hold | None:
+    """Return the hold because of which a call is BUSY: of another configurator of its task, or of the first other task.
+
+    A task that shares the component is not in its own way.
+    """
+    own = activation.hold(call.task)
+    if own is not None and _is_anothers(own, call, gone, unseen):
+        return own
+    others = [hold for hold in activation.holds if hold is not own]
+    return min(others, key=lambda hold: (hold.claim.supervisor in gone, _rank(hold.claim)), default=None)
+
+
 def _activate(activation: Activation, call: Apply, gone: frozenset[str]) -> Activation:
     """Act for a task, and no more for tasks whose supervisor is gone: those cannot say any more what they want."""
     others = [hold for hold in activation.holds if hold.claim.task != call.task]
@@ -249,12 +263,16 @@ def orphan(activation: Activation, supervisor: str) -> tuple[Activation, Activat
 
 
 def outranked(activation: Activation) -> tuple[str, ...]:
-    """The tasks that hold a component although one of higher priority than all of them waits for it."""
+    """The tasks that hold a component although one of higher priority than all of them waits for it.
+
+    That one may share it with them, and wait until it can have it do something else.
+    """
     first = next((claim for claim in activation.waiting if claim.task not in activation.lapsed), None)
     if first is None:
         return ()
-    lower = [hold.claim for hold in activation.holds if hold.claim.priority < first.priority]
-    return tuple(claim.task for claim in lower) if len(lower) == len(activation.holds) else ()
+    others = [hold.claim for hold in activation.holds if hold.claim.task != first.task]
+    lower = [claim for claim in others if claim.priority < first.priority]
+    return tuple(claim.task for claim in lower) if len(lower) == len(others) else ()
 
 
 def offer(activation: Activation) -> tuple[Activation, Claim | None]:

@@ -24,7 +24,7 @@ from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
 from selfconf.protocol import activation as table
-from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
+from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep, Hold
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of, owner_of, task_name
 from selfconf.protocol.messages import (
@@ -286,7 +286,7 @@ class ComponentRuntime:
             self.activation = after
             detail = "it has failed" if verdict is Verdict.REFUSED else ""
             busy = verdict is Verdict.BUSY
-            reply(self._busy(message.task) if busy else self._verdict(verdict, message.task, detail))
+            reply(self._busy(message) if busy else self._verdict(verdict, message.task, detail))
             self._ask_to_yield()
             self._offer()
             return
@@ -354,13 +354,15 @@ class ComponentRuntime:
         for answer in waiting:
             answer(trouble)
 
-    def _verdict(self, verdict: Verdict, task: str, detail: str = "", *, measured: bool = False) -> CallAnswer:
+    def _verdict(
+        self, verdict: Verdict, task: str, detail: str = "", *, measured: bool = False, by: Hold | None = None
+    ) -> CallAnswer:
         """The answer with a verdict; it says how things are with the component for a task, else for its holder.
 
-        `measured`: also how old the component is, what memory it takes, and how much it has issued.
+        `measured`: also how old the component is, what memory it takes, and how much it has issued. `by` is the hold
+        that is in the way of a call.
         """
-        hold = self.activation.hold(task) if verdict is not Verdict.BUSY else None
-        hold = hold or self.activation.first
+        hold = by if verdict is Verdict.BUSY else self.activation.hold(task) or self.activation.first
         claim: Claim = hold.claim if hold is not None else Claim(0, "")
         return CallAnswer(
             verdict,
@@ -384,15 +386,15 @@ class ComponentRuntime:
             stopping=self.code.stopping or self.inputs.ending,
         )
 
-    def _busy(self, task: str) -> CallAnswer:
+    def _busy(self, message: Claim) -> CallAnswer:
         """The answer that another task is in the way: one that holds the component, or one for which it is kept."""
-        first = self.activation.first
+        by = table.in_the_way(self.activation, message, self.supervision.gone, self.supervision.unseen)
         kept = (one for one in self.activation.waiting if one.task == self.activation.kept_for)
-        claim = first.claim if first is not None else next(kept, None)
+        claim = by.claim if by is not None else next(kept, None)
         if claim is None:
-            return self._verdict(Verdict.BUSY, task, "it is free, and tells so")
+            return self._verdict(Verdict.BUSY, message.task, "it is free, and tells so")
         who = f"the task {task_name(claim.task)} (priority {claim.priority}, configurator {owner_of(claim.supervisor)})"
-        return self._verdict(Verdict.BUSY, task, f"{who} holds it")
+        return self._verdict(Verdict.BUSY, message.task, f"{who} holds it", by=by)
 
     # Becoming free for another task.
 

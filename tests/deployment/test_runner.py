@@ -462,6 +462,49 @@ def test_a_task_of_higher_priority_has_the_components_and_the_other_waits_and_go
     assert lab.active() == TASK | {"tracker"}
 
 
+_SHARED = {
+    **{
+        f"source{n}": f":source{n} a sc:Component, :Source ; sc:preference -{n} ;"
+        ' sc:hasOutput [ sc:name "out" ; sc:signalType :X ] .'
+        for n in range(2)
+    },
+    "filter": ':filter a sc:Component, :Filter ; sc:shareable true ; sc:hasInput [ sc:name "x" ; sc:signalType :X ] ;'
+    ' sc:hasOutput [ sc:name "out" ; sc:signalType :Y ] .',
+    **{
+        name: f':{name} a sc:Component, :{name.title()} ; sc:hasInput [ sc:name "y" ; sc:signalType :Y ] .'
+        for name in ("low", "high")
+    },
+}
+_SHARING = (
+    PREFIXES
+    + """:t a sc:Template ; sc:roles ( :source-role :filter-role :sink-role ) .
+:source-role a sc:Role ; sh:class :Source ; sc:feeds :filter-role .
+:filter-role a sc:Role ; sh:class :Filter ; sc:feeds :sink-role .
+:sink-role a sc:Role ; sh:class :SINK .
+"""
+)
+
+
+@pytest.mark.parametrize("patient", [True, False])
+def test_of_tasks_that_share_what_has_lost_its_source_the_one_of_higher_priority_goes_on(
+    tmp_path: Path, patient: bool
+) -> None:
+    lab = Lab(tmp_path, advertised=_SHARED)
+    lab.site("shared", *_SHARED)
+    for name in _SHARED:
+        lab.component(name)
+    high = lab.agent(_SHARING.replace("SINK", "High"), (), patient=patient, priority=1, name="first")
+    assert lab.running(high)
+    low = lab.agent(_SHARING.replace("SINK", "Low"), (), patient=patient, name="second")
+    assert lab.running(low)
+    lab.components["source0"].fail("it is dark")
+    lab.let_pass(3.0)
+    assert high.state.phase is Phase.RUNNING
+    assert high.state.lost.keys() == {iri("source0")}
+    assert lab.components["filter"].said == [("started",)]
+    assert lab.active() >= {"source1", "filter", "high"}
+
+
 def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
     """It lives, but hears nothing of what it is asked."""
     low = lab.agent()

@@ -20,6 +20,7 @@ from selfconf.protocol.activation import (
     Hold,
     drop,
     fail,
+    in_the_way,
     obey,
     offer,
     orphan,
@@ -439,6 +440,26 @@ def test_a_task_of_higher_priority_outranks_all_that_hold_a_component_or_none() 
     assert (verdict, outranked(shared)) == (Verdict.BUSY, ())
 
 
+def test_a_task_outranks_those_that_share_a_component_with_it_and_want_what_it_wants_no_more() -> None:
+    """What feeds the component was lost, and each of them wants something else to feed it."""
+    for priority, expected in ((0, ()), (1, (A,))):
+        shared, _, _ = obey(activation_in(ACTIVE), call_of(Apply, B, priority=priority), shareable=True)
+        call = call_of(Apply, B, 6, priority=priority, inputs=OTHER)
+        shared, verdict, _ = obey(shared, call, shareable=True)
+        assert (verdict, outranked(shared)) == (Verdict.BUSY, expected)
+        hold = in_the_way(shared, call)
+        assert hold is not None
+        assert hold.claim.task == A, "no task is in its own way"
+
+
+def test_another_configurator_of_a_task_is_in_the_way_of_it_and_one_that_is_gone_is_not() -> None:
+    activation, call = activation_in(ACTIVE), call_of(Apply, run=2)
+    hold = in_the_way(activation, call)
+    assert hold is not None
+    assert hold.claim.supervisor == supervisor(A)
+    assert in_the_way(activation, call, gone=frozenset({supervisor(A)})) is None
+
+
 def test_nobody_is_asked_to_yield_for_a_task_that_did_not_come_until_it_asks_again() -> None:
     """Its configurator may be gone: else every task of lower priority would yield to it for ever."""
     activation = withdraw(offered(B, priorities={B: 9}), B)
@@ -571,4 +592,5 @@ def _check(activation: Activation, running: bool, shareable: bool, gone: set[str
     assert {activation.kept_for} - {""} <= activation.passed <= set(waiting_for(activation))
     assert activation.lapsed <= set(waiting_for(activation))
     top = max((claim.priority for claim in activation.waiting), default=-1)
-    assert not outranked(activation) or top > max(hold.claim.priority for hold in activation.holds)
+    outranking = [hold.claim.priority for hold in activation.holds if hold.claim.task in outranked(activation)]
+    assert all(top > priority for priority in outranking)
