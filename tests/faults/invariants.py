@@ -193,14 +193,15 @@ def _acts_for(history: History, agent: TaskRunner, component: IRI) -> bool:
 
 
 def runs_with_anothers(history: History) -> Iterator[str]:
-    """No two tasks run with one component that cannot be shared."""
-    running: dict[IRI, str] = {}
+    """No two tasks run with one component that cannot be shared, as far as their configurators can know."""
+    running: dict[IRI, TaskRunner] = {}
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and not node_of(agent).paused and agent.configuration is not None:
             for component in {*agent.configuration.components}:
-                if component in running and component in alone(history):
-                    yield f"{agent.name} and {running[component]} both run with {component.short}"
-                running[component] = agent.name
+                other = running.setdefault(component, agent)
+                if other is not agent and component in alone(history) and node_of(agent).link and node_of(other).link:
+                    yield f"{agent.name} and {other.name} both run with {component.short}"
+                running[component] = agent
 
 
 @looked_up_once
