@@ -44,7 +44,7 @@ def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires], rests: bool = F
     for one, inputs in fewer.items():
         mine = state.held[one]
         held[one] = replace(mine, inputs=inputs, confirmed=False)
-        effects.append(ApplyTo(one, epoch, inputs, mine.values, mine.callers, rests=rests))
+        effects.append(ApplyTo(one, epoch, inputs, mine.values, mine.callers, adopted=mine.is_adopted, rests=rests))
     return replace(state, epoch=epoch, held=held), tuple(effects)
 
 

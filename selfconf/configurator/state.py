@@ -64,6 +64,11 @@ class Held:
         """Whether it may be held for this task, as far as is known."""
         return self.asked or self.reserved or self.active
 
+    @property
+    def is_adopted(self) -> bool:
+        """Whether it acts as the last configurator of the task has told it to, and has not answered this one yet."""
+        return self.acts and not self.life
+
 
 @immutable
 class Loss:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from selfconf.configurator.effects import ApplyTo, AwaitRelease
-from selfconf.configurator.events import Call, Discovered, Event, Failed, Improvable, LossLasts, Reconnected
+from selfconf.configurator.events import Adopted, Call, Discovered, Event, Failed, Improvable, LossLasts, Reconnected
 from selfconf.configurator.starting_order import wiring
 from selfconf.configurator.state import Phase
 from selfconf.model.configuration import Connection
@@ -139,3 +139,11 @@ def test_what_is_inside_of_a_composite_follows_what_is_outside_on_when_something
     history.hear(LOST)
     (apart,) = [effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)]
     assert apart.inputs == {"position": (), "hint": (Wire(whole, "hint"),)}
+
+
+def test_what_was_adopted_hears_less_as_one_that_acts_already() -> None:
+    """What stands behind the composites that it follows is not known yet."""
+    history = History(TASK)
+    history.hear(Adopted(100, navigation()), LOST)
+    (apart,) = [effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)]
+    assert (apart.component, apart.adopted) == (CONTROL, True)
