@@ -149,7 +149,8 @@ def obey(
         after, step = drop(activation, (call.task,), call.epoch)
         return _no_longer_waiting(after, call.task), Verdict.DONE, step
     if _blocked(activation, call, shareable, gone) or (isinstance(call, Reserve) and call.waits):
-        return _wait(activation, call), Verdict.BUSY, ActivationStep.NONE
+        after = activation if _follows_less(call) else _wait(activation, call)
+        return after, Verdict.BUSY, ActivationStep.NONE
     served = _no_longer_waiting(activation, call.task)
     if isinstance(call, Reserve):
         return _reserve(served, own, call), Verdict.DONE, ActivationStep.NONE
@@ -213,6 +214,11 @@ def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gon
     return len(others) >= MOST_HOLDING or any(
         not shareable or hold.wants != (call.inputs, call.values) for hold in others
     )
+
+
+def _follows_less(call: Reserve | Apply) -> bool:
+    """Whether a call says that an input follows nothing for now: no other task is to yield to it for that."""
+    return isinstance(call, Apply) and not all(call.inputs.values())
 
 
 def _wait(activation: Activation, call: Reserve | Apply) -> Activation:

@@ -452,6 +452,13 @@ def test_a_task_outranks_those_that_share_a_component_with_it_and_want_what_it_w
         assert hold.claim.task == A, "no task is in its own way"
 
 
+def test_no_task_yields_to_one_that_follows_nothing_for_now() -> None:
+    """What fed the component that they share was lost, and they may all want the same in its place."""
+    shared, _, _ = obey(activation_in(ACTIVE), call_of(Apply, B, priority=1), shareable=True)
+    after, verdict, _ = obey(shared, call_of(Apply, B, 6, priority=1, inputs={"position": ()}), shareable=True)
+    assert (verdict, after) == (Verdict.BUSY, shared)
+
+
 def test_another_configurator_of_a_task_is_in_the_way_of_it_and_one_that_is_gone_is_not() -> None:
     activation, call = activation_in(ACTIVE), call_of(Apply, run=2)
     hold = in_the_way(activation, call)
