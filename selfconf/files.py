@@ -106,6 +106,14 @@ def _status(entry: Path | os.DirEntry[str]) -> os.stat_result | None:
         return None
 
 
+def is_same(one: str, other: str) -> bool:
+    """Whether two paths that differ lead to one file; the names of texts that are in no file do not."""
+    try:
+        return one != other and Path(one).samefile(other)
+    except OSError:
+        return False
+
+
 def advertisements(
     path: Path, segments: SegmentCache | None = None
 ) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:

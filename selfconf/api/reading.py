@@ -182,17 +182,9 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
                 if found.setdefault(advertisement.component, advertisement) is not advertisement:
                     other = found[advertisement.component].profile.place
                     place = advertisement.profile.place or Place(name)
-                    if other is None or not _is_same_file(other.source, place.source):
+                    if other is None or not files.is_same(other.source, place.source):
                         left_out.append(LeftOut(place, advertisement.component, f"it is advertised in {other} already"))
         return AdvertisementIndex(found), tuple(left_out)
-
-
-def _is_same_file(one: str, other: str) -> bool:
-    """Whether two paths that differ lead to one file; the names of texts that are in no file do not."""
-    try:
-        return one != other and Path(one).samefile(other)
-    except OSError:
-        return False
 
 
 def listed_files(paths: Sequence[Path], endings: tuple[str, ...] = files.TURTLE) -> list[Path]:

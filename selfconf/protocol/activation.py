@@ -156,9 +156,14 @@ def obey(
         return _reserve(served, own, call), Verdict.DONE, ActivationStep.NONE
     if own is None and actuator:
         return activation, Verdict.NOT_HELD, ActivationStep.NONE
-    if served.phase is ActivationPhase.FAILED and own is not None and own.active and call.epoch == own.claim.epoch:
+    if own is not None and _failed_in(served, own, call.epoch):
         return activation, Verdict.REFUSED, ActivationStep.NONE
     return _activate(served, call, gone), Verdict.DONE, _START[served.phase]
+
+
+def _failed_in(activation: Activation, own: Hold, epoch: int) -> bool:
+    """Whether the component has failed while it acted for a task in an epoch."""
+    return activation.phase is ActivationPhase.FAILED and own.active and epoch == own.claim.epoch
 
 
 def _is_anothers(hold: Hold, call: Claim, gone: frozenset[str], unseen: frozenset[str]) -> bool:

@@ -66,15 +66,16 @@ class Shelf:
         return {name: stamp for path in self._paths for name, stamp in files.stamps(path, left_out).items()}
 
     def _merged(self, complaints: list[str]) -> dict[IRI, Advertisement]:
-        """The advertisements of all files; of two of one component the first."""
-        found: dict[IRI, Advertisement] = {}
+        """The advertisements of all files; of two of one component the first. A file may be given by two paths."""
+        found: dict[IRI, tuple[str, Advertisement]] = {}
         for name, file in self._files.items():
             complaints += file.complaints
             for advertisement in file.advertisements:
                 component = advertisement.component
-                if found.setdefault(component, advertisement) is not advertisement:
+                first, counting = found.setdefault(component, (name, advertisement))
+                if counting is not advertisement and not files.is_same(first, name):
                     complaints.append(f"{name}: {component} is advertised twice; the first advertisement counts")
-        return found
+        return {component: advertisement for component, (_, advertisement) in found.items()}
 
     def _tell(self, complaints: Sequence[str]) -> None:
         """Complain of what was not complained of the last time: the files are looked at every second."""

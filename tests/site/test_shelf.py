@@ -121,6 +121,15 @@ def test_of_two_advertisements_of_one_component_the_first_counts_and_the_other_i
     assert "b.ttl" in complaints[0]
 
 
+def test_a_file_that_is_given_by_two_paths_advertises_once(tmp_path: Path) -> None:
+    write_advertisements(tmp_path / "ads", "tracker")
+    (tmp_path / "link.ttl").symlink_to(tmp_path / "ads" / "tracker.ttl")
+    complaints: list[str] = []
+    shelf = Shelf([tmp_path / "ads", tmp_path / "link.ttl"], complaints.append)
+    shelf.refresh()
+    assert (set(shelf.advertisements), complaints) == ({iri("person-tracker")}, [])
+
+
 def test_an_empty_folder_that_is_called_like_a_file_is_no_trouble(tmp_path: Path) -> None:
     (tmp_path / "folder.ttl").mkdir()
     complaints: list[str] = []

@@ -13,7 +13,7 @@ import pyoxigraph as ox
 from selfconf.errors import BindingError
 from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template
-from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.model.wording import in_full
 from selfconf.rdf import turtle
 from selfconf.rdf.shacl import LITERAL
@@ -26,6 +26,14 @@ from selfconf.rdf.vocabulary import SC, SH, XSD
 _CURIE = re.compile(r"([A-Za-z][\w.-]*)?:[^\s\"'<>()]*")
 _LOCAL = re.compile(r"[A-Za-z]\w*")
 _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
+_PLAIN = {
+    STRING: re.compile(r"(?s).*"),
+    XSD.integer: re.compile(r"[+-]?\d+"),
+    XSD.decimal: re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)"),
+    XSD.double: re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),
+    XSD.boolean: re.compile("true|false"),
+}
+"""How most literals of these datatypes are written, so that rdflib need not be asked whether they are well-typed."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|true|false")
 
 
@@ -74,9 +82,9 @@ def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> 
         if parameter.iri in bindings:
             raise BindingError(f"the parameter {name!r} is bound twice")
         _writable(name, value)
-        bindings[parameter.iri] = (
-            value if isinstance(value, IRI | Literal | BlankNode) else read_term(value, document.prefixes)
-        )
+        term = value if isinstance(value, IRI | Literal | BlankNode) else read_term(value, document.prefixes)
+        _well_typed(name, term)
+        bindings[parameter.iri] = term
     return TaskDocument(replace(task, bindings=bindings), document)
 
 
@@ -89,6 +97,18 @@ def _writable(name: str, value: str | Term) -> None:
         str(value).encode()
     except UnicodeEncodeError:
         raise BindingError(f"the value of {name!r} is no text in UTF-8: {str(value)!r}") from None
+
+
+def _well_typed(name: str, value: Term) -> None:
+    """Raises BindingError for a literal that is none of its datatype, as `"abc"^^xsd:integer`."""
+    plain = _PLAIN.get(value.datatype) if isinstance(value, Literal) else None
+    if not isinstance(value, Literal) or (plain is not None and plain.fullmatch(value.lexical)):
+        return
+    from selfconf.rdf import literal_comparison  # loads rdflib, which few values need
+
+    if not literal_comparison.well_typed(value):
+        said = in_full([value])
+        raise BindingError(f"{said} cannot stand for the parameter {name!r}: it is no {value.datatype.short}")
 
 
 def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:

@@ -8,6 +8,7 @@ from selfconf.errors import BindingError
 from selfconf.model.cost import CostTerm
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.tasks import bindings, templates
+from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import XSD
 from tests.lab import PREFIXES, iri
@@ -93,6 +94,31 @@ def test_what_is_bound_and_what_has_a_default_has_a_value_and_the_rest_stays_fre
 def test_a_value_that_does_not_fit_is_refused(bound: tuple[tuple[str, str], ...], words: str) -> None:
     with pytest.raises(BindingError, match=words):
         completed(*bound)
+
+
+def anything() -> TaskDocument:
+    """A task whose parameter may be anything."""
+    text = ':t a sc:Template ; sc:parameter :p ; sc:roles ( :r ) . :p a sc:Parameter ; sc:name "p" .'
+    role = ":r a sc:Role ; sc:sets [ sc:parameterType :G ; sc:value :p ] ."
+    return templates.read_task(turtle.parse(PREFIXES + text + role, "t.ttl"))
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ('"abc"^^xsd:integer', "cannot stand for the parameter 'p': it is no integer"),
+        ('"5"^^xsd:date', "it is no date"),
+        (Literal("true", XSD.integer), "it is no integer"),
+    ],
+)
+def test_a_literal_that_is_none_of_its_datatype_is_refused(value: str | Term, words: str) -> None:
+    with pytest.raises(BindingError, match=words):
+        bindings.bind(anything(), [("p", value)])
+
+
+@pytest.mark.parametrize("value", ['"7"^^xsd:integer', '"07"^^xsd:decimal', '"2026-11-26"^^xsd:date', '"x"^^:own'])
+def test_a_literal_that_is_one_of_its_datatype_is_taken(value: str) -> None:
+    assert bindings.bind(anything(), [("p", value)]).task.bindings
 
 
 @pytest.mark.parametrize("value", ["\udcff", '"\ud800"', Literal("a\udcff"), IRI("urn:\ud800")])
