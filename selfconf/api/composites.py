@@ -163,7 +163,7 @@ class InsideOfComposite:
         elif other_inputs:
             self.runner.reconsider()
         elif changed:
-            self.runner.rewire()
+            self.runner.rewire(message.rests)
 
     def _begin(self, message: Apply) -> None:
         self._values = dict(message.values)

@@ -195,13 +195,17 @@ def end_deployment(state: State) -> Reaction:
     return running, tuple(effects)
 
 
-def rewire(state: State, components: frozenset[IRI]) -> Reaction:
-    """Apply once more to those that follow some components, or are called by them, behind which others stand now."""
+def rewire(state: State, components: frozenset[IRI], rests: bool = False) -> Reaction:
+    """Apply once more to those that follow some components, or are called by them, behind which others stand now.
+
+    `rests`: nothing stands behind them for now, and actuators that follow them are to rest.
+    """
     held = {
         one: replace(held, confirmed=held.confirmed and not is_wired_to(held, components))
         for one, held in state.held.items()
     }
-    return deploy(replace(state, held=held))
+    rewired, effects = deploy(replace(state, held=held))
+    return rewired, tuple(replace(one, rests=rests) if isinstance(one, ApplyTo) else one for one in effects)
 
 
 def is_wired_to(held: Held, components: frozenset[IRI]) -> bool:

@@ -119,6 +119,8 @@ class Rewired:
     """Other components than before issue the outputs of a component, or call by it: what is connected hears that."""
 
     component: IRI
+    rests: bool = False
+    """Whether actuators that follow it are to rest, where nothing stands behind it for now."""
 
 
 @immutable

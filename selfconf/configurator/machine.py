@@ -120,7 +120,7 @@ def step(state: State, event: Event) -> Reaction:
         case Appeared():
             return _appeared(state, event)
         case Rewired():
-            return _rewired(state, event.component)
+            return _rewired(state, event.component, event.rests)
         case Improvable():
             return _look_for_better(state)
         case Reconnected():
@@ -522,14 +522,14 @@ def _improved(state: State, event: Composed) -> Reaction:
     return deploying.deploy(replace(state, target=better, fallback=state.target))
 
 
-def _rewired(state: State, component: IRI) -> Reaction:
+def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
     """Tell those that are connected to a component what stands behind it now, after all have received their links.
 
     The component is one of this configuration, or the composite that this is the inside of, which is what is outside.
     """
     changed = frozenset((component,))
     if state.phase is Phase.RUNNING or _waits_for(state, changed):
-        return deploying.rewire(state, changed)
+        return deploying.rewire(state, changed, rests)
     if component not in state.held and not any(deploying.is_wired_to(held, changed) for held in state.held.values()):
         return state, ()
     return replace(state, rewired=state.rewired | {component}), ()  # also while another configuration is looked for

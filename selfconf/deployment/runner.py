@@ -188,10 +188,10 @@ class TaskRunner:
         """What is deployed, or being deployed."""
         return self.state.target
 
-    def rewire(self) -> None:
-        """Tell those inside that are connected to what is outside that it has changed."""
+    def rewire(self, rests: bool = False) -> None:
+        """Tell those inside that are connected to what is outside that it has changed; `rests` as in an `Apply`."""
         if self.request.outside is not None:
-            self._step(Rewired(self.request.outside.composite))
+            self._step(Rewired(self.request.outside.composite, rests))
 
     def reconsider(self) -> None:
         """Search again beside what runs, as other inputs than before are fed from outside."""

@@ -21,6 +21,7 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG, MemoryRun
+from tests.deployment.simulated import slow_code
 from tests.lab import PREFIXES as LAB_PREFIXES
 from tests.lab import Lab, iri, write_advertisements
 
@@ -901,3 +902,41 @@ def test_a_composite_does_not_fail_while_what_feeds_its_optional_input_is_replac
     assert [event.component for event in lab.acts("lost")] == [iri("hinter0")]
     ((_, wire),) = lab.runtimes["lens"].inputs.followed
     assert wire.component == iri("hinter1")
+
+
+BASE = {
+    "base": """:base a sc:Component, :Base ; sc:hasInput [ sc:name "go" ; sc:signalType :Go ] ;
+        sc:grounding [ sc:template :driving ] .
+        :driving a sc:Template ; sc:roles ( :motor ) ;
+            sc:hasInput [ sc:name "go" ; sc:signalType :Go ; sc:of :motor ] .
+        :motor a sc:Role ; sh:class :Motor .""",
+    "motor": ':motor-1 a sc:Component, :Motor ; sc:hasInput [ sc:name "go" ; sc:signalType :Go ] .',
+    "control": ':control a sc:Component, :Control ; sc:hasInput [ sc:name "hint" ; sc:signalType :Hint ] ;'
+    ' sc:hasOutput [ sc:name "go" ; sc:signalType :Go ] .',
+} | {name: HINTED[name] for name in ("hinter0", "hinter1")}
+"""An actuator inside of a composite, and what drives it."""
+DRIVE_BASE = f"""{LAB_PREFIXES}
+:drive a sc:Template ; sc:roles ( :hints :control-role :base-role ) .
+:hints a sc:Role ; sh:class :Hinter ; sc:feeds :control-role .
+:control-role a sc:Role ; sh:class :Control ; sc:feeds :base-role . :base-role a sc:Role ; sh:class :Base ."""
+
+
+def test_an_actuator_inside_rests_as_soon_as_one_outside_would(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=BASE)
+    lab.site("home", *BASE)
+    for name in sorted(BASE.keys() - {"base"}):
+        lab.component(name)
+    lab.let_pass(3.0)
+    slow_code(lab, "hinter1")
+    lab.components["hinter1"].slow = 4.0
+    agent = lab.agent(DRIVE_BASE, ())
+    assert lab.running(agent)
+    lab.components["hinter0"].fail("it has no idea")
+    turns = dict[float, list[str]]()
+    for tenth in range(60):
+        lab.components["control"].emit("go", tenth)
+        lab.let_pass(0.1)
+        turns[tenth / 10] = [said[0] for said in lab.components["motor"].said if said[0] != "go"]
+    assert (turns[0.8], turns[1.3]) == (["started"], ["started", "stopped"])
+    assert agent.state.phase is Phase.RUNNING
+    assert turns[5.9] == ["started", "stopped", "started"]
