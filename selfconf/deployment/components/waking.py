@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 from selfconf.bus.port import Replies, Undo
@@ -23,6 +24,17 @@ SITE_BACK = 3.0
 """Seconds that a site may be away before what it was starting is given up."""
 
 
+@dataclass(slots=True, eq=False)
+class _Start:
+    """A component that is being started by a site."""
+
+    effect: WakeUp
+    """The newest that asks for it: a deployment that begins anew waits for what is being started."""
+    site: str
+    end: Undo = lambda: None
+    """Undoes the end of its time."""
+
+
 class Waking:
     """Has components started for one task, and feeds its machine with what becomes of that."""
 
@@ -35,8 +47,8 @@ class Waking:
     ) -> None:
         self._bus, self._ecology, self._lives = ecology.bus, ecology, lives
         self._step, self._report = step, report
-        self._waiting: dict[IRI, tuple[WakeUp, Undo]] = {}
-        """Those that are being started, each with the end of its time."""
+        self._waiting: dict[IRI, _Start] = {}
+        """Those that are being started."""
 
     def __contains__(self, component: IRI) -> bool:
         """Whether a component is being started."""
@@ -49,7 +61,11 @@ class Waking:
         if self._ecology.life(effect.component) is not None:
             self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
         elif found is not None and found.startable:
-            self._start_by_site(effect, found)
+            waiting = self._waiting.get(effect.component)
+            if waiting is not None and waiting.site == found.site and waiting.effect.epoch < effect.epoch:
+                waiting.effect = effect  # one of the same epoch is to be asked for again
+            else:
+                self._start_by_site(effect, found)
         else:
             self._lives.awaited(effect.component)
             detail = "it is advertised, but it does not run" if found is None or not found.unable else found.unable
@@ -60,29 +76,28 @@ class Waking:
         self._lives.born(component)
         waiting = self._waiting.pop(component, None)
         if waiting is not None:
-            waiting[1]()
+            waiting.end()
             self._lives.lost(component, life)
-            self._step(Answered(component, Call.WAKE, waiting[0].epoch, Verdict.DONE))
+            self._step(Answered(component, Call.WAKE, waiting.effect.epoch, Verdict.DONE))
 
     def abandon(self, component: IRI) -> None:
         """A component was lost: it is not waited for any more if it was started for this task."""
         waiting = self._waiting.pop(component, None)
         if waiting is not None:
-            waiting[1]()
+            waiting.end()
 
     def site_began(self, site: str) -> None:
         """A site lives a new life: what it was starting in another one it is asked to start again."""
-        for effect, _ in list(self._waiting.values()):
-            found = self._ecology.discovery.found.get(effect.component)
+        for waiting in list(self._waiting.values()):
+            found = self._ecology.discovery.found.get(waiting.effect.component)
             if found is not None and found.site == site:
-                self._start_by_site(effect, found)
+                self._start_by_site(waiting.effect, found)
 
     def site_ended(self, site: str) -> None:
         """The life of a site has ended: what it was starting is given up, unless the site is back in time."""
-        for effect, _ in list(self._waiting.values()):
-            found = self._ecology.discovery.found.get(effect.component)
+        for waiting in list(self._waiting.values()):
+            found = self._ecology.discovery.found.get(waiting.effect.component)
             if found is not None and found.site == site:
-                waiting = self._waiting[effect.component]
                 self._bus.later(SITE_BACK, partial(self._give_up, waiting, "its site has ended"))
 
     def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
@@ -91,8 +106,8 @@ class Waking:
         self.abandon(effect.component)
         self._lives.awaited(effect.component)
         too_late = f"it was started, but does not live after {WAKING:.0f} s"
-        waiting = effect, self._bus.later(WAKING, lambda: self._give_up(waiting, too_late))
-        self._waiting[effect.component] = waiting
+        waiting = self._waiting[effect.component] = _Start(effect, found.site)
+        waiting.end = self._bus.later(WAKING, lambda: self._give_up(waiting, too_late))
 
         def answered(replies: Replies) -> None:
             if replies.errors:
@@ -103,12 +118,12 @@ class Waking:
         wake = Wake(effect.component, self._lives.lost_life(effect.component))
         self._bus.ask(self._ecology.keys.wake(found.site), encode(wake), WAKE_CALL, answered)
 
-    def _give_up(self, waiting: tuple[WakeUp, Undo], detail: str) -> None:
+    def _give_up(self, waiting: _Start, detail: str) -> None:
         """Do without a component that was to be started, unless it lives by now or is being started anew."""
-        effect, _ = waiting
-        if self._waiting.get(effect.component) is waiting:
-            self.abandon(effect.component)
-            self._fail(effect, detail)
+        component = waiting.effect.component
+        if self._waiting.get(component) is waiting:
+            self.abandon(component)
+            self._fail(waiting.effect, detail)
 
     def _fail(self, effect: WakeUp, detail: str) -> None:
         self._report(ComponentUnreachable(effect.component, Call.WAKE.value, detail))

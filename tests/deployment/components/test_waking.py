@@ -47,6 +47,29 @@ def test_a_component_that_has_ended_unseen_is_started_again_by_a_site_that_can(t
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING and lab.active() == TASK | {"tracker"}, 10.0)
 
 
+def test_a_site_is_asked_once_for_what_it_starts_however_often_the_deployment_begins_anew(tmp_path: Path) -> None:
+    """What follows the lost component is disconnected meanwhile, and actuators come to rest."""
+    lab, asked = Lab(tmp_path), list[float]()
+    lab.site("astrid", *TASK, "odometry")
+    for name in (*TASK, "odometry"):
+        lab.component(name)
+    agent = lab.agent()
+    assert lab.running(agent)
+
+    def begin(node: MemoryBus) -> None:
+        asked.append(lab.network.time)
+        node.later(4.0, lambda: lab.component("tracker"))
+
+    living_room(lab, "1", begin)
+    lab.let_pass(1.0)
+    lab.components["odometry"].fail("it has slipped")
+    lab.let_pass(2.0)
+    assert agent.state.phase is Phase.RESERVING
+    assert lab.running(agent)
+    assert len(asked) == len(lab.acts("waking")) == 1
+    assert lab.active() == TASK | {"tracker"}
+
+
 def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_component_again(tmp_path: Path) -> None:
     lab = home(tmp_path)
     living_room(lab, "1", lambda _: lab.component("tracker"))
