@@ -15,6 +15,7 @@ from pathlib import Path
 from types import FrameType
 
 from selfconf.bus.port import Bus
+from selfconf.signal_handlers import run_to_its_end
 
 PARENT_CHECK = 0.5
 """How often, in seconds, a program looks whether the one that started it is still there."""
@@ -139,6 +140,7 @@ class Termination:
     def __call__(self) -> bool:
         return self._ending
 
+    @run_to_its_end
     def _signalled(self, _: int, __: FrameType | None) -> None:
         if self._then is None:
             self._ending = True

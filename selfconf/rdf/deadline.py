@@ -6,6 +6,7 @@ every program of selfconf does its work; elsewhere there is no limit. What is ra
 of the garbage collector is lost, so the alarm goes on ringing until the block is left, and Python's report of lost
 exceptions (`sys.unraisablehook`) leaves it out. It also rings in vain while the block imports a module: a library that
 is imported by half stays so, as Python forgets its package and keeps its modules, and no code can import it ever again.
+And it does so while a handler runs by which another signal ends the program, as that signal would be lost.
 
 What no caller waits for any more is ended in the same way, by another thread (`abandonable`).
 
@@ -25,6 +26,8 @@ from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from types import FrameType
 from typing import NamedTuple
+
+from selfconf.signal_handlers import is_handler
 
 SHORT = 1.0
 """Seconds up to which a limit of processor time is short."""
@@ -81,17 +84,17 @@ def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
         yield
         return
     began, entered, report = timer.clock(), True, sys.unraisablehook
-    imports = _imports_under_way(sys._getframe())
+    outside = _not_to_be_left(sys._getframe())
 
     def ring(number: int, frame: FrameType | None) -> None:
-        if entered and _imports_under_way(frame) == imports:
+        if entered and _not_to_be_left(frame) == outside:
             raise ProcessorTimeUp if number == signal.SIGPROF else TimeUp
 
     handler = signal.signal(timer.signal, ring)
-    outside, _ = signal.getitimer(timer.number)
+    outer, _ = signal.getitimer(timer.number)
     try:
         sys.unraisablehook = partial(_report_unless_ringing, report)
-        signal.setitimer(timer.number, min(seconds, outside or seconds), RINGING)
+        signal.setitimer(timer.number, min(seconds, outer or seconds), RINGING)
         try:
             yield
         finally:
@@ -100,8 +103,8 @@ def _limited(seconds: float, timer: _Timer) -> Iterator[None]:
         signal.setitimer(timer.number, 0)
         signal.signal(timer.signal, handler)
         sys.unraisablehook = report
-        if outside:
-            signal.setitimer(timer.number, max(outside - (timer.clock() - began), 1e-6), RINGING)
+        if outer:
+            signal.setitimer(timer.number, max(outer - (timer.clock() - began), 1e-6), RINGING)
 
 
 @contextmanager
@@ -116,10 +119,10 @@ def abandonable() -> Iterator[Callable[[], None]]:
         return
     entered, left, report = True, False, sys.unraisablehook
     lock = threading.RLock()  # the thread that is ended may be the one that calls, in a handler of a signal
-    imports = _imports_under_way(sys._getframe())
+    outside = _not_to_be_left(sys._getframe())
 
     def ring(number: int, frame: FrameType | None) -> None:
-        if entered and _imports_under_way(frame) == imports:
+        if entered and _not_to_be_left(frame) == outside:
             raise Abandoned
 
     def abandon() -> None:
@@ -142,11 +145,11 @@ def abandonable() -> Iterator[Callable[[], None]]:
         sys.unraisablehook = report
 
 
-def _imports_under_way(frame: FrameType | None) -> int:
-    """Count the frames of an import, from a frame outwards."""
+def _not_to_be_left(frame: FrameType | None) -> int:
+    """Count the frames of an import, or of a handler of another signal, from a frame outwards."""
     count = 0
     while frame is not None:
-        count += frame.f_code.co_filename.startswith("<frozen importlib")
+        count += frame.f_code.co_filename.startswith("<frozen importlib") or is_handler(frame)
         frame = frame.f_back
     return count
 

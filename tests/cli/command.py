@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from dataclasses import dataclass
 from typing import Any
 
@@ -43,12 +44,16 @@ def each(option: str, *values: object) -> list[str]:
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> Outcome:
-    """Run a command."""
+    """Run a command; what a program does about signals ends with it."""
     capsys.readouterr()
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     try:
         with nothing_frozen():
             code = main(arguments)
     except SystemExit as error:
         code = int(error.code or 0)
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
     said = capsys.readouterr()
     return Outcome(code, said.out, said.err)
