@@ -383,8 +383,10 @@ def started_without_values(history: History) -> Iterator[str]:
 
 
 def unheard(history: History) -> Iterator[str]:
-    """Every input has heard what each output that it follows has issued last."""
+    """Every input has heard what each output that it follows has issued last, unless its code is still busy."""
     for life in acting(history):
+        if life.thread.busy_until > history.network.time:
+            continue
         for port, wire in life.followed:
             for source in (one for one in acting(history) if one.runtime.profile.component == wire.component):
                 if (port, f"the last of {source.runtime.life}") not in life.recorder.said:
