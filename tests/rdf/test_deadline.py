@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from importlib import import_module
@@ -16,7 +15,6 @@ from pathlib import Path
 import pytest
 
 from selfconf.rdf.deadline import Abandoned, ProcessorTimeUp, TimeUp, abandonable, deadline, processor_limit
-from selfconf.signal_handlers import run_to_its_end
 
 Limit = Callable[[float], AbstractContextManager[None]]
 LIMITS = pytest.mark.parametrize("limit", [deadline, processor_limit])
@@ -181,33 +179,6 @@ def test_a_handler_of_a_signal_may_abandon_what_it_interrupts() -> None:
     with pytest.raises(Abandoned):
         abandoned()
     signal.signal(signal.SIGUSR1, before)
-
-
-def test_no_alarm_ends_the_handler_of_a_signal_that_ends_the_program() -> None:
-    """It would be as if that signal had never come."""
-    noted: list[str] = []
-
-    @run_to_its_end
-    def ends(*_: object) -> None:
-        end()
-        began = time.process_time()
-        while time.process_time() < began + 0.15:  # the alarm rings each 0.05 s
-            pass
-        noted.append("the end")
-
-    def abandoned() -> None:
-        nonlocal end
-        with abandonable() as end:
-            signal.signal(signal.SIGUSR1, ends)
-            signal.raise_signal(signal.SIGUSR1)
-            endless()
-
-    end: Callable[[], None] = endless
-    before = signal.getsignal(signal.SIGUSR1)
-    with pytest.raises(Abandoned):
-        abandoned()
-    signal.signal(signal.SIGUSR1, before)
-    assert noted == ["the end"]
 
 
 def test_what_is_over_cannot_be_abandoned() -> None:
