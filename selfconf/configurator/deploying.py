@@ -8,8 +8,8 @@ released when everything has confirmed.
 
 Why in the order of the IRIs: a task that waits for a component holds none that comes later, so tasks cannot wait for
 each other in a circle (Havender 1968). One that was asked in a deployment which began anew before the answer came
-counts as held. In a repair, which holds components already, one that is held by another task
-counts as taken, unless that task is of lower priority: it is made to let go.
+counts as held. In a repair, which holds components already, one that is held by another task counts as taken, unless
+that task is of lower priority: it is made to let go.
 
 A repair that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
 reservation, and everything else acts already.

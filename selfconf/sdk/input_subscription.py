@@ -96,8 +96,8 @@ class InputSubscription:
         """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
         that is no sign that it issues, and ends no blindness."""
         self._doubted: tuple[str, int] | None = None
-        """The same of a source that has let go of a task, until it has said whether it acts for another one, and while
-        nothing newer has come."""
+        """The last signal of a source that has let go of a task, until it has said whether it acts for another one, and
+        while nothing newer has come."""
         self._queue = queue
         self._stamps, self._stamps_on_arrival = StampReader(), StampReader()  # one for each thread
         self._heard_at = -JUST_COME
