@@ -16,8 +16,9 @@ of what they answer with, as `PartitionTable` and the events of a run. A compone
 tried without a network by `selfconf.testing`.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from selfconf.late_names import late_names
 
 if TYPE_CHECKING:
     from selfconf.api.answer import configure
@@ -75,12 +76,7 @@ _HOME = {
 }
 """Where each name is defined. It is loaded when it is first used, so that a program pays for what it needs alone."""
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'selfconf' has no attribute {name!r}")
-    found = globals()[name] = getattr(import_module(f"selfconf.{_HOME[name]}"), name)
-    return found
+__getattr__ = late_names(__name__, _HOME)
 
 
 def __dir__() -> list[str]:

@@ -7,8 +7,9 @@ A `Keeper` runs the tasks that live in the sites, which keep their records in a 
 first used: a site without tasks, and a command that only looks on, start sooner.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from selfconf.late_names import late_names
 
 if TYPE_CHECKING:
     from selfconf.deployment.holders import ask_holders, holders_in
@@ -44,9 +45,4 @@ _HOME = {
 }
 """Where each name is defined. It is loaded when it is first used."""
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'selfconf.deployment' has no attribute {name!r}")
-    found = globals()[name] = getattr(import_module(f"selfconf.deployment.{_HOME[name]}"), name)
-    return found
+__getattr__ = late_names(__name__, _HOME)

@@ -9,8 +9,9 @@ Each is loaded when it is first used: the process of a standing dataset needs no
 answers for people, and starts in half the time without.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from selfconf.late_names import late_names
 
 if TYPE_CHECKING:
     from selfconf.query.endpoint import read_endpoint
@@ -50,9 +51,4 @@ _HOME = {
 }
 """Where each name is defined. It is loaded when it is first used."""
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'selfconf.query' has no attribute {name!r}")
-    found = globals()[name] = getattr(import_module(f"selfconf.query.{_HOME[name]}"), name)
-    return found
+__getattr__ = late_names(__name__, _HOME)
