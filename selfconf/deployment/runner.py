@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.configurator import (
     DEPLOYING,
     Accepted,
@@ -150,8 +150,8 @@ class TaskRunner:
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self._events: deque[Event] = deque()
         self._stepping = False
-        self._incomplete: object | None = None
-        """Since when what runs lacks a component: another object each time; None if it lacks none, or rests."""
+        self._incomplete: Undo | None = None
+        """Undoes the look at what runs that comes when it has lacked a component for long; None if it lacks none."""
         self._looks, self._lost_since = False, False
         """Whether a look is planned at what was lost, and whether more was lost since."""
         self._unreported: list[AnyRunEvent] = []
@@ -237,7 +237,8 @@ class TaskRunner:
             self._notice(known)
         if self.state.target is None:
             self._record.taken_down()
-        if self.state.phase in (Phase.RUNNING, Phase.DISMANTLING):
+        if self._incomplete is not None and self.state.phase in (Phase.RUNNING, Phase.DISMANTLING):
+            self._incomplete()
             self._incomplete = None
         for effect in effects:
             self._carry_out(effect)
@@ -330,8 +331,7 @@ class TaskRunner:
         if not self._looks:
             self._look_soon()
         if self._incomplete is None and any(held.active for held in self.state.held.values()):
-            incomplete = self._incomplete = object()
-            self.bus.later(LASTS_LONG, partial(self._look_whether_it_lasts_long, incomplete))
+            self._incomplete = self.bus.later(LASTS_LONG, self._look_when_it_is_long)
 
     def _look_soon(self) -> None:
         self._looks, self._lost_since = True, False
@@ -344,10 +344,9 @@ class TaskRunner:
             self._look_soon()
         self._step(LossLasts())
 
-    def _look_whether_it_lasts_long(self, incomplete: object) -> None:
-        if self._incomplete is incomplete:
-            self._incomplete = None  # what begins to act from now on may do so for as long if more is lost
-            self._step(LossLasts(frozenset(filter(self._is_actuator, self.state.held))))
+    def _look_when_it_is_long(self) -> None:
+        self._incomplete = None  # what begins to act from now on may do so for as long if more is lost
+        self._step(LossLasts(frozenset(filter(self._is_actuator, self.state.held))))
 
     def _is_actuator(self, component: IRI) -> bool:
         found = self.ecology.discovery.found.get(component)
