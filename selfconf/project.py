@@ -17,10 +17,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.parse import urlsplit
 
 from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.immutable import immutable
+from selfconf.protocol.endpoints import is_zenoh_endpoint
 from selfconf.protocol.keys import checked_name
 
 if sys.version_info >= (3, 11):
@@ -48,6 +50,8 @@ class ProjectKey(NamedTuple):
     """What is wrong with a value, in words; empty if nothing is."""
     paths: bool = False
     """Whether it names files and folders, relative to the project file."""
+    several: bool = False
+    """Whether it takes one value or a list of them."""
 
 
 def _is_text(value: object) -> str:
@@ -58,6 +62,21 @@ def _is_texts(value: object) -> str:
     several = value if isinstance(value, list) else [value]
     right = bool(several) and not any(map(_is_text, several))
     return "" if right else "takes a text in quotes, or a list of them"
+
+
+def _is_endpoints(value: object) -> str:
+    several = value if isinstance(value, list) else [value]
+    wrong = [text for text in several if isinstance(text, str) and not is_zenoh_endpoint(text)]
+    return _is_texts(value) or (f"takes an endpoint like 'tcp/127.0.0.1:7447', not {wrong[0]!r}" if wrong else "")
+
+
+def _is_url(value: object) -> str:
+    try:
+        parts = urlsplit(str(value))
+        right = parts.scheme in ("http", "https") and bool(parts.hostname)
+    except ValueError:  # the brackets of an address of IPv6
+        right = False
+    return _is_text(value) or ("" if right else f"takes an http or https URL, not {value!r}")
 
 
 def _is_name(value: object) -> str:
@@ -88,12 +107,14 @@ def _is_value(value: object) -> str:
 
 PROJECT_KEYS: Mapping[str, ProjectKey] = {
     "ecology": ProjectKey("the name of the living ecology", _is_name),
-    "connect": ProjectKey("where its sites listen, such as tcp/10.0.0.2:7447; one or a list", _is_texts),
+    "connect": ProjectKey(
+        "where its sites listen, such as tcp/10.0.0.2:7447; one or a list", _is_endpoints, several=True
+    ),
     "keys": ProjectKey("a folder of keys, as `selfconf keys` makes them", _is_text, paths=True),
-    "ads": ProjectKey("advertisements in files and folders; one or a list", _is_texts, paths=True),
-    "endpoint": ProjectKey("a SPARQL endpoint that holds the advertisements, in place of ads", _is_text),
+    "ads": ProjectKey("advertisements in files and folders; one or a list", _is_texts, paths=True, several=True),
+    "endpoint": ProjectKey("a SPARQL endpoint that holds the advertisements, in place of ads", _is_url),
     "ontology": ProjectKey(
-        "ontologies besides those of selfconf, files and folders; one or a list", _is_texts, paths=True
+        "ontologies besides those of selfconf, files and folders; one or a list", _is_texts, paths=True, several=True
     ),
     "reasoning": ProjectKey(f"what the roles see: {', '.join(REASONING)}", _is_one_of(REASONING)),
     "strategy": ProjectKey(f"how to search: {', '.join(STRATEGIES)}", _is_one_of(STRATEGIES)),
@@ -273,9 +294,9 @@ def _settled(body: Mapping[str, Any], folder: Path) -> Iterator[tuple[str, Any]]
             setting = PROJECT_KEYS[key]
             if setting.paths:
                 found = [Path(os.path.relpath(folder / text)) for text in _listed(value)]
-                yield key, found if setting.wrong is _is_texts else found[0]
+                yield key, found if setting.several else found[0]
             else:
-                yield key, _listed(value) if setting.wrong is _is_texts else value
+                yield key, _listed(value) if setting.several else value
 
 
 def _listed(value: Any) -> list[Any]:

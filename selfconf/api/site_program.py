@@ -23,7 +23,6 @@ from selfconf.api.ontologies import hierarchy_of
 from selfconf.api.reading import described_in, existing
 from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
-from selfconf.bus.endpoints import endpoint_host
 from selfconf.bus.port import Bus
 from selfconf.bus.zenoh_bus import client
 from selfconf.deployment import Keeper, TaskFolder
@@ -32,6 +31,7 @@ from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.hierarchy import Reasoning
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
+from selfconf.protocol.endpoints import endpoint_host
 from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.advertisements import Advertisement

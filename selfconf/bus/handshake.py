@@ -12,8 +12,8 @@ import socket
 import ssl
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.endpoints import endpoint_host, endpoint_port
 from selfconf.model.setting_names import setting
+from selfconf.protocol.endpoints import endpoint_host, endpoint_port
 
 HANDSHAKE = 1.5
 """Seconds that the other end may take."""

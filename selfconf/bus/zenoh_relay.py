@@ -29,10 +29,10 @@ from typing import Any
 import zenoh
 from zenoh.handlers import Callback
 
-from selfconf.bus.endpoints import endpoint_port
 from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh_session import Security, open_session, with_port
 from selfconf.errors import NetworkError
+from selfconf.protocol.endpoints import endpoint_port
 
 log = logging.getLogger(__name__)
 

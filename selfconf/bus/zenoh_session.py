@@ -21,10 +21,10 @@ from typing import Any
 import zenoh
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.endpoints import endpoint_host, endpoint_port, with_other_port
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
+from selfconf.protocol.endpoints import endpoint_host, endpoint_port, is_zenoh_endpoint, with_other_port
 
 LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
@@ -36,9 +36,6 @@ SHARED_FROM = 1 << 15
 SHARED_MEMORY = Path("/dev/shm")
 ENOUGH_SHARED = 256_000_000
 """Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
-MOST_PORT = (1 << 16) - 1
-_WITH_PORT = frozenset(("tcp", "tls", "udp", "quic", "ws"))
-"""The protocols whose addresses have a host and a port."""
 _RETRY = {
     # A client is cut off as long as it has no router, and its components rest after a second.
     "client": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1.5},
@@ -177,14 +174,10 @@ def _secured(security: Security) -> dict[str, Any]:
 
 
 def _check_endpoint(endpoint: str, security: Security | None) -> None:
-    """Raise NetworkError for an endpoint that lacks its port, or is not of what is spoken: TLS with keys, TCP without.
-
-    Zenoh itself would try for as long as it is given to reach one without a port.
-    """
-    protocol = endpoint.partition("/")[0]
-    port = endpoint_port(endpoint)
-    if protocol in _WITH_PORT and (port is None or port > MOST_PORT):
+    """Raise NetworkError for what is no endpoint, or is not of what is spoken: TLS with keys, TCP without."""
+    if not is_zenoh_endpoint(endpoint):
         raise _no_endpoint(endpoint)
+    protocol = endpoint.partition("/")[0]
     if security is None and protocol == "tls":
         raise NetworkError(f"{endpoint} is reached with keys only; give {setting('keys', 'DIR')}, or set SELFCONF_KEYS")
     if security is not None and protocol == "tcp":

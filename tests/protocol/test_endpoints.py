@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.bus.endpoints import endpoint_host, endpoint_port, with_other_port
+from selfconf.protocol.endpoints import endpoint_host, endpoint_port, is_zenoh_endpoint, with_other_port
 
 
 @pytest.mark.parametrize(
@@ -27,3 +27,25 @@ def test_an_endpoint_has_a_host_and_a_port_or_none(endpoint: str, host: str, por
 
 def test_another_port_keeps_the_settings_of_the_link() -> None:
     assert with_other_port("tls/[::1]:0?prio=1#so_rcvbuf=1000", 7447) == "tls/[::1]:7447?prio=1#so_rcvbuf=1000"
+
+
+@pytest.mark.parametrize(
+    ("text", "right"),
+    [
+        ("tcp/127.0.0.1:7447", True),
+        ("tls/[::1]:0?prio=1-3#x=a:b", True),
+        ("unixsock-stream//tmp/x", True),
+        ("serial//dev/ttyUSB0#baudrate=115200", True),
+        ("bogus", False),
+        ("", False),
+        ("/x", False),
+        ("tcp", False),
+        ("tcp/", False),
+        ("tcp/home", False),
+        ("tcp/home:65536", False),
+        ("127.0.0.1:7447", False),
+        ("serial/", False),
+    ],
+)
+def test_what_can_be_no_endpoint_is_told_apart_before_zenoh_tries_to_reach_it(text: str, right: bool) -> None:
+    assert is_zenoh_endpoint(text) is right

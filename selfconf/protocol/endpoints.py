@@ -9,6 +9,21 @@ import re
 
 _PARTS = re.compile(r"(?P<protocol>[^/?#]*/?)(?P<address>[^?#]*)(?P<settings>.*)", re.DOTALL)
 _PORT = re.compile(r"\+?[0-9]+", re.ASCII)
+MOST_PORT = (1 << 16) - 1
+_WITH_PORT = frozenset(("tcp/", "tls/", "udp/", "quic/", "ws/"))
+# The protocols whose addresses have a host and a port.
+
+
+def is_zenoh_endpoint(text: str) -> bool:
+    """Whether a text can be an endpoint: a protocol and an address, which has a port where the protocol wants one.
+
+    Zenoh itself would try for as long as it is given to reach one without its port.
+    """
+    protocol, address, settings = _parts(text)
+    if protocol in _WITH_PORT:
+        port = endpoint_port(text)
+        return port is not None and port <= MOST_PORT
+    return protocol not in ("", "/") and protocol.endswith("/") and bool(address) and settings not in ("?", "#")
 
 
 def endpoint_port(endpoint: str) -> int | None:
