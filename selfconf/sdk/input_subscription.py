@@ -7,7 +7,8 @@ many are kept as events may need (`signal_queue`); `sc:depth` of the input says 
 *Silence.* An input that follows an output with a promised rate reports when no signal has come for `PATIENCE` of the
 promised periods, and again as long as none comes.
 
-*Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it.
+*Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it,
+and once more one that has stood by, unless that has just issued one: it may have nothing else to issue.
 """
 
 from __future__ import annotations
@@ -106,7 +107,8 @@ class InputSubscription:
         """When the newest signal was read that could be: what cannot be read is no sign that the output issues."""
         self._complained = False
         self._lives: set[str] = set()
-        self._ended = False
+        self._asked = self._ended = False
+        """Whether the output was asked for its last signal, and whether it is followed no more."""
         self._deadline: Undo | None = None
         self._declared = [bus.subscribe(keys.output(wire.component, wire.output), self._received, direct=True)]
         bus.later(SIGNALS_FIRST, self._watch)
@@ -133,16 +135,15 @@ class InputSubscription:
         """
         return bool(self._queue) and self._doubted is None and self._bus.now() - self._heard_at < JUST_COME
 
-    def ask_for_last(self) -> None:
-        """Ask the output once more for its last signal."""
-        self._ask_for_last(ASK_FOR_LAST)
-
     def unmute(self) -> None:
-        """Deliver what is received, from the newest signal on if that has only just come."""
+        """Deliver what is received, from the newest signal on if that has only just come, else from the last one on."""
         if not self.muted:
             return
-        self._queue.keep(1 if self.heard else 0)
+        heard = self.heard
+        self._queue.keep(1 if heard else 0)
         self.muted = False
+        if self._asked and not heard:
+            self._ask_for_last(ASK_FOR_LAST)
         self._bus.later(UNSEEN, partial(self._look_for_life, self._bus.now()))
         self._expect()
         if self._queue:
@@ -152,6 +153,7 @@ class InputSubscription:
         """Pass over what is received."""
         self.muted = True
         self._queue.keep(0)
+        self._life, self._sequence = "", 0  # what the input follows it again for may be what it has had before
         if self._deadline is not None:
             self._deadline()
             self._deadline = None
@@ -233,6 +235,7 @@ class InputSubscription:
         """Ask for the last signal, and follow the life of the component; not before the signals that wait flow."""
         if self._ended:
             return
+        self._asked = True
         self._ask_for_last(ASK_FOR_LAST)
         self._declared.append(self._bus.watch(self._keys.lives(self._wire.component), self._life_changed))
         self._declared.append(self._bus.subscribe(self._keys.fail(self._wire.component), self._failed))

@@ -142,7 +142,7 @@ class Inputs:
         New connections are made first, because others wait for what flows over them; the old ones end when the call
         has been answered.
         """
-        now, known = self._bus.now(), self._subscriptions.keys() - self._wanted
+        now = self._bus.now()
         wanted, spare = dict.fromkeys(_signals(message.inputs)), dict.fromkeys(_signals(message.standby))
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
@@ -160,8 +160,6 @@ class Inputs:
         self._wanted, self._spare = frozenset(wanted), frozenset(spare)
         for key in wanted:
             self._subscriptions[key].unmute()
-            if key[0] in self._handovers and key in known:  # it stood by: what it issued before may be all it has
-                self._subscriptions[key].ask_for_last()
         self._let_go()
 
     def _tell_unfed(self, known: Set[str], inputs: Mapping[str, tuple[Wire, ...]]) -> None:

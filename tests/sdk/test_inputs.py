@@ -250,12 +250,34 @@ def test_an_input_that_changes_to_an_output_that_stands_by_and_has_just_issued_i
     assert stage.recorder.said == [("started",), ("position", "newest")]
 
 
-def test_what_an_output_that_stands_by_issued_long_ago_does_not_count() -> None:
+def test_what_an_output_that_stands_by_issued_long_ago_counts_if_it_is_still_its_last() -> None:
     stage, _ = with_stand_by("old")
     stage.let_pass(JUST_COME + 0.1)
     stage.call(apply(2, US, SPARE))
     stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("unfed", "position"), ("fed", "position"), ("position", "old")]
+
+
+def test_what_an_output_that_stands_by_issued_for_a_task_that_it_has_let_go_of_does_not_count() -> None:
+    stage, _ = with_stand_by("of another task")
+    stage.caller.ask(KEYS.call(ODOMETRY, "release"), encode(release(2)), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    stage.caller.ask(KEYS.call(ODOMETRY, "apply"), encode(apply(3)), 1.0, lambda _: None)
+    stage.call(apply(2, US, SPARE))
+    stage.let_pass(10.0)
     assert stage.recorder.said == [("started",), ("unfed", "position")]
+
+
+def test_an_input_that_changes_back_to_an_output_hears_its_last_signal_again() -> None:
+    stage, _ = with_stand_by("of the other")
+    stage.call(apply(2, US, SPARE))
+    stage.let_pass(JUST_COME + 0.1)
+    stage.call(apply(3, US, {"position": (Wire(TRACKER, "pose"),)}, standby=SPARE))
+    stage.let_pass(JUST_COME + 0.1)
+    stage.recorder.said.clear()
+    stage.call(apply(4, US, SPARE))
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("fed", "position"), ("position", "of the other")]
 
 
 @pytest.mark.parametrize("gently", [False, True])
