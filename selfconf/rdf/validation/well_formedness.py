@@ -2,7 +2,8 @@
 
 The shape that W3C gives for shapes (SHACL, appendix C; pySHACL brings it along) finds most of what can be
 wrong, and knows where. Patterns have to be regular expressions and queries SPARQL, which it does not look
-at. What is left shows in a trial run: each role is asked about a component of no properties.
+at; nor at how deep shapes nest. What is left shows in a trial run: each role is asked about a component of no
+properties.
 
 A parameter stands where its value will stand, so both look at the template with a sample in its place:
 one of the parameter's datatype. What a parameter of no particular datatype does in a shape is not known
@@ -14,6 +15,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from importlib.resources import files
 
 import pyoxigraph as ox
@@ -24,6 +26,7 @@ from rdflib.term import Node
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
@@ -40,6 +43,9 @@ _SAMPLES: dict[Node, Literal] = {
     XSD.date: Literal("2000-01-01", datatype=XSD.date),
     XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
 }
+DEEPEST = 15
+"""How many shapes within shapes pySHACL follows, the role among them."""
+_INSTEAD_OF_CATEGORIES = r" pySHACL knows no categories of Unicode; a letter of any language is [^\W\d_]."
 _STAND_IN = URIRef("urn:x-selfconf:stand-in")
 
 
@@ -67,6 +73,7 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
         shapes.add((URIRef(role), RDF.type, SH.NodeShape))
     faults = [fault for look in (_faults, _literals) for fault in look(shapes, positions)]
     faults += [fault for look in (_patterns, _queries) for fault in look(graph, positions)]
+    faults += _too_deep(shapes, roles, positions)
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
     if not faults and _trial(shapes, *roles) is not None:
@@ -163,7 +170,8 @@ def _patterns(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
             re.compile(str(pattern) if isinstance(pattern, Literal) else "")
         except re.error as error:
             offset = positions.triples[shape, SH.pattern, pattern].object
-            yield at(positions, offset, "SC-T13", f"This is no regular expression: {error}.")
+            advice = _INSTEAD_OF_CATEGORIES if re.match(r"bad escape \\[pP]", error.msg) else ""
+            yield at(positions, offset, "SC-T13", f"This is no regular expression: {error}.{advice}")
 
 
 def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
@@ -179,6 +187,42 @@ def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
                 ox.Store().query(str(query), prefixes=dict(_declared(graph, constraint)))
             except SyntaxError as error:
                 yield at(positions, offset, "SC-T13", f"This is not SPARQL: {error.msg.partition(': ')[2]}.")
+
+
+def _too_deep(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterator[Diagnostic]:
+    """The roles that nest shapes deeper than pySHACL follows; in a trial only those would show that need no values."""
+    for role in map(URIRef, roles):
+        if _height(shapes, role) > DEEPEST:
+            message = f"The shape of this role nests shapes more than {DEEPEST} deep."
+            yield at(positions, positions.offset(role) or 0, "SC-T13", message)
+
+
+def _height(shapes: Graph, role: Node) -> int:
+    """How deep a shape nests others, itself included; 0 if one of them comes back to itself: values decide how far."""
+    inside: dict[Node, frozenset[Node]] = {}
+    waiting = [role]
+    while waiting:
+        shape = waiting.pop()
+        if shape not in inside:
+            inside[shape] = frozenset(_within(shapes, shape))
+            waiting += inside[shape]
+    heights: dict[Node, int] = {}
+    try:
+        for shape in TopologicalSorter(inside).static_order():
+            heights[shape] = 1 + max((heights[inner] for inner in inside[shape]), default=0)
+    except CycleError:
+        return 0
+    return heights[role]
+
+
+def _within(shapes: Graph, shape: Node) -> Iterator[Node]:
+    """The shapes that a shape names or holds."""
+    for predicate in SHAPE_VALUED:
+        for value in shapes.objects(shape, URIRef(predicate)):
+            if predicate in LISTS_OF_SHAPES:
+                yield from shapes.items(value)
+            else:
+                yield value
 
 
 def _declared(graph: Graph, constraint: Node) -> Iterator[tuple[str, str]]:

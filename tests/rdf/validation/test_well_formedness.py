@@ -7,7 +7,12 @@ from rdflib import SH, Graph
 
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.positions import parse_with_positions
-from selfconf.rdf.validation.well_formedness import endless_lists, malformed_roles, shape_of_shapes
+from selfconf.rdf.validation.well_formedness import (
+    DEEPEST,
+    endless_lists,
+    malformed_roles,
+    shape_of_shapes,
+)
 from tests.lab import PREFIXES
 
 HEAD = PREFIXES.count("\n")
@@ -55,6 +60,7 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:node 'x'", 24, "sh:node"),
         ("sh:property [ sh:path :p ; sh:minCount 1 , 2 ]", 59, "A shape has one sh:minCount at most."),
         ("sh:property [ sh:path :p ; sh:pattern '(' ]", 54, "This is no regular expression"),
+        (r"sh:property [ sh:path :p ; sh:pattern '\\p{L}+' ]", 54, r"a letter of any language is [^\W\d_]."),
         ("sh:sparql [ sh:select 'SELECT' ]", 38, "This is not SPARQL"),
     ],
 )
@@ -68,6 +74,28 @@ def test_a_query_that_would_leave_this_machine_is_refused() -> None:
     query = "SELECT $this WHERE { SERVICE <http://example.org/> { $this a ?type } }"
     (only,) = malformed(f":r a sc:Role ; sh:sparql [ sh:select '{query}' ] .")
     assert only.code == "SC-T13"
+
+
+@pytest.mark.parametrize(
+    ("opened", "closed", "levels"),
+    [
+        ("sh:property [ sh:path :p ; ", " ]", 1),
+        ("sh:property [ sh:path :p ; sh:node [ ", " ] ]", 2),
+        ("sh:not [ ", " ]", 1),
+        ("sh:or ( [ ", " ] [ sh:class :A ] )", 1),
+    ],
+)
+def test_a_shape_that_nests_deeper_than_pyshacl_follows_is_told_also_where_only_values_lead_there(
+    opened: str, closed: str, levels: int
+) -> None:
+    most = (DEEPEST - 1) // levels
+    for times, wrong in ((most, False), (most + 1, True)):
+        found = malformed(f":r a sc:Role ; {opened * times}sh:class :A{closed * times} .")
+        assert [each.message for each in found] == ["The shape of this role nests shapes more than 15 deep."] * wrong
+
+
+def test_a_shape_that_comes_back_to_itself_is_not_taken_to_be_deep() -> None:
+    assert malformed(":r a sc:Role ; sh:property [ sh:path :p ; sh:node :r ] .") == []
 
 
 @pytest.mark.parametrize(
