@@ -44,22 +44,23 @@ class StampWriter:
 
 
 class StampReader:
-    """Reads the stamps of one source."""
+    """Reads the stamps of one source, on any thread."""
 
     def __init__(self) -> None:
-        self._beginning: bytes | None = None  # no stamp begins with nothing, but what is no stamp may
-        self._raw, self._said = False, Stamp(IRI.unchecked(""), "", 0, 0.0)
-        """What stamps with that beginning say, but for number and time."""
+        # No stamp begins with nothing, but what is no stamp may.
+        self._known: tuple[bytes | None, bool, Stamp] = None, False, Stamp(IRI.unchecked(""), "", 0, 0.0)
+        """The beginning of the stamp that was read last in full, and what stamps with it say, but for number and time;
+        in one, as another thread may read meanwhile."""
 
     def read(self, attachment: bytes) -> tuple[bool, Stamp]:
         """Whether a signal is bytes and not JSON, and its stamp. Raises PeerError for what is no stamp."""
         beginning, _, end = attachment.partition(b',"sequence":')
         last = _END.fullmatch(end)
-        if last is not None and beginning == self._beginning:
-            said = self._said
-            return self._raw, Stamp(said.component, said.life, int(last[1]), float(last[2]), said.encoding)
+        known, raw, said = self._known
+        if last is not None and beginning == known:
+            return raw, Stamp(said.component, said.life, int(last[1]), float(last[2]), said.encoding)
         raw = attachment.startswith(RAW)
         stamp = decode(attachment[len(RAW) :] if raw else attachment, Stamp)
         if last is not None:
-            self._beginning, self._raw, self._said = beginning, raw, stamp
+            self._known = beginning, raw, stamp
         return raw, stamp

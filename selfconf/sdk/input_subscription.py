@@ -8,7 +8,8 @@ many are kept as events may need (`signal_queue`); `sc:depth` of the input says 
 promised periods, and again as long as none comes.
 
 *Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it,
-and once more one that has stood by, unless that has just issued one: it may have nothing else to issue.
+and once more one that has stood by, unless that has just issued one, or that was lost with the life of its component
+and is in sight again: it may have nothing else to issue.
 """
 
 from __future__ import annotations
@@ -96,11 +97,13 @@ class InputSubscription:
         self._over = "", 0
         """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
         that is no sign that it issues, and ends no blindness."""
+        self._said_again = "", 0
+        """What the output has answered since it was lost, if anything: that counts also if it was delivered before."""
         self._doubted: tuple[str, int] | None = None
         """The last signal of a source that has let go of a task, until it has said whether it acts for another one, and
         while nothing newer has come."""
         self._queue = queue
-        self._stamps, self._stamps_on_arrival = StampReader(), StampReader()  # one for each thread
+        self._stamps = StampReader()
         self._heard_at = -JUST_COME
         """When the newest signal came, in seconds of the bus's clock."""
         self._understood_at = self._heard_at
@@ -186,7 +189,7 @@ class InputSubscription:
     def _stamp_of(self, sample: Sample) -> Stamp | None:
         """The stamp of a signal as it comes; None if that cannot be read."""
         try:
-            return self._stamps_on_arrival.read(sample.attachment)[1]
+            return self._stamps.read(sample.attachment)[1]
         except PeerError:
             return None
 
@@ -226,8 +229,10 @@ class InputSubscription:
 
     def _is_old(self, stamp: Stamp) -> bool:
         """Whether a signal is late, doubled, or a latched one that was issued again for another input."""
-        late = stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE
-        return late or (self.lost and _is_up_to(self._over, stamp))
+        if self.lost and _is_up_to(self._over, stamp):
+            return True
+        again = self.lost and (stamp.life, stamp.sequence) == self._said_again
+        return not again and stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE
 
     # What is noticed of the output, on the bus's thread.
 
@@ -250,16 +255,31 @@ class InputSubscription:
 
     def _latched(self, replies: Replies) -> None:
         for sample in () if self._ended else replies.samples:
+            stamp = self._stamp_of(sample)
+            if stamp is not None:
+                self._said_again = stamp.life, stamp.sequence
             if not self._queue:
                 self._received(sample)
 
     def _life_changed(self, key: str, alive: bool) -> None:
         if alive:
             self._lives.add(key)
+            self._ask_if_lost()
             return
         self._lives.discard(key)
         if not self._lives:
-            self._bus.later(0.0, partial(self._lose, self._heard_at))
+            self._bus.later(0.0, partial(self._end_life, self._heard_at))
+
+    def _end_life(self, heard: float) -> None:
+        """The output is lost, unless it has issued a signal after that time; its component may be in sight again."""
+        self._lose(heard)
+        if self._lives:
+            self._ask_if_lost()
+
+    def _ask_if_lost(self) -> None:
+        """Ask an output that is in sight again for its last signal; one that promises a rate issues the next anyway."""
+        if self.lost and self._wire.period is None:
+            self._ask_for_last(ASK_FOR_LAST)
 
     def _look_for_life(self, began: float) -> None:
         """An output that promises no rate is lost as well if nothing shows that its component lives, or is in reach."""
@@ -327,7 +347,7 @@ class InputSubscription:
 
     def _be_lost(self) -> None:
         if not self.lost and not self.muted:
-            self.lost = True
+            self.lost, self._said_again = True, ("", 0)
             self._report_lost(self._port)
 
     def _expect(self) -> None:

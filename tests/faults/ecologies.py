@@ -28,6 +28,8 @@ class FaultyEcology:
     """The processes in whose place another one may stand, but that tasks would rather have."""
     tasks: tuple[str, ...] = ("task-1", "task-2", "task-3")
     """The tasks there may be."""
+    latched: bool = False
+    """Whether outputs issue one signal as their components start, and nothing else for as long as they act."""
 
     @property
     def processes(self) -> tuple[str, ...]:
@@ -170,4 +172,46 @@ CROWDED = FaultyEcology(
 )
 """Five tasks that want the same few sensors and drives, in opposite order of their needs, and can share none."""
 
-ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED, CHOICE, CROWDED)}
+_CHART = 'a sc:Component, :Chart ; sc:hasOutput [ sc:name "map" ; sc:signalType :Map ]'
+_BEACON = 'a sc:Component, :Beacon ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ]'
+_PLANNER = (
+    'a sc:Component, :Planner ; sc:hasInput [ sc:name "map" ; sc:signalType :Map ] ,'
+    ' [ sc:name "pose" ; sc:signalType :Pose ] ; sc:hasOutput [ sc:name "path" ; sc:signalType :Path ] ;'
+    ' sc:hasParameter [ sc:name "mode" ; sc:parameterType :Mode ]'
+)
+_MOWER = 'a sc:Component, :Mower ; sc:hasInput [ sc:name "path" ; sc:signalType :Path ]'
+LATCHED = FaultyEcology(
+    "latched",
+    {
+        "house": ("chart", "second-chart", "beacon", "second-beacon", "wall"),
+        "garden": ("planner", "second-planner", "mower", "second-mower"),
+    },
+    {
+        "chart": f":chart {_CHART} .",
+        "second-chart": f":second-chart {_CHART} ; sc:preference -1 .",
+        "beacon": f":beacon {_BEACON} .",
+        "second-beacon": f":second-beacon {_BEACON} ; sc:preference -1 .",
+        "planner": f":planner {_PLANNER} .",
+        "second-planner": f":second-planner {_PLANNER} ; sc:preference -1 .",
+        "mower": f":mower {_MOWER} ; sc:tolerates [ sc:value 0.3 ; sc:unit unit:SEC ] .",
+        "second-mower": f":second-mower {_MOWER} ; sc:preference -1 ; sc:tolerates [ sc:value 4 ; sc:unit unit:SEC ] .",
+        "wall": ':wall a sc:Component, :Wall ; sc:hasInput [ sc:name "map" ; sc:signalType :Map ] .',
+    },
+    (),
+    f"""{PREFIXES}:mow a sc:Template ; sc:parameter :goal ; sc:roles ( :where :fix :way :blades ) .
+:goal a sc:Parameter ; sc:name "goal" ; sh:datatype xsd:string .
+:where a sc:Role ; sh:class :Chart ; sc:feeds :way .
+:fix a sc:Role ; sh:class :Beacon ; sc:feeds :way .
+:way a sc:Role ; sh:class :Planner ; sc:feeds :blades ; sc:sets [ sc:parameterType :Mode ; sc:value :goal ] .
+:blades a sc:Role ; sh:class :Mower .""",
+    f"""{PREFIXES}:show a sc:Template ; sc:parameter :goal ; sc:roles ( :where :wall ) .
+:goal a sc:Parameter ; sc:name "goal" ; sh:datatype xsd:string .
+:where a sc:Role ; sh:class :Chart ; sc:feeds :wall .
+:wall a sc:Role ; sh:class :Wall .""",
+    (("goal", "(AT {task})"),),
+    ("chart", "beacon"),
+    latched=True,
+)
+"""Two tasks share charts and beacons of which each has one thing to say, and can be replaced by another."""
+
+ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED, CHOICE, CROWDED, LATCHED)}

@@ -128,11 +128,11 @@ def nothing() -> int:
 
 
 class Speaker(Recorder):
-    """A component that issues signals while it acts, each so many seconds after the last."""
+    """A component that issues signals while it acts, each so many seconds after the last, or one as it starts."""
 
-    def __init__(self, period: float | None) -> None:
+    def __init__(self, period: float | None, at_once: bool = False) -> None:
         super().__init__()
-        self._period = period
+        self._period, self._at_once = period, at_once
         self.hushed = False
         """Whether it issues nothing, though it acts."""
         self.started_at = 0.0
@@ -143,6 +143,14 @@ class Speaker(Recorder):
         super().started()
         if self._period is not None:
             self.every(self._period, self._speak)
+        if self._at_once and not self.hushed:
+            self.say_last()
+
+    def say_last(self) -> None:
+        """Issue what nothing follows."""
+        runtime = self._runtime
+        for output in runtime.profile.signal_outputs if runtime is not None else ():
+            self.emit(output.name, f"the last of {runtime.life}")
 
     def _speak(self) -> None:
         runtime = self._runtime
@@ -263,10 +271,10 @@ class History:
                 self._begin_life(name)
 
     def _speak(self) -> None:
-        """Let every source that acts say something."""
-        for life in self.processes:
-            for output in life.runtime.profile.signal_outputs if life.awake and life.runtime.active else ():
-                life.recorder.emit(output.name, f"the last of {life.runtime.life}")
+        """Let every source that acts say something, unless it has said all as it was started."""
+        for life in () if self.script.ecology.latched else self.processes:
+            if life.awake and life.runtime.active:
+                life.recorder.say_last()
 
     def _ask_all(self) -> None:
         """Let every component that needs operations call them, but for those whose code is busy."""
@@ -367,7 +375,7 @@ class History:
     def _begin_life(self, name: str) -> Life:
         """Let a component live, on a node of its own; one that has to leave later leaves with its node."""
         node = self.network.node()
-        recorder = Speaker(self.script.period)
+        recorder = Speaker(self.script.period, self.script.ecology.latched)
 
         def hung(what: str, limit: float) -> None:
             runtime.hung(what, limit)
@@ -434,6 +442,9 @@ class History:
         life = self.life(action.who)
         if life is None or not life.awake:
             return False
+        if self.script.ecology.latched:
+            life.recorder.say_last()
+            return True
         for output in life.runtime.profile.signal_outputs:
             life.recorder.emit(output.name, self.network.time)
         return True

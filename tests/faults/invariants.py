@@ -51,6 +51,12 @@ def retries(history: History) -> float:
     return 20 * CALLS if history.script.faults.loss else 2 * CALLS
 
 
+def tolerated(history: History) -> float:
+    """How long an actuator may act on at most without what feeds it, in seconds."""
+    profiles = map(history.lab.profile, history.script.ecology.processes)
+    return max(TOLERATES, *(profile.tolerates or 0.0 for profile in profiles))
+
+
 def supervisors(history: History, life: Life) -> Iterator[TaskRunner]:
     """The living configurators that a component acts for."""
     held = life.holds
@@ -254,9 +260,9 @@ STEPS = (
     Invariant("each runs with its own", runs_with_anothers, lambda h: LOOKS + retries(h) + travel(h)),
     Invariant("held is known", held_for_nothing, lambda history: retries(history) + travel(history)),
     Invariant("nobody obeys two", obeys_two),
-    Invariant("no actuator acts on part", acts_on_part, lambda history: GRACE + LEASE + travel(history)),
-    Invariant("nobody heeds a stranger", heeds_a_stranger, lambda history: GRACE + LEASE + travel(history)),
-    Invariant("no actuator acts blind", acts_blind, lambda h: TOLERATES + LEASE + GRACE + travel(h) + 1.0),
+    Invariant("no actuator acts on part", acts_on_part, lambda h: max(GRACE, tolerated(h)) + LEASE + travel(h)),
+    Invariant("nobody heeds a stranger", heeds_a_stranger, lambda h: max(GRACE, tolerated(h)) + LEASE + travel(h)),
+    Invariant("no actuator acts blind", acts_blind, lambda h: tolerated(h) + LEASE + GRACE + travel(h) + 1.0),
     Invariant("who hangs has failed", hangs_unnoticed, lambda history: 0.05),
     Invariant("what waits is bounded", network_overflows),
 )
@@ -393,6 +399,16 @@ def unheard(history: History) -> Iterator[str]:
                     yield f"{life.name} has not heard the last of {source.name}"
 
 
+def rests_for_nothing(history: History) -> Iterator[str]:
+    """An actuator of a task that runs is on: something feeds it."""
+    for agent in history.living():
+        if agent.state.phase is Phase.RUNNING:
+            for life in awake(history):
+                rests = not life.runtime.profile.outputs and not is_on(life)
+                if rests and life.holds.get(agent.supervisor) and life.thread.busy_until <= history.network.time:
+                    yield f"{life.name} is at rest, and {agent.name} runs"
+
+
 def since_rest(life: Life) -> list[tuple[object, ...]]:
     """What a component was told since it was stopped last before it was started last."""
     said = life.recorder.said
@@ -410,5 +426,6 @@ ENDS = (
     Invariant("parameters come first", started_without_values),
     Invariant("the last signal is heard", unheard),
     Invariant("what is needed is answered", unanswered),
+    Invariant("nothing rests for nothing", rests_for_nothing),
 )
 """What must hold in the end."""

@@ -235,6 +235,8 @@ class Recipe:
     def script(self) -> Script:
         """The script that is made."""
         written = write(self.seed, ecology=self.ecology)
+        if self.ecology.latched:  # a signal that is lost on its way is not said again
+            written = replace(written, faults=replace(written.faults, loss=0.0))
         crowded = with_crowd(written) if self.ecology is CROWDED else written
         upgrading = with_upgrades(crowded) if self.upgrades else crowded
         return replace(with_busy_code(upgrading) if self.busy else upgrading, large=self.large)

@@ -26,7 +26,7 @@ from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.operations import Operations
 from selfconf.sdk.runtime import ComponentRuntime
-from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
+from tests.faults.ecologies import COMPOSED, LATCHED, PAPER, FaultyEcology
 from tests.faults.histories import History
 from tests.faults.script import PERIOD, Action, Script, TaskPlan
 from tests.faults.watch import ENDS, NOTED, STEPS
@@ -188,6 +188,11 @@ MUTATIONS = {
         ecology=COMPOSED,
     ),
     "what is needed is answered": Mutation({"selfconf.sdk.operations.Operations._ask": nothing}, ecology=COMPOSED),
+    "nothing rests for nothing": Mutation(
+        {"selfconf.sdk.input_subscription.InputSubscription._ask_if_lost": nothing},
+        (Action(2.0, "mute", "planner", "mower"), Action(3.0, "mend", "planner", "mower")),
+        ecology=LATCHED,
+    ),
     "an upgrade starves nobody": Mutation({f"{INPUTS}.follow": follows_new_sources_late}, BETTER, upgrades=True),
     "what is new delivers first": Mutation(
         {f"{INPUTS}._left_without": lambda self, inputs: {}},

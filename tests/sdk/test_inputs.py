@@ -154,6 +154,40 @@ def test_an_input_whose_source_was_never_in_reach_says_so_and_is_fed_when_it_is(
     assert stage.recorder.said[2:] == [("fed", "position"), ("position", 1)]
 
 
+@pytest.mark.parametrize("seconds", [0.0, 0.5])
+def test_an_input_hears_the_last_signal_again_of_a_source_that_was_out_of_sight_and_has_nothing_else_to_say(
+    seconds: float,
+) -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", "map")
+    stage.let_pass(0.1)
+    assert isinstance(tracker.bus, MemoryBus)
+    assert isinstance(stage.runtime.bus, MemoryBus)
+    for _ in range(2):
+        stage.recorder.said.clear()
+        stage.network.cut(stage.runtime.bus, tracker.bus)
+        stage.let_pass(seconds)
+        stage.network.reconnect(stage.runtime.bus, tracker.bus)
+        stage.let_pass(0.5)
+        assert stage.recorder.said == [("unfed", "position"), ("fed", "position"), ("position", "map")]
+
+
+def test_a_signal_that_is_doubled_while_its_source_is_out_of_sight_feeds_nothing() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", "map")
+    stage.let_pass(0.1)
+    doubled = dict(tracker.outputs._last)["pose"]
+    tracker.bus.close()
+    stage.let_pass(0.5)
+    stage.others.publisher(KEYS.output(TRACKER, "pose"), Urgency.SIGNAL).put(*doubled)
+    stage.let_pass(0.5)
+    assert stage.recorder.said[-1] == ("unfed", "position")
+
+
 def test_an_input_that_follows_two_outputs_is_fed_while_one_of_them_is_left() -> None:
     stage = Stage(Watchful())
     tracker = stage.neighbour()

@@ -1,0 +1,40 @@
+"""Histories of tasks whose sources have one thing to say, as they start, and say it to each input that follows them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.effort import NIGHTLY
+from tests.faults.ecologies import LATCHED
+from tests.faults.script import Recipe
+from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
+
+__all__ = ["folder"]
+LATCHING = HISTORIES // (10 if NIGHTLY else 15)
+"""So many histories more."""
+
+
+def recipe(seed: int) -> Recipe:
+    """The recipe of one of these histories: code is busy in some, and others are large."""
+    return Recipe(seed, LATCHED, busy=seed % 3 == 1, large=seed % 4 == 2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("batch", range(0, LATCHING, BATCH // 2))
+def test_no_history_of_what_has_one_thing_to_say_breaks_an_invariant(batch: int, folder: Path) -> None:
+    for seed in range(batch, batch + BATCH // 2):
+        play_well(recipe(seed), folder)
+
+
+BROKEN_ONCE = {
+    "what stood by acts already for another task": Recipe(316, LATCHED),
+    "an actuator loses sight of what feeds it for a moment": Recipe(823, LATCHED),
+    "what feeds an actuator is out of sight, and in sight again at once": Recipe(2094, LATCHED, busy=True),
+}
+
+
+@pytest.mark.parametrize("what", BROKEN_ONCE)
+def test_a_history_of_what_has_one_thing_to_say_that_was_broken_once_is_not_any_more(what: str, folder: Path) -> None:
+    play_well(BROKEN_ONCE[what], folder)
