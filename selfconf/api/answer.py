@@ -26,6 +26,7 @@ from selfconf.model.number import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Place, Profile
 from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.sharing import agreed
 from selfconf.model.template import Role
 from selfconf.model.term import IRI
 from selfconf.model.wording import plain
@@ -312,19 +313,15 @@ class Inquiry:
 
     def _composed(self, limit: TimeLimit) -> Optimum | Outcome:
         """What is found among the components that this task can have."""
-        while True:
-            found = composed(self.composer, self.ecology, frozenset(self.holders), None, limit)
-            configuration = found.configuration if isinstance(found, Optimum) else found
-            if not isinstance(configuration, Configuration):
-                return found
-            contested = {
-                component: self._sharers.pop(component)
-                for component in configuration.components
-                if component in self._sharers and self._sharers[component].disagrees(component, configuration)
-            }
-            if not contested:
-                return found
-            self.holders |= contested
+        held = frozenset(self.holders)
+        found, taken = agreed(
+            lambda left_out: composed(self.composer, self.ecology, held | left_out, None, limit),
+            self._sharers,
+            lambda one: one.configuration if isinstance(one, Optimum) else one,
+        )
+        self.holders |= taken
+        self._sharers = {component: one for component, one in self._sharers.items() if component not in taken}
+        return found
 
     def _held(self, usable: Collection[IRI], limit: TimeLimit) -> tuple[tuple[IRI, Holder], ...]:
         """The usable components of other tasks, if there would be a configuration with them."""

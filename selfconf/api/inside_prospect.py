@@ -15,6 +15,7 @@ from selfconf.deployment import RunRequest, ask_holders
 from selfconf.errors import SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.sharing import agreed
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, life_of
 from selfconf.protocol.messages import Cause
@@ -86,19 +87,15 @@ class InsideProspect:
     def _is_configurable(
         self, known: Mapping[IRI, Advertisement], lost: frozenset[IRI], held: Mapping[IRI, Holder]
     ) -> bool:
-        shared = {one for one in held if known[one].profile.is_shareable}
+        shared = {one: held[one] for one in held if known[one].profile.is_shareable}
         without = lost | (held.keys() - shared)
-        while True:
-            try:
-                outcome = self._request.compose(known, without, None)
-            except SelfconfError:
-                return False
-            if not isinstance(outcome, Configuration):
-                return False
-            contested = {one for one in shared.intersection(outcome.components) if held[one].disagrees(one, outcome)}
-            if not contested:
-                return True
-            shared, without = shared - contested, without | contested
+        try:
+            outcome, _ = agreed(
+                lambda left_out: self._request.compose(known, without | left_out, None), shared, lambda one: one
+            )
+        except SelfconfError:
+            return False
+        return isinstance(outcome, Configuration)
 
 
 def _spent(loss: Loss) -> frozenset[str]:

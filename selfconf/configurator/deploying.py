@@ -51,6 +51,9 @@ DEPLOYING = (Phase.RESERVING, Phase.DEPLOYING)
 MOST_ASKED = 40
 """How often a component is asked again that is to be taken from a task of lower priority, each time half a second
 later: one that obeys takes two seconds for that, and some more to come to rest."""
+MOST_ASKED_BEHIND, MOST_ASKED_AHEAD = 2, 4
+"""How often a component is asked again, each time half a second later, that acts for another task as well and that this
+one wants to follow something else: of two tasks that disagree, one waits longer than the other."""
 
 
 def then(effects: Iterable[Effect], following: Reaction) -> Reaction:
@@ -230,6 +233,24 @@ def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:
     )
 
 
+def may_agree(state: State, component: IRI, holder: Holder | None) -> bool:
+    """Whether it is of use to wait until another task wants the same of a component that acts for both.
+
+    A source that they have in common is lost to both. If they go on to disagree, one gives way before the other does.
+    For the sake of something better only one of lower priority is to change: it is asked to yield.
+    """
+    if holder is None or (state.fallback is not None and holder.priority >= state.priority):
+        return False
+    behind = (-holder.priority, holder.task) < (-state.priority, state.task)
+    return state.repeats.get(component, 0) <= (MOST_ASKED_BEHIND if behind else MOST_ASKED_AHEAD)
+
+
+def await_agreement(state: State, component: IRI) -> Reaction:
+    """Wait until a component that is shared may change; it tells, and is asked again if it does not."""
+    waiting = replace(state, pending=state.pending | {(component, Call.APPLY)})
+    return waiting, (AwaitRelease(component, state.epoch),)
+
+
 def await_release(state: State, component: IRI) -> Reaction:
     """Wait for a component that another task holds; it tells when it is free, and is asked again if it does not."""
     waiting = replace(state, pending=state.pending | {(component, Call.RESERVE)})
@@ -238,6 +259,8 @@ def await_release(state: State, component: IRI) -> Reaction:
 
 def ask_again(state: State, component: IRI) -> Reaction:
     """Ask once more for a component that is waited for."""
-    if (component, Call.RESERVE) not in state.pending:
-        return state, ()
-    return _reserve(state, component)
+    if (component, Call.RESERVE) in state.pending:
+        return _reserve(state, component)
+    if (component, Call.APPLY) in state.pending and component in state.repeats:
+        return apply_to(replace(state, pending=state.pending - {(component, Call.APPLY)}), (component,))
+    return state, ()

@@ -76,6 +76,8 @@ class Answered:
     detail: str = ""
     holder: Holder | None = None
     """The holder of the component, where that is another task."""
+    shared: bool = False
+    """Whether a component that is busy acts for this task as well, as it has before."""
     startable: bool = False
     """Whether the site of the component can start it again."""
 

@@ -17,12 +17,14 @@ it is asked again. Nor does it count before the lost components whose sites can 
 are woken as dormant ones are, and how often that is done in vain is limited by their sites.
 
 Other tasks. Components that a task of the same or a higher priority holds do not count for the search; one that can be
-shared does, until a configuration is found that wants something else of it than its holder. If the search fails for
-that reason, those of them that are eligible where candidates lack are named, and a patient task waits at each:
-whichever is free first may be what it takes, and those that wait for one are served in order only if they all wait
-there. A component that has obeyed a newer epoch of the task, by the clock of another configurator, does not remember
-one that waits in an older epoch: that one asks again in the newer. A task of higher priority that asks for a component
-of this one makes it let go: everything comes to rest, sinks first, and is configured again without that component.
+shared does, until a configuration is found that wants something else of it than its holder: first the search avoids
+the sources that it is not to follow, then the component itself. If the search fails for that reason, those of them that
+are eligible where candidates lack are named, and a patient task waits at each: whichever is free first may be what it
+takes, and those that wait for one are served in order only if they all wait there. A component that has obeyed a newer
+epoch of the task, by the clock of another configurator, does not remember one that waits in an older epoch: that one
+asks again in the newer. A task of higher priority that asks for a component of this one makes it let go: everything
+comes to rest, sinks first, and is configured again without that component. A component that acts for this task and for
+others follows something else once all of them ask for that; a task that asks waits a moment for the others.
 
 Changes for the better. What ran before is what is wanted again if such a change does not come about, whatever the
 policy: a component that was not part of it is only let go of when it is lost, or a task of higher priority asks for it.
@@ -40,6 +42,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
@@ -80,9 +83,12 @@ from selfconf.configurator.starting_order import parameter_values, resting_next,
 from selfconf.configurator.state import Held, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal
+from selfconf.model.sharing import Avoided, avoid
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 
+NOTHING: Avoided = MappingProxyType({})
+"""What is avoided by most searches."""
 OBEYED = (Verdict.DONE, Verdict.STALE, Verdict.OTHER_LIFE)
 """The answers to a release after which a component obeys no older call of this task."""
 PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
@@ -153,24 +159,36 @@ def _discovered(state: State, event: Discovered) -> Reaction:
     if state.phase is not Phase.DISCOVERING and not state.improving:
         return state, ()
     taken, sharers = (
-        {
-            component: holder
-            for component, holder in holders.items()
-            if holder.priority >= state.priority and component not in state.held and component not in state.free
-        }
+        {c: one for c, one in holders.items() if one.priority >= state.priority and c not in state.free}
         for holders in (event.holders, event.sharers)
     )
+    taken = {component: holder for component, holder in taken.items() if component not in state.held}
     lost = {component: loss for component, loss in state.lost.items() if not loss.busy}
     known = replace(state, taken=taken, sharers=sharers, lost=lost, free=frozenset(), improving=False)
     return _compose(known) if state.phase is Phase.DISCOVERING else _improve(known)
 
 
-def _compose(state: State, despite: bool = False) -> Reaction:
-    attempt = state.attempt + 1
+def _compose(state: State, despite: bool = False, avoided: Avoided = NOTHING) -> Reaction:
     running = state.target if state.policy is Policy.REPAIR else None
-    without = frozenset(state.lost) if despite else frozenset(state.lost) | frozenset(state.taken)
-    searching = replace(state, phase=Phase.COMPOSING, attempt=attempt, pending=frozenset(), despite=despite)
-    return searching, (Compose(attempt, without, running),)
+    searching = replace(state, phase=Phase.COMPOSING, pending=frozenset(), despite=despite)
+    return _search(searching, running, avoided)
+
+
+def _search(state: State, running: Configuration | None, avoided: Avoided) -> Reaction:
+    attempt = state.attempt + 1
+    without = state.lost.keys() if state.despite else state.lost.keys() | state.taken.keys() | avoided.keys()
+    return replace(state, attempt=attempt, avoided=avoided), (Compose(attempt, frozenset(without), running),)
+
+
+def _avoid(state: State, configuration: Configuration) -> tuple[State, Avoided]:
+    """What to leave out so that no other task wants something else of what it shares than a configuration does."""
+    taken, avoided = avoid(state.contested(configuration), configuration, state.avoided)
+    return replace(state, taken={**state.taken, **taken}), avoided
+
+
+def _avoided_in_vain(state: State) -> State:
+    """Count the shared components as taken without whose sources there is no configuration."""
+    return replace(state, taken={**state.taken, **{one: state.sharers[one] for one in state.avoided.values()}})
 
 
 def _composed(state: State, event: Composed) -> Reaction:
@@ -183,9 +201,12 @@ def _composed(state: State, event: Composed) -> Reaction:
     if state.despite:
         return _refuse(_coveted(state, event))
     if isinstance(event.outcome, Configuration):
-        if contested := state.contested(event.outcome):
-            return _compose(replace(state, taken={**state.taken, **contested}))
+        if state.contested(event.outcome):
+            fewer, avoided = _avoid(state, event.outcome)
+            return _compose(fewer, avoided=avoided)
         return deploying.deploy(replace(state, target=event.outcome, refusal=None, put_off=0))
+    if state.avoided:
+        return _compose(_avoided_in_vain(state))
     if any(loss.startable for loss in state.lost.values()):
         return _compose(replace(state, lost={c: loss for c, loss in state.lost.items() if not loss.startable}))
     if state.asks_again:
@@ -261,6 +282,11 @@ def _busy(state: State, event: Answered) -> Reaction:
     """Another task holds a component: wait for it, or do without it; nothing of this task follows it meanwhile."""
     if event.holder is not None and event.holder.task == state.task and not state.alone:
         return _stand_down(state)
+    if event.shared and event.call is Call.APPLY:
+        if deploying.may_agree(state, event.component, event.holder):
+            return deploying.await_agreement(state, event.component)
+        if state.fallback is not None and _is_needed(state, event.component):
+            return deploying.deploy(replace(state, target=state.fallback, fallback=None))
     apart, effects = disconnect(state, frozenset((event.component,)))
     if deploying.may_wait_for(apart, event.component, event.holder):
         if event.call is Call.RESERVE and not effects:
@@ -454,7 +480,7 @@ def _freed(state: State, component: IRI) -> Reaction:
     """A component is free, and kept for this task for a moment."""
     if state.phase is Phase.IDLE or state.ended:
         return state, (Decline(component, state.epoch),)
-    if state.phase is Phase.RESERVING and (component, Call.RESERVE) in state.pending:
+    if state.phase in DEPLOYING and {(component, Call.RESERVE), (component, Call.APPLY)} & state.pending:
         return deploying.ask_again(state, component)
     known, effects = _free(state, component)
     if effects or component in state.held:
@@ -502,23 +528,23 @@ def _look_for_better(state: State) -> Reaction:
     return replace(state, improving=True), (Discover(),)
 
 
-def _improve(state: State) -> Reaction:
+def _improve(state: State, avoided: Avoided = NOTHING) -> Reaction:
     """Search for what the strategy would rather have, while everything runs on."""
     if state.phase is not Phase.RUNNING:
         return state, ()
-    attempt = state.attempt + 1
-    without = frozenset(state.lost) | frozenset(state.taken)
-    return replace(state, attempt=attempt), (Compose(attempt, without, None),)
+    return _search(state, None, avoided)
 
 
 def _improved(state: State, event: Composed) -> Reaction:
     """Change to a configuration that the strategy prefers; the one that runs stays until the other delivers."""
     better = event.outcome
     assert state.target is not None
-    if not isinstance(better, Configuration) or better.assignments == state.target.assignments:
+    if not isinstance(better, Configuration):
+        return _improve(_avoided_in_vain(state)) if state.avoided else (state, ())
+    if better.assignments == state.target.assignments:
         return state, ()
-    if contested := state.contested(better):
-        return _improve(replace(state, taken={**state.taken, **contested}))
+    if state.contested(better):
+        return _improve(*_avoid(state, better))
     return deploying.deploy(replace(state, target=better, fallback=state.target))
 
 

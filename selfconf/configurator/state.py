@@ -12,6 +12,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.sharing import Avoided, contested_by
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause
 
@@ -122,6 +123,8 @@ class State:
     """
     sharers: Mapping[IRI, Holder] = field(default_factory=dict)
     """Such tasks that hold components which can be shared, with what they want of them, as of the last discovery."""
+    avoided: Avoided = field(default_factory=dict)
+    """What the search that goes on leaves out for the sake of others that share a component."""
     free: frozenset[IRI] = frozenset()
     """The components that have said that they are free since the ecology was last asked: they know it first."""
     queued: frozenset[IRI] = frozenset()
@@ -143,14 +146,18 @@ class State:
     """How many searches in a row have found nothing and did not count, because something had appeared meanwhile."""
 
     def contested(self, configuration: Configuration) -> dict[IRI, Holder]:
-        """The components of a configuration that others hold and would share, but want something else of."""
-        return {
-            component: self.sharers[component]
-            for component in configuration.components
-            if component in self.sharers
-            and component not in self.held
-            and self.sharers[component].disagrees(component, configuration)
-        }
+        """The components of a configuration that others hold and would share, but want something else of.
+
+        Of those that are held for this task already, others may be about to want the same: a source that is lost is
+        lost to all. But for the sake of something better no other task is to change.
+        """
+        others = {c: one for c, one in self.sharers.items() if c not in self.held or self.phase is Phase.RUNNING}
+        return contested_by(others, configuration)
+
+    @property
+    def left_to_others(self) -> bool:
+        """Whether the last search left something out for the sake of other tasks."""
+        return bool(self.taken or self.avoided)
 
     @property
     def ended(self) -> bool:

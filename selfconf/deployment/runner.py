@@ -249,7 +249,7 @@ class TaskRunner:
                 self._stand_by(self.state.target)
         if isinstance(event, Composed) and self.state.phase is Phase.RUNNING:
             self._search.prepare()  # what was found, or is held by others, may be other than before
-            if self.state.taken:
+            if self.state.left_to_others:
                 self._retries.look_whether_free()
         if self.state.phase is not before:
             self._changed_phase(before)

@@ -70,11 +70,26 @@ class Hold:
 
     claim: Reserve | Apply
     active: bool = False
+    wish: Reserve | Apply | None = None
+    """What the task wants instead, and another that shares the component does not, or not yet."""
 
     @property
     def wants(self) -> tuple[object, object]:
         """The inputs and the values of parameters, by which tasks that share a component must agree."""
         return self.claim.inputs, self.claim.values
+
+    @property
+    def wishes(self) -> tuple[object, object]:
+        """The inputs and the values of parameters that its task has asked for last."""
+        newest = self.wish or self.claim
+        return newest.inputs, newest.values
+
+    @property
+    def fulfilled(self) -> Hold:
+        """The hold of a task for which the component now does what the task wished."""
+        if self.wish is None:
+            return self
+        return Hold(replace(self.claim, inputs=self.wish.inputs, values=self.wish.values), self.active)
 
 
 @immutable
@@ -150,7 +165,7 @@ def obey(
         return _no_longer_waiting(after, call.task), Verdict.DONE, step
     if _blocked(activation, call, shareable, gone) or (isinstance(call, Reserve) and call.waits):
         after = activation if _follows_less(call) else _wait(activation, call)
-        return after, Verdict.BUSY, ActivationStep.NONE
+        return _wish(after, own, call), Verdict.BUSY, ActivationStep.NONE
     served = _no_longer_waiting(activation, call.task)
     if isinstance(call, Reserve):
         return _reserve(served, own, call), Verdict.DONE, ActivationStep.NONE
@@ -193,7 +208,7 @@ def _activate(activation: Activation, call: Apply, gone: frozenset[str]) -> Acti
     return replace(
         activation,
         phase=ActivationPhase.ACTIVE,
-        holds=(*(hold for hold in others if hold.claim.task not in left), Hold(call, True)),
+        holds=(*(hold.fulfilled for hold in others if hold.claim.task not in left), Hold(call, True)),
         ended=(*_ended(activation, call), *left.items())[-MOST_ENDED:],
         passed=frozenset(),
     )
@@ -207,7 +222,8 @@ def _reserve(activation: Activation, own: Hold | None, call: Reserve) -> Activat
     others = tuple(hold for hold in activation.holds if hold is not own)
     held = Hold(call)
     if own is not None and own.active and (activation.phase is ActivationPhase.ACTIVE or call.epoch == own.claim.epoch):
-        held = Hold(replace(own.claim, epoch=call.epoch, supervisor=call.supervisor), True)
+        wish = call if others and own.wants != (call.inputs, call.values) else None
+        held = Hold(replace(own.claim, epoch=call.epoch, supervisor=call.supervisor), True, wish)
     return replace(activation, holds=(*others, held), ended=_ended(activation, call), passed=frozenset())
 
 
@@ -217,7 +233,7 @@ def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gon
         return True
     others = [h for h in activation.holds if h.claim.task != call.task and h.claim.supervisor not in gone]
     return len(others) >= MOST_HOLDING or any(
-        not shareable or hold.wants != (call.inputs, call.values) for hold in others
+        not shareable or hold.wishes != (call.inputs, call.values) for hold in others
     )
 
 
@@ -231,6 +247,33 @@ def _wait(activation: Activation, call: Reserve | Apply) -> Activation:
     rest = [claim for claim in activation.waiting if claim.task != call.task]
     waiting = tuple(sorted([*rest, call], key=_rank)[:MOST_WAITING])
     return replace(activation, waiting=waiting, lapsed=activation.lapsed - {call.task})
+
+
+def _wish(activation: Activation, own: Hold | None, call: Reserve | Apply) -> Activation:
+    """Note what a task wants of a component that acts for it, but that it shares with one that disagrees.
+
+    Once all that share it wish the same, the one that asks last is served. A task for which it does not act holds it no
+    more: two that are to wait until the other changes would do so for ever.
+    """
+    if own is None:
+        return activation
+    others = tuple(hold for hold in activation.holds if hold is not own)
+    if own.active:
+        return replace(activation, holds=(*others, replace(own, wish=call)))
+    ended = (*_ended(activation, call), (call.task, own.claim.epoch))[-MOST_ENDED:]
+    return replace(activation, holds=others, ended=ended)
+
+
+def served(before: Activation, after: Activation) -> tuple[str, ...]:
+    """The tasks that share a component, and that may have by now what they wished: no other disagrees any more."""
+    wished = {hold.claim.task for hold in before.holds if hold.wish is not None}
+    return tuple(
+        hold.claim.task
+        for hold in after.holds
+        if hold.claim.task in wished
+        and hold.claim.epoch == before.epoch_of(hold.claim.task)  # else it has been served just now
+        and all(other.wishes == hold.wishes for other in after.holds)
+    )
 
 
 def _no_longer_waiting(activation: Activation, task: str) -> Activation:

@@ -384,6 +384,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (CallAnswer, "verdict"): _verdict,
     (CallAnswer, "active"): _truth,
     (CallAnswer, "stopping"): _truth,
+    (CallAnswer, "shared"): _truth,
     (Fail, "cause"): _cause,
     (Page, "index"): _whole,
     (Page, "total"): _whole,

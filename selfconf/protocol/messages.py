@@ -158,6 +158,8 @@ class CallAnswer:
     how many seconds the caller may wait for that."""
     stopping: bool = False
     """Whether the code of the component was asked to stop, and is not at rest yet: it may still act."""
+    shared: bool = False
+    """Whether a component that is busy acts for the task that calls as well, as it has before."""
 
 
 @immutable

@@ -362,7 +362,8 @@ class ComponentRuntime:
         `measured`: also how old the component is, what memory it takes, and how much it has issued. `by` is the hold
         that is in the way of a call.
         """
-        hold = by if verdict is Verdict.BUSY else self.activation.hold(task) or self.activation.first
+        own = self.activation.hold(task)
+        hold = by if verdict is Verdict.BUSY else own or self.activation.first
         claim: Claim = hold.claim if hold is not None else Claim(0, "")
         return CallAnswer(
             verdict,
@@ -384,6 +385,7 @@ class ComponentRuntime:
             callers=self.inputs.callers,
             patience=self.inputs.patience,
             stopping=self.code.stopping or self.inputs.ending,
+            shared=verdict is Verdict.BUSY and own is not None and own.active,
         )
 
     def _busy(self, message: Claim) -> CallAnswer:
@@ -438,7 +440,7 @@ class ComponentRuntime:
 
     def _become(self, activation: Activation, step: ActivationStep) -> None:
         """Take on an activation; the code stops if it says so, and is started by what called for it."""
-        self.activation = activation
+        served, self.activation = table.served(self.activation, activation), activation
         if step in (ActivationStep.STOP, ActivationStep.RESTART):
             self._stop()
         self.operations.callers_changed()
@@ -447,6 +449,8 @@ class ComponentRuntime:
             self.code.end_acting()  # again: another thread's FAIL may have been overtaken by a release and an apply
         self.supervision.watch({hold.claim.supervisor for hold in activation.holds})
         self._other_lives.follow(bool(activation.holds))
+        for task in served:
+            self._tell_waiting(task)
         if self._preemption is not None and not table.outranked(activation):
             self._preemption()
             self._preemption = None

@@ -167,6 +167,26 @@ def test_what_can_be_shared_is_free_for_those_that_want_the_same_of_it(
         assert str(answer.reasons[0]) == "no component that is free is eligible for the role screen"
 
 
+def test_what_can_be_shared_is_shared_as_its_holder_wants(
+    clock: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = Path("examples/clock/display.ttl").read_text()
+    shared = text.replace("rob:Display ;", "rob:Display ; sc:shareable true ;")
+    clocks = Path("examples/clock/clock.ttl").read_text()
+    ecology = sc.read(clocks, clocks.replace(":clock ", ":second-clock "), shared)
+    first = sc.configure(clock, ecology)
+    assert isinstance(first, Answer)
+    (screen,) = first["screen"]
+    second = first.wants(screen).inputs
+    other = frozenset(
+        (port, sc.IRI(source.replace("#clock", "#second-clock")), output) for port, source, output in second
+    )
+    monkeypatch.setattr(sc.Ecology, "holders", lambda _: {screen: Holder("watch~1", wants=Wants(other))})
+    answer = sc.configure(clock, ecology)
+    assert isinstance(answer, Answer)
+    assert answer.wants(screen).inputs == other != second
+
+
 def test_a_refusal_of_text_that_is_in_no_file_has_its_lines(clock: sc.TaskSpecification) -> None:
     ecology = sc.read(*(Path(f"examples/clock/{name}.ttl").read_text() for name in ("clock", "display")))
     refusal = sc.configure(clock.bind(room=":cellar"), ecology)

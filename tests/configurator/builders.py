@@ -83,10 +83,11 @@ class History:
         verdict: Verdict | None = Verdict.DONE,
         life: str = "1",
         holder: Holder | None = None,
+        shared: bool = False,
     ) -> list[Effect]:
         """A component answers the call that it is waited for."""
-        epoch = self.state.epoch
-        return self.hear(Answered(component, call, epoch, verdict, life if verdict else "", epoch, holder=holder))
+        epoch, life = self.state.epoch, life if verdict else ""
+        return self.hear(Answered(component, call, epoch, verdict, life, epoch, holder=holder, shared=shared))
 
     def busy(self, component: IRI, holder: Holder = OTHERS, call: Call = Call.RESERVE) -> list[Effect]:
         """A component answers that another task holds it."""

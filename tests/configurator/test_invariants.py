@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -72,17 +74,19 @@ ONE_OF_EACH: list[Event] = [
     HandedOver(),
     Discovered(),
     Discovered({TRACKER: HOLDERS[1], CONTROL: HOLDERS[5]}),
+    Discovered({}, {CONTROL: replace(HOLDERS[3], wants=navigation(ODOMETRY).wants(CONTROL))}),
     Composed(1, navigation()),
     Composed(1, REFUSAL),
     Composed(2, navigation(ODOMETRY)),
     Composed(0, navigation()),
     *(
-        Answered(component, call, epoch, verdict, "1", epoch + 1, holder=holder)
+        Answered(component, call, epoch, verdict, "1", epoch + 1, holder=holder, shared=shared)
         for component in (TRACKER, CONTROL, ODOMETRY)
         for call in Call
         for epoch in (1, 100, 101, 102, 103)
         for verdict in (*Verdict, None)
         for holder in ([None, *HOLDERS, SELF] if verdict is Verdict.BUSY else [None])
+        for shared in ((False, True) if holder is not None and call is Call.APPLY else (False,))
     ),
     *(Failed(component, life, cause) for component in EVERYBODY for life in ("", "1", "9") for cause in Cause),
     *(Freed(component) for component in EVERYBODY),
@@ -206,7 +210,7 @@ class Ledger:
                 assert epoch <= state.epoch
             case AwaitRelease(component, epoch):
                 assert epoch == state.epoch
-                assert (component, Call.RESERVE) in state.pending
+                assert {(component, Call.RESERVE), (component, Call.APPLY)} & state.pending
             case QueueFor(component, epoch):
                 assert (state.phase, state.patient, epoch) == (Phase.REFUSED, True, state.epoch)
                 assert component in state.queued - state.owed.keys()

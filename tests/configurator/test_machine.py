@@ -439,8 +439,11 @@ def test_what_can_be_shared_counts_as_long_as_all_want_the_same_of_it() -> None:
 def test_what_can_be_shared_is_taken_where_its_holder_wants_something_else_of_it() -> None:
     history = History(TASK)
     history.hear(Accepted(100), Discovered({}, sharers(navigation(ODOMETRY))))
-    assert history.composed(navigation()) == [Compose(2, frozenset({CONTROL}), None)]
-    assert history.composed(REFUSAL) == [Compose(3, frozenset(), None)]
+    assert history.composed(navigation()) == [Compose(2, frozenset({TRACKER}), None)], (
+        "at first without what it follows"
+    )
+    assert history.composed(REFUSAL) == [Compose(3, frozenset({CONTROL}), None)]
+    assert history.composed(REFUSAL) == [Compose(4, frozenset(), None)]
     held = ((CONTROL, sharers(navigation(ODOMETRY))[CONTROL]),)
     assert history.composed(navigation()) == [Finish(replace(REFUSAL, held=held))]
     assert not history.state.watched

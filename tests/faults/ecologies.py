@@ -30,6 +30,8 @@ class FaultyEcology:
     """The tasks there may be."""
     latched: bool = False
     """Whether outputs issue one signal as their components start, and nothing else for as long as they act."""
+    crowd: bool = False
+    """Whether most of its tasks begin at once, and each is of either template."""
 
     @property
     def processes(self) -> tuple[str, ...]:
@@ -169,6 +171,7 @@ CROWDED = FaultyEcology(
     (("goal", "(AT {task})"),),
     ("sensor0a", "sensor2a"),
     tuple(f"task-{number}" for number in range(1, 6)),
+    crowd=True,
 )
 """Five tasks that want the same few sensors and drives, in opposite order of their needs, and can share none."""
 
@@ -214,4 +217,39 @@ LATCHED = FaultyEcology(
 )
 """Two tasks share charts and beacons of which each has one thing to say, and can be replaced by another."""
 
-ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED, CHOICE, CROWDED, LATCHED)}
+_SHARED_ROLES = """
+:eye a sc:Role ; sh:class :Camera ; sc:feeds :position .
+:position a sc:Role ; sh:class :Tracker ; sc:feeds FED .
+"""
+_SINKS = {"drive": ("Drive", 2), "screen": ("Screen", 2)}
+SHARED = FaultyEcology(
+    "shared",
+    {
+        "living-room": ("camera-1", "camera-2", "tracker-1", "screen-1"),
+        "astrid": ("camera-3", "tracker-2", "drive-1", "drive-2", "screen-2"),
+    },
+    {f"camera-{number}": f":camera-{number} {_CAMERA}" for number in (1, 2, 3)}
+    | {
+        f"tracker-{number}": f":tracker-{number} a sc:Component, :Tracker ; sc:shareable true ;"
+        f' sc:preference {-number} ; sc:hasInput [ sc:name "image" ; sc:signalType :Image ] ;'
+        ' sc:hasOutput [ sc:name "track" ; sc:signalType :Pose ] .'
+        for number in (1, 2)
+    }
+    | {
+        f"{name}-{number}": f":{name}-{number} a sc:Component, :{kind} ;"
+        ' sc:hasInput [ sc:name "pose" ; sc:signalType :Pose ] .'
+        for name, (kind, count) in _SINKS.items()
+        for number in range(1, count + 1)
+    },
+    (),
+    f"{PREFIXES}:go a sc:Template ; sc:roles ( :eye :position :motor ) .{_SHARED_ROLES.replace('FED', ':motor')}"
+    ":motor a sc:Role ; sh:class :Drive .",
+    f"{PREFIXES}:show a sc:Template ; sc:roles ( :eye :position :wall ) .{_SHARED_ROLES.replace('FED', ':wall')}"
+    ":wall a sc:Role ; sh:class :Screen .",
+    preferred=("camera-1", "tracker-1"),
+    tasks=tuple(f"task-{number}" for number in range(1, 5)),
+    crowd=True,
+)
+"""Four tasks that share cameras, and trackers as long as they want the same camera, and lose these while they do."""
+
+ECOLOGIES = {one.name: one for one in (PAPER, COMPOSED, CHOICE, CROWDED, LATCHED, SHARED)}

@@ -9,16 +9,19 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain, combinations
 
 from selfconf.bus.memory import LEASE
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
+from selfconf.deployment.components.calls import RELEASE_AGAIN
 from selfconf.model.configuration import Configuration
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
+from selfconf.rdf.advertisements import Advertisement
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.supervision import GRACE
 from tests.faults.histories import ASKED, History, Life, looked_up_once
@@ -29,6 +32,9 @@ MOST_WAITING = 2_000
 """How many messages and timers may wait in the network."""
 LOOKS = 10.0
 """Seconds within which a configurator notices that a component does not act any more without having said so."""
+
+MOST_LEFT_OUT = 4
+"""How many components that can be shared are left out at most, less one, where a configuration is looked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +61,12 @@ def tolerated(history: History) -> float:
     """How long an actuator may act on at most without what feeds it, in seconds."""
     profiles = map(history.lab.profile, history.script.ecology.processes)
     return max(TOLERATES, *(profile.tolerates or 0.0 for profile in profiles))
+
+
+def heeded(history: History) -> float:
+    """How long an actuator may follow what acts for others, in seconds: its release may be lost twice."""
+    lost_twice = 2 * RELEASE_AGAIN if history.script.faults.loss else 0.0
+    return max(GRACE, tolerated(history)) + LEASE + travel(history) + lost_twice
 
 
 def supervisors(history: History, life: Life) -> Iterator[TaskRunner]:
@@ -261,7 +273,7 @@ STEPS = (
     Invariant("held is known", held_for_nothing, lambda history: retries(history) + travel(history)),
     Invariant("nobody obeys two", obeys_two),
     Invariant("no actuator acts on part", acts_on_part, lambda h: max(GRACE, tolerated(h)) + LEASE + travel(h)),
-    Invariant("nobody heeds a stranger", heeds_a_stranger, lambda h: max(GRACE, tolerated(h)) + LEASE + travel(h)),
+    Invariant("nobody heeds a stranger", heeds_a_stranger, heeded),
     Invariant("no actuator acts blind", acts_blind, lambda h: tolerated(h) + LEASE + GRACE + travel(h) + 1.0),
     Invariant("who hangs has failed", hangs_unnoticed, lambda history: 0.05),
     Invariant("what waits is bounded", network_overflows),
@@ -293,12 +305,39 @@ def refused_in_vain(history: History) -> Iterator[str]:
             if life.node.open and not life.runtime.profile.is_shareable and hold.claim.priority >= agent.state.priority
         }
         broken = {c for c, loss in agent.state.lost.items() if not loss.busy and loss.cause is not Cause.CRASH}
-        outcome = agent.request.compose(found, frozenset(taken | broken), None)
-        if not isinstance(outcome, Refusal):
+        for outcome in agreeing(history, agent, found, frozenset(taken | broken)):
             yield f"{agent.name} waits, although it could run with {[c.short for c in outcome.components]}"
         for component, loss in agent.state.lost.items():
             if component in alive and loss.cause is Cause.CRASH:
                 yield f"{agent.name} thinks that {component.short} is dead"
+
+
+def agreeing(
+    history: History, agent: TaskRunner, found: Mapping[IRI, Advertisement], without: frozenset[IRI]
+) -> Iterator[Configuration]:
+    """A configuration that wants what others want of those components that they share, if there is one.
+
+    Every choice of some that can be shared is tried.
+    """
+    outcome = agent.request.compose(found, without, None)
+    if isinstance(outcome, Refusal):
+        return
+    shareable = sorted(c for c, a in found.items() if a.profile.is_shareable and c not in without)
+    for left_out in chain.from_iterable(combinations(shareable, count) for count in range(MOST_LEFT_OUT)):
+        outcome = agent.request.compose(found, without.union(left_out), None)
+        if isinstance(outcome, Configuration) and not disagreeing(history, agent, outcome):
+            yield outcome
+            return
+
+
+def disagreeing(history: History, agent: TaskRunner, plan: Configuration) -> list[IRI]:
+    """The components of a configuration that tasks of the same or a higher priority have and want other things of."""
+    others = [
+        other.configuration
+        for other in history.living()
+        if other is not agent and other.state.priority >= agent.state.priority and other.configuration is not None
+    ]
+    return [c for c in plan.components for o in others if c in o.components and o.wants(c) != plan.wants(c)]
 
 
 def acts_otherwise(history: History) -> Iterator[str]:

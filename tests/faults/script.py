@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from selfconf.bus.memory import Faults
-from tests.faults.ecologies import CROWDED, PAPER, FaultyEcology
+from tests.faults.ecologies import PAPER, FaultyEcology
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,6 +237,6 @@ class Recipe:
         written = write(self.seed, ecology=self.ecology)
         if self.ecology.latched:  # a signal that is lost on its way is not said again
             written = replace(written, faults=replace(written.faults, loss=0.0))
-        crowded = with_crowd(written) if self.ecology is CROWDED else written
+        crowded = with_crowd(written) if self.ecology.crowd else written
         upgrading = with_upgrades(crowded) if self.upgrades else crowded
         return replace(with_busy_code(upgrading) if self.busy else upgrading, large=self.large)

@@ -19,7 +19,7 @@ from selfconf.protocol.messages import Cause
 from selfconf.sdk.input_subscription import JUST_COME
 from selfconf.sdk.inputs import HANDOVER, Inputs
 from tests.faults.histories import History, Life
-from tests.faults.invariants import Invariant, acting, awake, feeds, node_of
+from tests.faults.invariants import Invariant, acting, awake, disagreeing, feeds, node_of
 
 STAYS, GOES_ON = "a failed upgrade leaves what ran", "what runs on does not stop"
 DELIVERS = "what is new delivers first"
@@ -102,7 +102,9 @@ def worse_than_need_be(history: History) -> Iterator[str]:
         broken = {component for component, loss in state.lost.items() if loss.cause is not Cause.CRASH}
         better = agent.request.compose(found, frozenset(taken | broken), None)
         assert state.target is not None
-        if isinstance(better, Configuration) and better.assignments != state.target.assignments:
+        if not isinstance(better, Configuration) or disagreeing(history, agent, better):
+            continue
+        if better.assignments != state.target.assignments:
             rather = sorted(one.short for one in {*better.components} - {*state.target.components})
             yield f"{agent.name} runs without {rather}"
 

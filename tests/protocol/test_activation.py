@@ -25,6 +25,7 @@ from selfconf.protocol.activation import (
     offer,
     orphan,
     outranked,
+    served,
     withdraw,
 )
 from selfconf.protocol.messages import Apply, Release, Reserve, Verdict, Wire
@@ -35,6 +36,7 @@ A, B, C = "a~1", "b~1", "c~1"
 """Three tasks."""
 INPUTS = {"position": (Wire(IRI("urn:c:tracker"), "pose"),)}
 OTHER = {"position": (Wire(IRI("urn:c:odometry"), "pose"),)}
+THIRD = {"position": (Wire(IRI("urn:c:compass"), "pose"),)}
 GOAL: Mapping[str, Term] = {"goal": Literal("x")}
 
 TABLE = [
@@ -455,8 +457,87 @@ def test_a_task_outranks_those_that_share_a_component_with_it_and_want_what_it_w
 def test_no_task_yields_to_one_that_follows_nothing_for_now() -> None:
     """What fed the component that they share was lost, and they may all want the same in its place."""
     shared, _, _ = obey(activation_in(ACTIVE), call_of(Apply, B, priority=1), shareable=True)
-    after, verdict, _ = obey(shared, call_of(Apply, B, 6, priority=1, inputs={"position": ()}), shareable=True)
-    assert (verdict, after) == (Verdict.BUSY, shared)
+    call = call_of(Apply, B, 6, priority=1, inputs={"position": ()})
+    after, verdict, _ = obey(shared, call, shareable=True)
+    assert (verdict, outranked(after), waiting_for(after)) == (Verdict.BUSY, (), [])
+
+
+def shared_by(*tasks: str, inputs: object = INPUTS) -> Activation:
+    """A component that acts for several tasks, which want the same of it."""
+    activation = Activation()
+    for task in tasks:
+        activation, verdict, _ = obey(activation, call_of(Apply, task, inputs=inputs), shareable=True)
+        assert verdict is Verdict.DONE
+    return activation
+
+
+def inputs_of(activation: Activation) -> dict[str, object]:
+    """What each task has a component follow."""
+    return {hold.claim.task: hold.wants[0] for hold in activation.holds}
+
+
+def test_a_component_that_is_shared_follows_something_else_once_all_ask_for_that() -> None:
+    shared = shared_by(A, B, C)
+    for task in (A, B):
+        after, verdict, _ = obey(shared, call_of(Apply, task, 6, inputs=OTHER), shareable=True)
+        assert (verdict, served(shared, after)) == (Verdict.BUSY, ())
+        assert inputs_of(after) == inputs_of(shared), "it acts as all have wanted"
+        shared = after
+    after, verdict, step = obey(shared, call_of(Apply, C, 6, inputs=OTHER), shareable=True)
+    assert (verdict, step) == (Verdict.DONE, ActivationStep.NONE)
+    assert inputs_of(after) == dict.fromkeys((A, B, C), OTHER)
+    assert served(shared, after) == (A, B), "these are told, and ask once more"
+    for task in (A, B):
+        after, verdict, step = obey(after, call_of(Apply, task, 6, inputs=OTHER), shareable=True)
+        assert (verdict, step) == (Verdict.DONE, ActivationStep.NONE)
+
+
+def test_a_component_that_is_shared_is_cut_off_once_all_ask_for_that() -> None:
+    nothing = {"position": ()}
+    shared, _, _ = obey(shared_by(A, B), call_of(Apply, A, 6, inputs=nothing), shareable=True)
+    after, verdict, _ = obey(shared, call_of(Apply, B, 6, inputs=nothing), shareable=True)
+    assert (verdict, inputs_of(after)) == (Verdict.DONE, dict.fromkeys((A, B), nothing))
+
+
+@pytest.mark.parametrize("ends", ["release", "orphan"])
+def test_a_task_is_told_when_nobody_disagrees_any_more_with_what_it_wishes(ends: str) -> None:
+    shared, _, _ = obey(shared_by(A, B), call_of(Apply, A, 6, inputs=OTHER), shareable=True)
+    if ends == "release":
+        after, _, _ = obey(shared, call_of(Release, B, 6), shareable=True)
+    else:
+        after, _ = orphan(shared, supervisor(B))
+    assert (served(shared, after), inputs_of(after)) == ((A,), {A: INPUTS})
+    after, verdict, _ = obey(after, call_of(Apply, A, 6, inputs=OTHER), shareable=True)
+    assert (verdict, inputs_of(after)) == (Verdict.DONE, {A: OTHER})
+
+
+def test_a_task_that_wants_again_what_it_has_wishes_nothing_any_more() -> None:
+    shared, _, _ = obey(shared_by(A, B), call_of(Apply, A, 6, inputs=OTHER), shareable=True)
+    shared, verdict, _ = obey(shared, call_of(Apply, A, 7, inputs=INPUTS), shareable=True)
+    assert verdict is Verdict.DONE
+    after, verdict, _ = obey(shared, call_of(Apply, B, 6, inputs=OTHER), shareable=True)
+    assert (verdict, inputs_of(after)) == (Verdict.BUSY, dict.fromkeys((A, B), INPUTS))
+
+
+def test_a_task_that_only_reserves_a_component_gives_that_up_for_another_wish() -> None:
+    """Else two that share it, and for neither of which it acts, would wait for each other for ever."""
+    reserved = Activation()
+    for task in (A, B):
+        reserved, _, _ = obey(reserved, call_of(Reserve, task, inputs=INPUTS), shareable=True)
+    after, verdict, _ = obey(reserved, call_of(Reserve, A, 6, inputs=OTHER), shareable=True)
+    assert (verdict, waiting_for(after)) == (Verdict.BUSY, [A])
+    assert after.hold(A) is None
+    after, verdict, _ = obey(after, call_of(Reserve, B, 6, inputs=THIRD), shareable=True)
+    assert verdict is Verdict.DONE
+    assert obey(after, call_of(Reserve, A, 4, inputs=INPUTS), shareable=True)[1] is Verdict.STALE
+
+
+def test_a_task_that_reserves_what_acts_for_it_wishes_what_it_will_apply() -> None:
+    shared, _, _ = obey(shared_by(A, B), call_of(Apply, A, 6, inputs=OTHER), shareable=True)
+    shared, verdict, _ = obey(shared, call_of(Reserve, B, 6, inputs=OTHER), shareable=True)
+    assert (verdict, inputs_of(shared)) == (Verdict.DONE, dict.fromkeys((A, B), INPUTS))
+    after, verdict, _ = obey(shared, call_of(Apply, A, 6, inputs=OTHER), shareable=True)
+    assert (verdict, inputs_of(after)) == (Verdict.DONE, dict.fromkeys((A, B), OTHER))
 
 
 def test_another_configurator_of_a_task_is_in_the_way_of_it_and_one_that_is_gone_is_not() -> None:

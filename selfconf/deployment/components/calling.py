@@ -204,8 +204,8 @@ class Calling:
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
-        newest, epoch = answer.epoch, message.epoch
-        self._step(Answered(component, call, epoch, answer.verdict, answer.life, newest, answer.detail, holder))
+        newest, epoch, verdict = answer.epoch, message.epoch, answer.verdict
+        self._step(Answered(component, call, epoch, verdict, answer.life, newest, answer.detail, holder, answer.shared))
 
     def _outlived(self, component: IRI, life: str, answer: CallAnswer) -> None:
         """Believe that a life has ended, as all were asked, and only another one has answered.

@@ -66,6 +66,8 @@ GONE = 2.5
 """Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
 HELD_BACK = 0.3
 """Seconds for which a component that was adopted waits at most for a composite to say what stands behind it."""
+RELEASE_AGAIN = 2.5
+"""Seconds after which a component that lives and has not obeyed its release is called again: it may act until then."""
 RESERVE_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
 
@@ -234,7 +236,7 @@ class Calls:
             if not never_acted:
                 self._release_unseen(effect, message)
             return
-        self.bus.later(2 * CALL, partial(self._release_again, effect))
+        self.bus.later(RELEASE_AGAIN, partial(self._release_again, effect))
         self._calling.call(component, Call.RELEASE, message, partial(self._end, component, message))
 
     def _release_unseen(self, effect: ReleaseFrom, message: Release) -> None:

@@ -1,0 +1,76 @@
+"""What a search leaves out, so that no other task wants something else of the components that it shares.
+
+A component that other tasks hold and would share counts for a search until a configuration is found that wants
+something else of it than its holder. Then the search is made again without the sources that it is not to follow, and
+if there is no configuration without these, without the component itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+from selfconf.model.configuration import Configuration
+from selfconf.model.holder import Holder
+from selfconf.model.refusal import Refusal
+from selfconf.model.term import IRI
+
+Avoided = Mapping[IRI, IRI]
+"""The sources that a search leaves out, each with the shared component that is not to follow it."""
+MOST_AVOIDED = 10
+"""How many sources a search avoids before it does without the components that would follow them."""
+Found = TypeVar("Found")
+
+
+def avoid(
+    contested: Mapping[IRI, Holder], configuration: Configuration, avoided: Avoided
+) -> tuple[dict[IRI, Holder], dict[IRI, IRI]]:
+    """The components to count as taken, and the sources to avoid, after a configuration that others contest.
+
+    `contested` are the components of which their holders want something else, `avoided` what was avoided for it. A
+    component is taken where there is nothing more to avoid for it.
+    """
+    taken, more = {}, dict(avoided)
+    for component, holder in contested.items():
+        wanted = {source for _, source, _ in holder.wants.inputs}
+        sources = {source for _, source, _ in configuration.wants(component).inputs} - wanted
+        if sources and len(more) < MOST_AVOIDED:
+            more.update(dict.fromkeys(sorted(sources), component))
+        else:
+            taken[component] = holder
+    return taken, more
+
+
+def agreed(
+    search: Callable[[frozenset[IRI]], Found],
+    sharers: Mapping[IRI, Holder],
+    configuration_of: Callable[[Found], object],
+) -> tuple[Found, dict[IRI, Holder]]:
+    """What a search finds that no sharer contests, and the sharers' components that are taken for it.
+
+    `search` is given what to leave out, and `configuration_of` tells the outcome of what it found.
+    """
+    taken: dict[IRI, Holder] = {}
+    avoided: Avoided = {}
+    while True:
+        found = search(frozenset((*taken, *avoided)))
+        outcome = configuration_of(found)
+        if isinstance(outcome, Refusal) and avoided:
+            taken |= {component: sharers[component] for component in avoided.values()}
+            avoided = {}
+            continue
+        free = {component: holder for component, holder in sharers.items() if component not in taken}
+        contested = contested_by(free, outcome) if isinstance(outcome, Configuration) else {}
+        if not isinstance(outcome, Configuration) or not contested:
+            return found, taken
+        more, avoided = avoid(contested, outcome, avoided)
+        taken |= more
+
+
+def contested_by(sharers: Mapping[IRI, Holder], configuration: Configuration) -> dict[IRI, Holder]:
+    """The components of a configuration that others hold and would share, but want something else of."""
+    return {
+        component: sharers[component]
+        for component in configuration.components
+        if component in sharers and sharers[component].disagrees(component, configuration)
+    }

@@ -1,0 +1,41 @@
+"""Histories of four tasks that share cameras and trackers, and lose what these follow while they do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.effort import NIGHTLY
+from tests.faults.ecologies import SHARED
+from tests.faults.script import Recipe
+from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
+
+__all__ = ["folder"]
+SHARING = HISTORIES // (10 if NIGHTLY else 30)
+"""So many histories more."""
+
+
+def recipe(seed: int) -> Recipe:
+    """The recipe of one of these histories: code is busy in some, others are large, and in some tasks change."""
+    return Recipe(seed, SHARED, busy=seed % 5 == 1, large=seed % 3 == 2, upgrades=seed % 7 == 0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("batch", range(0, SHARING, BATCH // 2))
+def test_no_history_of_tasks_that_share_breaks_an_invariant(batch: int, folder: Path) -> None:
+    for seed in range(batch, batch + BATCH // 2):
+        play_well(recipe(seed), folder)
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(33, id="two that share a tracker want another camera before it acts for either"),
+        pytest.param(98, id="a tracker can be shared if it follows the camera that is not preferred"),
+        pytest.param(182, id="a change for the better wants something else of what others share"),
+        pytest.param(474, id="a tracker can be shared if it follows the last of several cameras"),
+    ],
+)
+def test_a_history_of_tasks_that_share_that_was_broken_once_is_not_any_more(seed: int, folder: Path) -> None:
+    play_well(recipe(seed), folder)
