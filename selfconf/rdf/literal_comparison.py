@@ -35,6 +35,9 @@ _compare: Callable[[rdflib.Literal, rdflib.Literal], int] = compare_literal
 _VALUE_SPACES: tuple[tuple[type, ...], ...] = ((int, float, Decimal), (str,), (datetime,), (timedelta, Duration))
 """The Python classes of values that have an order whatever their datatypes are."""
 
+_MARKUP = frozenset((rdflib.RDF.XMLLiteral, rdflib.RDF.HTML))
+"""The datatypes whose values are documents, which have no order; rdflib fails where it is asked whether two are equal."""
+
 
 def _value_space(literal: rdflib.Literal) -> object:
     """What literals with an order have in common: their language, or the classes of their values, or their datatype."""
@@ -46,7 +49,7 @@ def _value_space(literal: rdflib.Literal) -> object:
 
 def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
     """How two literals compare: negative, zero or positive. Raises one of UNORDERED where they have no order."""
-    if _value_space(one) != _value_space(other):
+    if _MARKUP & {one.datatype, other.datatype} or _value_space(one) != _value_space(other):
         raise TypeError("the two have no order")
     if one.value != one.value or other.value != other.value:
         raise TypeError("NaN is neither less nor greater than any number")

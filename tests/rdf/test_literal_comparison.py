@@ -92,6 +92,8 @@ def test_one_number_in_two_forms_is_equal() -> None:
         (NAN, typed("1", "integer")),
         (typed("1", "float"), NAN),
         (NAN, NAN),
+        *product([Literal("<a/>", RDF.XMLLiteral), Literal("<a/>", RDF.HTML)], repeat=2),
+        (Literal("<a/>", RDF.XMLLiteral), Literal("<b/>")),
     ],
 )
 def test_what_has_no_order_is_told_so_and_raises_nothing(value: Term, limit: Term) -> None:
