@@ -85,7 +85,7 @@ def test_no_actuator_acts_for_long_on_a_part_and_all_start_again_when_it_is_whol
     assert [(effect.component, effect.inputs, effect.rests) for effect in rests] == [(DRIVE, {"velocity": ()}, True)]
     history.answer(ODOMETRY, Call.WAKE)
     history.all_answer(Call.WAKE, Call.RESERVE)
-    assert DRIVE not in applied(history.answer(ODOMETRY, Call.APPLY)), "actuators come last"
+    assert applied(history.answer(ODOMETRY, Call.APPLY)) == [CONTROL], "actuators come last, also one that it feeds"
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
     assert history.state.held[DRIVE].inputs == wiring(navigation(ODOMETRY))[DRIVE]
