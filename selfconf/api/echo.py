@@ -30,7 +30,7 @@ class HeardSignal(NamedTuple):
 
     stamp: Stamp
     rate: float
-    """Signals a second, as they came during the last seconds; zero for the first."""
+    """Signals a second, as they came during the last seconds; zero for the first two."""
     size: int
     """The bytes of its payload."""
     raw: bool
@@ -108,10 +108,11 @@ def echo(
             missed = taken - heard - len(arrived)
             moment, sample = arrived.popleft()
             heard += missed + 1
-            moments.append(moment)
-            while moment - moments[0] > RATE_OVER:
+            if heard > 1:  # the first may be an old one, which is issued anew
+                moments.append(moment)
+            while moments and moment - moments[0] > RATE_OVER:
                 moments.popleft()
-            span = moments[-1] - moments[0]
+            span = moments[-1] - moments[0] if moments else 0.0
             rate = (len(moments) - 1) / span if span else 0.0
             try:
                 yield heard_signal(stamps, sample, rate, missed)

@@ -36,7 +36,7 @@ _VALUE_SPACES: tuple[tuple[type, ...], ...] = ((int, float, Decimal), (str,), (d
 """The Python classes of values that have an order whatever their datatypes are."""
 
 _MARKUP = frozenset((rdflib.RDF.XMLLiteral, rdflib.RDF.HTML))
-"""The datatypes whose values are documents, which have no order; rdflib fails where it is asked whether two are equal."""
+"""The datatypes whose values are documents, which have no order; rdflib fails to tell whether two are equal."""
 
 
 def _value_space(literal: rdflib.Literal) -> object:

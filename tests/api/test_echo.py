@@ -59,6 +59,13 @@ def test_signals_come_with_value_stamp_and_rate() -> None:
     }
 
 
+def test_an_old_signal_that_comes_first_counts_for_no_rate() -> None:
+    stage = Stage()
+    for moment in (0.0, 0.9, 1.9, 2.9):  # the first was issued before, and is issued anew for a new follower
+        stage.later(moment, b"{}")
+    assert [round(one.rate, 3) for one in itertools.islice(stage.heard, 4)] == [0.0, 0.0, 1.0, 1.0]
+
+
 def test_bytes_and_arrays_are_described() -> None:
     stage = Stage()
     encoding = SignalEncoding("image/x-raw", "uint8", (2, 3))
