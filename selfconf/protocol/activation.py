@@ -166,7 +166,7 @@ def obey(
     if _blocked(activation, call, shareable, gone) or (isinstance(call, Reserve) and call.waits):
         after = activation if _follows_less(call) else _wait(activation, call)
         return _wish(after, own, call), Verdict.BUSY, ActivationStep.NONE
-    served = _no_longer_waiting(activation, call.task)
+    served = replace(_no_longer_waiting(activation, call.task), kept_for="")
     if isinstance(call, Reserve):
         return _reserve(served, own, call), Verdict.DONE, ActivationStep.NONE
     if own is None and actuator:
@@ -255,7 +255,7 @@ def _wish(activation: Activation, own: Hold | None, call: Reserve | Apply) -> Ac
     Once all that share it wish the same, the one that asks last is served. A task for which it does not act holds it no
     more: two that are to wait until the other changes would do so for ever.
     """
-    if own is None:
+    if own is None or (isinstance(call, Reserve) and call.waits):
         return activation
     others = tuple(hold for hold in activation.holds if hold is not own)
     if own.active:

@@ -560,6 +560,16 @@ def test_nobody_is_asked_to_yield_for_a_task_that_did_not_come_until_it_asks_aga
     assert claim is not None  # it waits on
 
 
+def test_a_component_is_kept_for_no_task_once_another_that_ranks_before_it_has_it() -> None:
+    offered, _, _ = obey(activation_in(IDLE), call_of(Reserve, B))
+    offered, _, _ = obey(offered, call_of(Release, A))
+    offered, claim = offer(offered)
+    assert claim is not None
+    held, verdict, _ = obey(offered, call_of(Reserve, C, priority=1))
+    assert (verdict, held.kept_for) == (Verdict.DONE, "")
+    assert withdraw(held, B).lapsed == frozenset(), "it has not been slow to come"
+
+
 # Histories.
 
 GONE = {supervisor(task, run): False for task in (A, B, C) for run in (1, 2)}
@@ -634,7 +644,11 @@ def _check_call(
     assert verdict is not Verdict.NOT_HELD or (actuator and isinstance(call, Apply))
     assert verdict is not Verdict.REFUSED or (isinstance(call, Apply) and before.phase is FAILED)
     if verdict is Verdict.BUSY:
-        assert (after.phase, after.holds) == (before.phase, before.holds)
+        assert after.phase is before.phase
+        kept = [hold for hold in before.holds if hold is not own]
+        assert [hold for hold in after.holds if hold.claim.task != call.task] == kept
+        mine = after.hold(call.task)
+        assert (mine and (mine.claim, mine.active)) == (own and (own.claim, own.active)) or (own and not own.active)
     if verdict is Verdict.DONE:
         assert own is None or own.claim.supervisor in (call.supervisor, *gone)
         assert after.epoch_of(call.task) == call.epoch
@@ -674,6 +688,8 @@ def _check(activation: Activation, running: bool, shareable: bool, gone: set[str
     assert len(tasks) == len(set(tasks))
     alive = [hold for hold in activation.holds if hold.claim.supervisor not in gone]
     assert shareable or len(alive) <= 1
+    acts_for = [hold for hold in alive if hold.active]
+    assert all(hold.wants == acts_for[0].wants for hold in acts_for), "nobody obeys two that disagree"
     ranks = [(-claim.priority, claim.beginning) for claim in activation.waiting]
     assert ranks == sorted(ranks)
     assert len(set(waiting_for(activation))) == len(ranks)
