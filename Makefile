@@ -19,7 +19,7 @@ demo: $(VENV)/with-sim
 
 # Three processes more than there are processors, for many tests wait for programs that they have started; which tests
 # share one, and which processes compute meanwhile, is said in tests/schedule.py.
-PARALLEL := --numprocesses $(shell echo $$((3 + $$(nproc 2>/dev/null || echo 2))))
+PARALLEL := --forks $(shell echo $$((3 + $$(nproc 2>/dev/null || echo 2))))
 
 # A test that hangs for five minutes has failed: it says where each thread is, and its process is replaced.
 BOUNDED := -o faulthandler_timeout=300 -o faulthandler_exit_on_timeout=true
@@ -62,7 +62,7 @@ nightly: $(VENV)/with-dev fuzz test-keys
 
 # The programs of others alone; the first time cargo takes some five minutes.
 foreign: $(VENV)/with-dev
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest -n0 $(FOREIGN)
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(FOREIGN)
 
 # Ten thousand mangled messages, payloads, advertisements, certificates and HTTP requests each; some minutes.
 mangled: $(VENV)/with-dev

@@ -8,13 +8,12 @@ import secrets
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from selfconf.__main__ import COLLECTING
-from tests import messages, schedule, shares
+from tests import forks, schedule
 from tests.asked_here import ask_here
 from tests.effort import examples
 from tests.frozen import freeze_what_is_there
@@ -31,16 +30,15 @@ settings.load_profile("selfconf")
 gc.set_threshold(10 * COLLECTING[0], *COLLECTING[1:])  # of what tests make, little is garbage that waits to be found
 
 
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Spread the tests over processes so that those of a group share one."""
-    return schedule.scheduler(config, log)
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options of the tests."""
+    forks.add_option(parser)
 
 
-def pytest_collection(session: pytest.Session) -> None:
-    """Where tests run in several processes, let each prepare a share of the modules for all."""
-    if hasattr(session.config, "workerinput"):
-        shares.prepare(session.config.args, session.config.workerinput)
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop(session: pytest.Session) -> bool | None:
+    """Run the tests in several processes, where these are asked for."""
+    return forks.run(session)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -48,15 +46,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if "inhabited" in getattr(item, "fixturenames", ()) and schedule.group_of(item.nodeid) != "inhabited":
             raise pytest.UsageError(f"{item.nodeid} uses `inhabited`: add its module to INHABITED in tests/schedule.py")
-    if hasattr(config, "workerinput"):
+    if config.option.forks:
         items.sort(key=_place)
 
 
-def pytest_collection_finish(session: pytest.Session) -> None:
+def pytest_collection_finish() -> None:
     """The collector of garbage has no need to look at what the tests are made of again and again."""
     freeze_what_is_there()
-    if hasattr(session.config, "workerinput"):
-        messages.keep_short(session.config)
 
 
 def _place(item: pytest.Item) -> int:

@@ -1,13 +1,6 @@
-"""Which tests run in one process where pytest-xdist spreads them over several.
-
-The mark `xdist_group` cannot say it: pytest-xdist 3.8 adds the group to a node's name by an attribute that pytest 9.2
-no longer reads. So the scheduler is told the group of a test by its name.
-"""
+"""Which tests run in one process where several run them, and which processes compute while others wait."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import Any
 
 INHABITED = {
     "tests/cli/test_discover.py",
@@ -57,59 +50,11 @@ def group_of(test: str) -> str:
     return test
 
 
-def scheduler(config: Any, log: Any) -> Any:
-    """Make a scheduler of pytest-xdist that keeps each group in one process, and all processors busy.
+def computes(process: int) -> bool:
+    """Whether the process of this number takes tests from the end of the order, and others from its beginning.
 
     The tests come as `tests/conftest.py` has put them: those that wait for programs first, those that compute for long
-    last. One process in three takes them from the end and the others from the beginning, so that some compute while
-    others wait; they meet among the short ones, and all end together.
+    last. One process in three takes them from the end, so that some compute while others wait; they meet among the
+    short ones, and all end together.
     """
-    from xdist.scheduler import LoadScopeScheduling
-
-    class Grouped(LoadScopeScheduling):
-        places: Mapping[str, int] = {}
-        """Where each test stands in the order of all, which every process has."""
-
-        def _split_scope(self, nodeid: str) -> str:
-            return group_of(nodeid)
-
-        def _assign_work_unit(self, node: Any) -> None:
-            from_the_end = self.nodes.index(node) % 3 == 2
-            group, tests = self.workqueue.popitem(last=from_the_end)
-            self.assigned_work[node][group] = tests
-            if not self.places:
-                self.places = {test: place for place, test in enumerate(self.registered_collections[node])}
-            node.send_runtest_some([self.places[test] for test, done in tests.items() if not done])
-
-        def mark_test_complete(self, node: Any, item_index: int, duration: float = 0) -> None:
-            """Note that a test is over, and forget its group with the last: what is assigned is counted each time."""
-            test = self.registered_collections[node][item_index]
-            tests = self.assigned_work[node][group_of(test)]
-            tests[test] = True
-            if all(tests.values()):
-                del self.assigned_work[node][group_of(test)]
-            self._reschedule(node)
-
-        def remove_node(self, node: Any) -> str | None:
-            """Return the test in which a process has died, which is not run again; others take over what is left."""
-            groups = self.assigned_work.pop(node)
-            left = [test for tests in groups.values() for test, done in tests.items() if not done]
-            if not left:
-                return None
-            for group, tests in groups.items():
-                if left[0] in tests:
-                    tests[left[0]] = True
-                if not all(tests.values()):
-                    self.workqueue[group] = tests
-            for other in self.assigned_work:
-                self._reschedule(other)
-            return left[0]
-
-        def _reschedule(self, node: Any) -> None:
-            if node not in self.registered_collections:
-                return  # it takes the place of one that has died, and does not know the tests yet
-            super()._reschedule(node)
-            if not self.workqueue and not node.shutting_down:
-                node.shutdown()  # else it keeps its last test for a further one to come after, which never does
-
-    return Grouped(config, log)
+    return process % 3 == 2
