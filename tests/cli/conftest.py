@@ -7,9 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from tests import schedule
 from tests.cli.desk import Desk
 from tests.cli.diagnosed import write_diagnosed
 from tests.cli.processes import Home
+
+_INHABITED = pytest.StashKey[Home]()
+"""The paper's ecology, while it runs."""
 
 
 @pytest.fixture
@@ -21,13 +25,24 @@ def home(tmp_path: Path) -> Iterator[Home]:
 
 
 @pytest.fixture(scope="session")
-def inhabited(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
+def inhabited(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     """The paper's ecology: one site, and all components in one process; whoever uses it leaves nothing deployed."""
     home = Home(tmp_path_factory.mktemp("inhabited"))
     home.site("peis-home", "ads")
     home.components("sonar", "encoder", "tracker", "odometry", "control", "drive", "pippi")
+    request.session.stash[_INHABITED] = home
     yield home
     home.close()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """End the paper's ecology after the last of its tests: seven components that act take a tenth of a processor."""
+    home = item.session.stash.get(_INHABITED, None)
+    leaving = nextitem is None or schedule.group_of(nextitem.nodeid) != "inhabited"
+    if home is not None and leaving and item.config.option.forks:  # in one process its tests do not follow each other
+        del item.session.stash[_INHABITED]
+        home.close()
 
 
 @pytest.fixture

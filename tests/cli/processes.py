@@ -26,6 +26,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer
+from tests.fork_server import ForkedProgram
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
 PATIENCE = 60.0
@@ -84,20 +85,16 @@ main(*kinds, arguments=sys.argv[2:])
 '''
 
 
+COMPONENTS = "components.py"
+"""The file of that program."""
+
+
 class Program:
     """A process whose lines on stdout can be waited for."""
 
     def __init__(self, command: list[str], environment: dict[str, str], folder: Path) -> None:
         self._read_end, write_end = os.pipe()
-        self._process = subprocess.Popen(
-            command,
-            cwd=folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=write_end,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        self._process = _begun(command, environment, folder, write_end)
         os.close(write_end)
         self._unread, self._joined = b"", False
         self._complaints: list[str] = []
@@ -187,6 +184,18 @@ class Program:
         return self._process.poll() is not None
 
 
+def _begun(
+    command: list[str], environment: dict[str, str], folder: Path, out: int
+) -> subprocess.Popen[str] | ForkedProgram:
+    """The process of a command; that of a program of selfconf has imported already what it uses."""
+    if command[:3] == [sys.executable, "-m", "selfconf"] or command[:2] == [sys.executable, COMPONENTS]:
+        return ForkedProgram(command[1:], environment, folder, out)
+    nothing, complaints = subprocess.DEVNULL, subprocess.PIPE
+    return subprocess.Popen(
+        command, cwd=folder, env=environment, stdin=nothing, stdout=out, stderr=complaints, text=True
+    )
+
+
 class Home:
     """An ecology of real processes."""
 
@@ -195,7 +204,7 @@ class Home:
         self.folder, self.ecology = folder, f"test-{secrets.token_hex(4)}"
         self.keys = Keys(self.ecology)
         write_advertisements(folder / "ads")
-        (folder / "components.py").write_text(PROGRAM)
+        (folder / COMPONENTS).write_text(PROGRAM)
         (folder / "navigate.ttl").write_text(NAVIGATE)
         self.runtime = folder / "runtime"
         self.environment = {
@@ -234,7 +243,7 @@ class Home:
     def components(self, *names: str, connect: tuple[str, ...] = ()) -> Program:
         """Start components as one process, and wait until all of them live."""
         options = [option for endpoint in connect or (self.endpoint(),) for option in ("--connect", endpoint)]
-        command = (sys.executable, "components.py", ",".join(names), "--ecology", self.ecology)
+        command = (sys.executable, COMPONENTS, ",".join(names), "--ecology", self.ecology)
         program = self.program(*command, *options)
         profiles = [component_of(name) for name in names]
         assert self.until(lambda: program.over or all(self.state(c) is not None for c in profiles)), program.complaints
