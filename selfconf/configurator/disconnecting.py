@@ -87,7 +87,7 @@ def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
     resting = {
         one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in mine.inputs.items()}
         for one, mine in state.held.items()
-        if one in actuators and mine.active and (one, Call.APPLY) not in state.pending
+        if one in actuators and mine.active and (mine.acts or (one, Call.APPLY) not in state.pending)
     }
     fewer = {one: inputs for one, inputs in resting.items() if inputs != state.held[one].inputs}
     known, effects = _follow_fewer(state, fewer, rests=True)

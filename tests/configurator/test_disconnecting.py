@@ -91,6 +91,18 @@ def test_no_actuator_acts_for_long_on_a_part_and_all_start_again_when_it_is_whol
     assert history.state.held[DRIVE].inputs == wiring(navigation(ODOMETRY))[DRIVE]
 
 
+def test_an_actuator_rests_that_acts_and_is_just_being_connected_anew() -> None:
+    history = with_dormant_source()
+    history.hear(LossLasts())
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    assert applied(history.answer(ODOMETRY, Call.APPLY)) == [CONTROL, ARM]
+    rests = [effect for effect in history.hear(LossLasts(frozenset((DRIVE, ARM)))) if isinstance(effect, ApplyTo)]
+    assert [(one.component, one.rests) for one in rests] == [(DRIVE, True), (ARM, True), (CONTROL, False)]
+    assert {*applied(history.answer(CONTROL, Call.APPLY))} == {DRIVE, ARM}, "when everything else acts"
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+
+
 @pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.REFUSED, Phase.DISMANTLING, Phase.IDLE])
 def test_nothing_comes_of_a_loss_that_was_made_good_or_has_ended_the_task(phase: Phase) -> None:
     history = History(state_in(phase))
