@@ -164,7 +164,7 @@ def obey(
         after, step = drop(activation, (call.task,), call.epoch)
         return _no_longer_waiting(after, call.task), Verdict.DONE, step
     if _blocked(activation, call, shareable, gone) or (isinstance(call, Reserve) and call.waits):
-        after = activation if _follows_less(call) else _wait(activation, call)
+        after = activation if _others_may_agree(own, call) else _wait(activation, call)
         return _wish(after, own, call), Verdict.BUSY, ActivationStep.NONE
     served = replace(_no_longer_waiting(activation, call.task), kept_for="")
     if isinstance(call, Reserve):
@@ -237,9 +237,15 @@ def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gon
     )
 
 
-def _follows_less(call: Reserve | Apply) -> bool:
-    """Whether a call says that an input follows nothing for now: no other task is to yield to it for that."""
-    return isinstance(call, Apply) and not all(call.inputs.values())
+def _others_may_agree(own: Hold | None, call: Reserve | Apply) -> bool:
+    """Whether no other task is to yield to a call yet: what the component follows for all may be lost to all.
+
+    So it is where the component acts for the task that calls, which wishes this for the first time, or wishes that an
+    input follows nothing for now.
+    """
+    if own is None or not own.active or not isinstance(call, Apply):
+        return False
+    return own.wishes != (call.inputs, call.values) or not all(call.inputs.values())
 
 
 def _wait(activation: Activation, call: Reserve | Apply) -> Activation:

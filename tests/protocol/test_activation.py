@@ -448,6 +448,8 @@ def test_a_task_outranks_those_that_share_a_component_with_it_and_want_what_it_w
         shared, _, _ = obey(activation_in(ACTIVE), call_of(Apply, B, priority=priority), shareable=True)
         call = call_of(Apply, B, 6, priority=priority, inputs=OTHER)
         shared, verdict, _ = obey(shared, call, shareable=True)
+        assert (verdict, outranked(shared)) == (Verdict.BUSY, ()), "the others may want the same in a moment"
+        shared, verdict, _ = obey(shared, call, shareable=True)
         assert (verdict, outranked(shared)) == (Verdict.BUSY, expected)
         hold = in_the_way(shared, call)
         assert hold is not None
