@@ -147,10 +147,9 @@ class ComponentBench:
         self.ecology.until(lambda: self._run is not None and (self._run.running or self._run.ended))
         self.ecology.advance(DELIVERY)
         if not self._run.running:
-            said = [event.detail for event in self._run.events if isinstance(event, CallDeclined | ComponentLost)]
-            raise ProgrammerError(
-                f"{self.profile.component.short} does not start: {'; '.join(said) or self._run.phase}"
-            )
+            refused = [event for event in self._run.events if isinstance(event, CallDeclined | ComponentLost)]
+            said = "; ".join(dict.fromkeys(event.detail for event in refused))  # who declines is lost for that reason
+            raise ProgrammerError(f"{self.profile.component.short} does not start: {said or self._run.phase}")
 
     def send(self, port: str, value: Any) -> None:
         """Let a signal arrive on an input, and let the time pass that its answers take.

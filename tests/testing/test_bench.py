@@ -138,7 +138,7 @@ def test_what_breaks_in_a_component_is_its_failure() -> None:
 def test_a_component_that_declines_says_why() -> None:
     thermostat = Thermostat()
     thermostat.wanted = "never"
-    with pytest.raises(ProgrammerError, match="there is no heating here"):
+    with pytest.raises(ProgrammerError, match=r"thermostat does not start: there is no heating here$"):
         ComponentBench(thermostat, ADVERTISEMENT).start()
 
 
