@@ -272,7 +272,8 @@ class History:
 
     def _speak(self) -> None:
         """Let every source that acts say something, unless it has said all as it was started."""
-        for life in () if self.script.ecology.latched else self.processes:
+        has_said_all = self.script.ecology.latched and self.script.period is None
+        for life in () if has_said_all else self.processes:
             if life.awake and life.runtime.active:
                 life.recorder.say_last()
 
