@@ -313,7 +313,10 @@ class _Counting:
         return (self.graph.role[number] for number in _bits(mask))
 
     def run(self) -> None:
-        """Count from one group after the other, the largest first, but for those that are played for sure by then."""
+        """Count from one group after the other, the largest first, but for those that were put together before.
+
+        These are played for sure by then; or they were left with others that go with them, and mostly would be again.
+        """
         # Of no more groups than slots, one at least has a share of one slot or more.
         order = [number for number, weight in enumerate(self.weights) if weight >= ENOUGH]
         order.sort(key=lambda number: -len(self.roles[number]))
@@ -322,15 +325,17 @@ class _Counting:
             if self.crowded or self.left <= 0:
                 return
             if start not in known:
-                cover = self._cover(start)
-                if cover is not None:
-                    known |= cover.keys()
-                    self._count(cover)
+                shares: dict[int, int] = {}
+                if self._cover(start, shares):
+                    self._count(shares)
+                known |= shares.keys()
 
-    def _cover(self, start: int) -> dict[int, int] | None:
-        """Return groups, by number, with disjoint shares of them that cover all options of their roles."""
+    def _cover(self, start: int, shares: dict[int, int]) -> bool:
+        """Put together groups, by number, with disjoint shares of them, until these cover all options of their roles.
+
+        Return whether they do, or are left as they would be too many.
+        """
         graph = self.graph
-        shares: dict[int, int] = {}
         roles: set[int] = set()
         covered = wanted = slots = 0
         surplus, gain = 0.0, self.gain
@@ -346,27 +351,30 @@ class _Counting:
             gain -= max(0.0, self.weights[best] - 1)
             surplus += (self.weights[best] if whole else sum([self.part[option] for option in _bits(share)])) - 1
             if surplus + gain < ENOUGH - 1:
-                return None
+                return False
             for role in self.roles[best] - roles if whole else set(self._roles(share)) - roles:
                 roles.add(role)
                 wanted |= graph.of_role[role]
                 slots += graph.asked[role]
             left = wanted & ~covered
             if not left:
-                return shares
+                return True
             if len(shares) > min(slots, SPREAD * (8 + len(self.roles[start]))):
-                return None
+                return False
             best = self._next(left, covered)
-        return None
+        return False
 
     def _next(self, left: int, covered: int) -> int | None:
         """Return the group with the lowest of the options left that has the most of them, rather a disjoint one."""
         lowest = (left & -left).bit_length() - 1
-        return max(
-            self.having[lowest],
-            key=lambda number: (not self.groups[number] & covered, (self.groups[number] & left).bit_count()),
-            default=None,
-        )
+        found, most = None, -1
+        whole = left.bit_count() + 1
+        for number in self.having[lowest]:
+            group = self.groups[number]
+            fits = (group & left).bit_count() + (0 if group & covered else whole)
+            if fits > most:
+                found, most = number, fits
+        return found
 
     def _count(self, shares: dict[int, int]) -> None:
         """Match the slots of the roles with the groups that cover their options."""

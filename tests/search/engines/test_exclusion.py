@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from benchmarks.search.families import distinct
 from benchmarks.search.further_families import colouring, latin, pigeonholes, queens, tour
 from selfconf.search.budget import Budget
+from selfconf.search.engines import exclusion
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.problem import Problem
@@ -59,6 +60,23 @@ def test_pigeonholes_through_ports_are_refused_by_counting(
 )
 def test_what_has_as_many_groups_as_slots_has_each_of_them_played(problem: Problem) -> None:
     assert exclusive_groups(pruned(reduced(problem))).played
+
+
+def test_counting_does_not_begin_from_a_group_that_was_put_together_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[int] = []
+    met: set[int] = set()
+    cover = exclusion._Counting._cover
+
+    def watched(counting: exclusion._Counting, start: int, shares: dict[int, int]) -> bool:
+        assert start not in met
+        begun.append(start)
+        found = cover(counting, start, shares)
+        met.update(shares)
+        return found
+
+    monkeypatch.setattr(exclusion._Counting, "_cover", watched)
+    exclusive_groups(pruned(reduced(latin(12, 0.42, 1))))
+    assert len(begun) > 1
 
 
 def test_as_many_components_as_slots_are_all_played_where_nothing_else_excludes() -> None:
