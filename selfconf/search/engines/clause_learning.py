@@ -70,6 +70,7 @@ class ClauseSolver:
         self.reduced = reduced
         self._solver = getattr(solvers, solver or SOLVER)()
         self._model: list[int] = []
+        self._propagates = solver in (None, SOLVER)
         self.conflicts = 0
         """How many conflicts the solver has met."""
         self._patience = CONFLICTS_PER_CALL
@@ -153,6 +154,10 @@ class ClauseSolver:
         if found:
             self._model = self._solver.get_model()
         return found
+
+    def refutes(self, literal: int) -> bool:
+        """Return whether propagation shows that a literal cannot hold; False if the solver would have to search."""
+        return self._propagates and not self._solver.propagate([literal])[0]
 
     def interrupt(self) -> None:
         """End the call that goes on in another thread, or else the next one, as if its conflicts were used up."""

@@ -18,6 +18,7 @@ it, and the time is that of the better one at each question.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
 
 from selfconf.model.refusal import Undecided
@@ -203,9 +204,9 @@ class _Descent:
             if self.finished:
                 return
             before = turn.clauses.conflicts
-            self._ask(turn, left)
+            asked = self._ask(turn, left)
             if left is not None:
-                left -= 1 + turn.clauses.conflicts - before
+                left -= asked + turn.clauses.conflicts - before
 
     def _hear(self, engine: OrderedDecisions | Rival) -> None:
         """Take over what an engine has found; of any solution all or nothing, as engines find different ones."""
@@ -240,8 +241,8 @@ class _Descent:
         """Return the first option that a slot may have: slots of one role take options in ascending order."""
         return self.settled[slot - 1] + 1 if slot and self.slots[slot] == self.slots[slot - 1] else 0
 
-    def _ask(self, turn: _Turn, conflicts: int | None) -> None:
-        """Ask a solver the next question, and draw the consequences."""
+    def _ask(self, turn: _Turn, conflicts: int | None) -> int:
+        """Ask a solver the next question, and draw the consequences; return how many were answered."""
         clauses = turn.clauses
         if not turn.modelled:
             found = clauses.ask((), self.budget, conflicts)
@@ -249,16 +250,37 @@ class _Descent:
                 self.possible = turn.modelled = found
                 if found and not self.least:
                     self._settle_all(clauses)
-            return
+            return 1
         literals = self.plays[self.slots[turn.fixed]]
+        refuted = self._reject(turn, literals, conflicts)
         if clauses.holds(literals[turn.rejected]):
             self._settle_along(clauses, turn.rejected)
-            return
+            return refuted
+        if self.budget.steps == 0:
+            return refuted
         found = clauses.ask((literals[turn.rejected],), self.budget, conflicts)
         if found is True:
             self._settle_along(clauses, turn.rejected)
         elif found is False:
             self.least_left = turn.rejected + 1
+        return refuted + 1
+
+    def _reject(self, turn: _Turn, literals: Sequence[int], most: int | None) -> int:
+        """Pass over options of the next slot that propagation alone refutes, each for a step; return how many.
+
+        Where roles are bound to each other, most questions are of this sort, and to ask the solver takes longer than it
+        takes to answer.
+        """
+        clauses, start = turn.clauses, turn.rejected
+        while (most is None or turn.rejected - start < most) and self.budget.steps != 0:
+            literal = literals[turn.rejected]
+            if clauses.holds(literal) or not clauses.refutes(literal):
+                break
+            clauses.add([-literal])
+            turn.rejected += 1
+            self.budget.spend(1)
+        self.least_left = max(self.least_left, turn.rejected)
+        return turn.rejected - start
 
     def _settle(self, number: int) -> None:
         self.settled.append(number)

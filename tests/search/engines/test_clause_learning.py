@@ -57,6 +57,18 @@ def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
         assert numbers(least_by_clauses(reduced(problem), Budget(10_000))) == expected
 
 
+def test_propagation_alone_refutes_what_is_refuted_without_a_search() -> None:
+    pytest.importorskip("pysat")
+    with clause_learning.ClauseSolver(pruned(reduced(families.distinct(3, 3)))) as solver:
+        first, second = solver.literal(), solver.literal()
+        assert not solver.refutes(first)
+        solver.add([-first, second])
+        solver.add([-first, -second])
+        assert solver.refutes(first)
+        assert not solver.refutes(second)
+        assert solver.conflicts == 0
+
+
 def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pysat")
     monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 10**9)
