@@ -22,9 +22,10 @@ REFUSAL = Refusal(TEMPLATE, (TooFewEligible(IRI("urn:r:position"), 1, 0),))
 GOAL = Literal("(AT BEDROOM)")
 OTHERS = Holder("tidy~2", 0, 5.0, "c2", acting=True)
 """Another task of the same priority, for which a component acts."""
-LOWER, RESERVING = replace(OTHERS, priority=-1), replace(OTHERS, acting=False)
+HIGHER, LOWER, RESERVING = replace(OTHERS, priority=1), replace(OTHERS, priority=-1), replace(OTHERS, acting=False)
 TASK = State(task="go~1")
 PATIENT = State(task="go~1", patient=True)
+DISMANTLE = State(task="go~1", policy=Policy.DISMANTLE)
 
 
 def navigation(position: IRI = TRACKER) -> Configuration:

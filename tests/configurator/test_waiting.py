@@ -1,0 +1,167 @@
+"""A patient task waits for the components that others hold, and takes them when they are free."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from selfconf.configurator.effects import (
+    Compose,
+    Decline,
+    Discover,
+    Finish,
+    QueueFor,
+    ReleaseFrom,
+    Running,
+)
+from selfconf.configurator.events import (
+    Accepted,
+    Answered,
+    Appeared,
+    Call,
+    Composed,
+    Discovered,
+    Failed,
+    Freed,
+    Stopped,
+)
+from selfconf.configurator.machine import MOST_REPEATS
+from selfconf.configurator.state import Phase
+from selfconf.protocol.messages import Cause, Verdict
+from tests.configurator.builders import (
+    DRIVE,
+    ODOMETRY,
+    OTHERS,
+    PATIENT,
+    REFUSAL,
+    TASK,
+    TRACKER,
+    History,
+    kinds,
+    navigation,
+    released,
+)
+
+
+def waiting() -> History:
+    """A patient task that lacks what another task holds."""
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS}))
+    history.composed(REFUSAL)
+    assert history.composed(navigation()) == [QueueFor(TRACKER, history.state.epoch)]
+    assert history.state.phase is Phase.REFUSED
+    return history
+
+
+def test_a_patient_task_waits_for_what_another_holds_and_begins_when_it_is_free() -> None:
+    history = waiting()
+    assert history.hear(Freed(TRACKER)) == [Discover()]
+    assert history.hear(Discovered()) == [Compose(3, frozenset(), None)]
+    history.composed(navigation())
+    assert kinds(history.all_answer()) == [Running]
+
+
+def test_a_patient_task_waits_for_all_that_others_hold_and_that_could_help() -> None:
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS, ODOMETRY: OTHERS, DRIVE: OTHERS}))
+    history.composed(REFUSAL)
+    found = Composed(history.state.attempt, navigation(), frozenset({TRACKER, ODOMETRY}))
+    assert history.hear(found) == [QueueFor(one, history.state.epoch) for one in sorted((TRACKER, ODOMETRY))]
+    held = tuple((one, OTHERS) for one in sorted((TRACKER, ODOMETRY)))
+    assert history.state.refusal == replace(REFUSAL, held=held)
+    assert list(history.state.lost) == sorted((TRACKER, ODOMETRY))
+    assert not history.state.held
+    assert history.hear(Freed(ODOMETRY)) == [Discover()]
+
+
+def test_a_patient_task_waits_for_nothing_where_all_that_others_hold_would_not_do() -> None:
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS}))
+    history.composed(REFUSAL)
+    assert history.hear(Composed(history.state.attempt, REFUSAL, frozenset({TRACKER}))) == []
+    assert not history.state.queued
+
+
+def test_a_task_waits_for_a_component_that_has_obeyed_a_newer_epoch_of_it_by_asking_in_that() -> None:
+    """Another configurator of the task had a clock that was ahead."""
+    history = waiting()
+    epoch = history.state.epoch
+    stale = Answered(TRACKER, Call.RESERVE, epoch, Verdict.STALE, "1", newest=epoch + 300_000)
+    assert history.hear(stale) == [QueueFor(TRACKER, epoch + 300_000)]
+    assert history.hear(stale) == []  # it is of an epoch that is over
+    assert history.hear(Freed(TRACKER)) == [Discover()]
+    history.hear(Discovered())
+    history.composed(navigation())
+    assert history.state.epoch > epoch + 300_000
+
+
+def test_a_component_that_says_without_end_that_it_has_obeyed_a_newer_epoch_is_asked_a_few_times() -> None:
+    history = waiting()
+    for _ in range(MOST_REPEATS + 1):
+        epoch = history.state.epoch
+        effects = history.hear(Answered(TRACKER, Call.RESERVE, epoch, Verdict.STALE, "1", newest=epoch + 1))
+    assert effects == []
+    assert history.state.phase is Phase.REFUSED
+
+
+def test_an_epoch_that_no_clock_comes_to_is_not_waited_in() -> None:
+    history = waiting()
+    epoch = history.state.epoch
+    assert history.hear(Answered(TRACKER, Call.RESERVE, epoch, Verdict.STALE, "1", newest=(1 << 63) - 1)) == []
+    assert history.state.epoch == epoch
+
+
+def test_a_component_that_says_that_it_is_free_is_believed_more_than_its_last_holder() -> None:
+    history = waiting()
+    history.hear(Freed(TRACKER))
+    assert history.hear(Discovered({TRACKER: OTHERS})) == [Compose(3, frozenset(), None)]
+    history.composed(REFUSAL)
+    history.hear(Appeared({ODOMETRY: "1"}))
+    assert history.hear(Discovered({TRACKER: OTHERS}))[-1] == Compose(4, frozenset({TRACKER}), None)
+
+
+def test_a_patient_task_that_has_found_something_else_waits_no_more() -> None:
+    history = waiting()
+    history.hear(Appeared({ODOMETRY: "1"}), Discovered({TRACKER: OTHERS}))
+    history.composed(navigation(ODOMETRY))
+    effects = history.all_answer()
+    assert kinds(effects) == [Running, ReleaseFrom]
+    assert released(effects) == [TRACKER]
+
+
+def test_a_patient_task_that_is_stopped_waits_no_more() -> None:
+    history = waiting()
+    assert released(history.hear(Stopped())) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
+
+
+def test_a_component_that_was_free_and_was_not_taken_forgets_the_task_that_is_stopped() -> None:
+    """It remembers the task until it is reserved or released: else it would be kept for a task that has ended."""
+    history = waiting()
+    history.hear(Freed(TRACKER), Discovered())
+    history.composed(REFUSAL)
+    assert history.state.phase is Phase.REFUSED
+    assert released(history.hear(Stopped())) == [TRACKER]
+    assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
+
+
+def test_what_was_not_free_for_this_task_counts_again_once_it_is() -> None:
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.YIELD))
+    history.all_answer()
+    assert history.state.lost[TRACKER].busy
+    history.hear(Freed(TRACKER))
+    assert not history.state.lost
+    assert history.composed(REFUSAL) == [Discover()]
+
+
+def test_what_is_kept_for_a_task_that_cannot_take_it_now_goes_to_the_next() -> None:
+    history = History(TASK).running()
+    assert history.hear(Freed(ODOMETRY)) == [Decline(ODOMETRY, history.state.epoch)]
+
+
+def test_a_notice_that_comes_after_the_component_was_reserved_lets_it_not_go() -> None:
+    history = History(TASK).running()
+    assert history.hear(Freed(TRACKER)) == []
+    history = History(TASK).accepted()
+    history.composed(navigation())
+    assert history.hear(Freed(TRACKER)) == []  # it is about to be reserved
