@@ -109,6 +109,8 @@ class InsideOfComposite:
         """The values of its operational parameters."""
         self._called_by: Mapping[str, tuple[IRI, ...]] = {}
         """Which components may call each of its operations."""
+        self._rests = False
+        """Whether actuators inside are to rest, as what the composite is part of is incomplete."""
         self.runner: TaskRunner | None = None
         """What runs the inside, while the composite acts."""
         self._beginnings = 0
@@ -152,9 +154,10 @@ class InsideOfComposite:
     def follow(self, message: Apply) -> None:
         """Begin with the inside, or tell it what it is connected to now; begin anew where values have changed."""
         called_by = {port.name: tuple(sorted(self.runtime.callers(port.name))) for port in self.profile.operations}
-        changed = (self._wires, self._called_by) != (message.inputs, called_by)
+        rests = self.runtime.activation.rests
+        changed = (self._wires, self._called_by, self._rests) != (message.inputs, called_by, rests)
         other_inputs = self._wires.keys() != message.inputs.keys()
-        self._wires, self._called_by = dict(message.inputs), called_by
+        self._wires, self._called_by, self._rests = dict(message.inputs), called_by, rests
         if self.runner is None:
             self._begin(message)
         elif self._again is not None or message.values != self._values:
@@ -163,7 +166,7 @@ class InsideOfComposite:
         elif other_inputs:
             self.runner.reconsider()
         elif changed:
-            self.runner.rewire(message.rests)
+            self.runner.rewire(rests)
 
     def _begin(self, message: Apply) -> None:
         self._values = dict(message.values)

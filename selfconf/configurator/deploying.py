@@ -128,6 +128,7 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
     wires, values, calling = wiring(target), parameter_values(target), callers(target)
     effects: list[Effect] = []
     held, pending = dict(state.held), set(state.pending)
+    assert state.order is not None
     for component in candidates:
         before = held[component]
         if before.confirmed or (component, Call.APPLY) in pending or not _may_begin(state, component, wires):
@@ -136,7 +137,8 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
         inputs, set_, called_by = wires[component], values[component], calling[component]
         held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, active=True)
         gently, adopted = state.fallback is not None, before.is_adopted
-        effects.append(ApplyTo(component, state.epoch, inputs, set_, called_by, gently, adopted))
+        rests = state.rests and component in state.order.actuators
+        effects.append(ApplyTo(component, state.epoch, inputs, set_, called_by, gently, adopted, rests))
     return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
 
 
@@ -198,17 +200,18 @@ def end_deployment(state: State) -> Reaction:
     return running, tuple(effects)
 
 
-def rewire(state: State, components: frozenset[IRI], rests: bool = False) -> Reaction:
+def rewire(state: State, components: frozenset[IRI]) -> Reaction:
     """Apply once more to those that follow some components, or are called by them, behind which others stand now.
 
-    `rests`: nothing stands behind them for now, and actuators that follow them are to rest.
+    Of these components, also to the actuators: they are to rest, or to act again (`State.rests`).
     """
+    assert state.order is not None
+    actuators = components & state.order.actuators
     held = {
-        one: replace(held, confirmed=held.confirmed and not is_wired_to(held, components))
+        one: replace(held, confirmed=held.confirmed and one not in actuators and not is_wired_to(held, components))
         for one, held in state.held.items()
     }
-    rewired, effects = deploy(replace(state, held=held))
-    return rewired, tuple(replace(one, rests=rests) if isinstance(one, ApplyTo) else one for one in effects)
+    return deploy(replace(state, held=held))
 
 
 def is_wired_to(held: Held, components: frozenset[IRI]) -> bool:

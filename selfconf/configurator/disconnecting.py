@@ -82,18 +82,14 @@ def _lacks_actuators_alone(state: State) -> bool:
 def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
     """Let actuators follow nothing, so that they rest; they are held on, and start last, as in a new deployment.
 
-    So do those that follow nothing already, as all that they followed was lost.
+    So do those that follow nothing, as all that they followed was lost, or as they act by operations or by themselves.
     """
     resting = {
         one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in mine.inputs.items()}
         for one, mine in state.held.items()
         if one in actuators and mine.active and (mine.acts or (one, Call.APPLY) not in state.pending)
     }
-    fewer = {one: inputs for one, inputs in resting.items() if inputs != state.held[one].inputs}
-    known, effects = _follow_fewer(state, fewer, rests=True)
-    at_rest = {
-        one: replace(known.held[one], acts=False)
-        for one, inputs in resting.items()
-        if any(not port.endswith(CALL_MARK) for port in inputs)
-    }
+    told = {one: inputs for one, inputs in resting.items() if state.held[one].acts or inputs != state.held[one].inputs}
+    known, effects = _follow_fewer(state, told, rests=True)
+    at_rest = {one: replace(known.held[one], acts=False) for one in resting}
     return replace(known, held={**known.held, **at_rest}), effects

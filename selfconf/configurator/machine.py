@@ -554,11 +554,13 @@ def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
     The component is one of this configuration, or the composite that this is the inside of, which is what is outside.
     """
     changed = frozenset((component,))
+    wired = component in state.held or any(deploying.is_wired_to(held, changed) for held in state.held.values())
+    if component not in state.held and rests != state.rests:
+        state, wired = replace(state, rests=rests), True
+        changed |= state.held.keys() & (state.order.actuators if state.order is not None else frozenset())
     if state.phase is Phase.RUNNING or _waits_for(state, changed):
-        return deploying.rewire(state, changed, rests)
-    if component not in state.held and not any(deploying.is_wired_to(held, changed) for held in state.held.values()):
-        return state, ()
-    return replace(state, rewired=state.rewired | {component}), ()  # also while another configuration is looked for
+        return deploying.rewire(state, changed)
+    return (replace(state, rewired=state.rewired | changed) if wired else state), ()  # also while another is looked for
 
 
 def _waits_for(state: State, components: frozenset[IRI]) -> bool:

@@ -138,6 +138,8 @@ class State:
     """How often each component has made the deployment begin anew since the ecology was last asked."""
     rewired: frozenset[IRI] = frozenset()
     """The components whose outputs are issued by others than before, since the deployment that goes on began."""
+    rests: bool = False
+    """Whether the actuators inside of a composite are to rest, as what the composite is part of is incomplete."""
     news: bool = False
     """Whether something has appeared since the ecology was last asked."""
     improving: bool = False

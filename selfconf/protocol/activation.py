@@ -126,6 +126,12 @@ class Activation:
         """The newest epoch for which the component acts, or is held."""
         return max((hold.claim.epoch for hold in self.holds), default=0)
 
+    @property
+    def rests(self) -> bool:
+        """Whether every task that the component acts for lacks a part of its configuration, so that actuators rest."""
+        claims = [hold.claim for hold in self.holds if hold.active]
+        return bool(claims) and all(isinstance(claim, Apply) and claim.rests for claim in claims)
+
     def epoch_of(self, task: str) -> int:
         """The newest epoch that was obeyed for a task."""
         hold = self.hold(task)

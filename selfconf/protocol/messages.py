@@ -92,7 +92,7 @@ class Apply(Claim):
     gently: bool = False
     """Whether an input is to follow the output before until the new one has issued a signal: make before break."""
     rests: bool = False
-    """Whether what follows nothing counts as unfed for a second already: its configuration has long been incomplete."""
+    """Whether an actuator is to rest: for a second already the configuration has lacked a part."""
 
 
 @immutable

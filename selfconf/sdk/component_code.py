@@ -27,6 +27,8 @@ DEADLINE = 2.0
 """Seconds that a method of a component may take, unless its advertisement says otherwise."""
 STARTING_DEADLINE = 8.0
 """Seconds that `started` may take, unless its advertisement says otherwise."""
+INCOMPLETE = ""
+"""Stands among the inputs that are unfed for the configuration itself, while that has long lacked a part."""
 Done = Callable[["str | None"], None]
 """Hears, on the bus's thread, why something did not come about, or None."""
 
@@ -57,7 +59,7 @@ class ComponentCode:
         self._on = self._resting = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
         required = frozenset(port.name for port in profile.required if not port.is_operation)
-        self._blindness = Blindness(bus, required, None if profile.outputs else tolerates, self._rest)
+        self._blindness = Blindness(bus, required | {INCOMPLETE}, None if profile.outputs else tolerates, self._rest)
         self._values: dict[str, Term] = {}
 
     @property
@@ -139,9 +141,18 @@ class ComponentCode:
         if self.wanted and self._blindness.begin(port):
             self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
 
-    def blind_for(self, seconds: float) -> None:
-        """Count as blind for so many seconds, if at all: for so long something that its task needs has been lost."""
-        self._blindness.has_lasted(seconds)
+    def lack_a_part(self, lacking: bool) -> None:
+        """Count an actuator as blind for as long as its tasks have lacked a part, and until they lack none any more."""
+
+        def complete() -> None:
+            if self._blindness.end(INCOMPLETE) and self._resting and not self._blindness.blind:
+                self._wake()
+
+        if not lacking:
+            if INCOMPLETE in self._blindness.unfed:
+                self._thread.call(complete)
+        elif self.wanted and self._blindness.begin(INCOMPLETE):
+            self._blindness.has_lasted(TOLERATES)
 
     def connection_changed(self, operation: str, connected: bool) -> None:
         """Tell the component that an operation that it needs is connected, or is no more."""
@@ -207,7 +218,10 @@ class ComponentCode:
 
         def rest() -> None:
             if turn == self.turn and self.active and self._blindness.blind and not self._resting:
-                log.warning("%s: an input is unfed; at rest until it is fed", self._name)
+                lacking = (
+                    "the configuration is incomplete" if INCOMPLETE in self._blindness.unfed else "an input is unfed"
+                )
+                log.warning("%s: %s; at rest for as long", self._name, lacking)
                 self._stop()
                 self._rests += 1
                 self._resting = True

@@ -40,7 +40,6 @@ from selfconf.protocol.messages import (
     Verdict,
     Wire,
 )
-from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
@@ -294,6 +293,7 @@ class ComponentRuntime:
         if isinstance(message, Apply):
             self._apply(message, step, reply)
         elif isinstance(message, Release):
+            self.code.lack_a_part(after.rests)
             if step is ActivationStep.STOP and self.profile.signal_outputs:
                 # For inputs that follow it all the same; it may be held by now for a task that was reserved.
                 self._put_fail(Cause.LET_GO, "it was released", epoch=0)
@@ -345,8 +345,7 @@ class ComponentRuntime:
                 self._tell_waiting("")
         self.inputs.follow(message)
         self.operations.follow(message)
-        if message.rests:
-            self.code.blind_for(TOLERATES)
+        self.code.lack_a_part(self.activation.rests)  # once what it lost is known to be unfed
 
     def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
         if self._after_start is waiting:
@@ -457,6 +456,7 @@ class ComponentRuntime:
 
     def _drop(self, tasks: Sequence[str], epoch: int = 0) -> None:
         self._become(*table.drop(self.activation, tasks, epoch))
+        self.code.lack_a_part(self.activation.rests)
 
     def _stop(self) -> None:
         """Be off: no timers, no inputs, and the component's code at rest."""

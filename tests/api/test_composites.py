@@ -940,3 +940,38 @@ def test_an_actuator_inside_rests_as_soon_as_one_outside_would(tmp_path: Path) -
     assert (turns[0.8], turns[1.3]) == (["started"], ["started", "stopped"])
     assert agent.state.phase is Phase.RUNNING
     assert turns[5.9] == ["started", "stopped", "started"]
+
+
+PILOTED = BASE | {
+    "base": """:base a sc:Component, :Base ; sc:hasInput [ sc:name "go" ; sc:signalType :Go ] ;
+        sc:grounding [ sc:template :driving ] .
+        :driving a sc:Template ; sc:roles ( :pilot :motor ) ;
+            sc:hasInput [ sc:name "go" ; sc:signalType :Go ; sc:of :pilot ] .
+        :pilot a sc:Role ; sh:class :Pilot ; sc:feeds :motor .
+        :motor a sc:Role ; sh:class :Motor .""",
+    "pilot": ':pilot-1 a sc:Component, :Pilot ; sc:hasInput [ sc:name "go" ; sc:signalType :Go ] ;'
+    ' sc:hasOutput [ sc:name "turn" ; sc:signalType :Turn ] .',
+    "motor": ':motor-1 a sc:Component, :Motor ; sc:hasInput [ sc:name "turn" ; sc:signalType :Turn ] .',
+}
+"""An actuator inside of a composite that is driven by another component inside, and not from outside."""
+
+
+def test_an_actuator_that_is_driven_from_inside_rests_as_well(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=PILOTED)
+    lab.site("home", *PILOTED)
+    for name in sorted(PILOTED.keys() - {"base"}):
+        lab.component(name)
+    lab.let_pass(3.0)
+    slow_code(lab, "hinter1")
+    lab.components["hinter1"].slow = 4.0
+    agent = lab.agent(DRIVE_BASE, ())
+    assert lab.running(agent)
+    lab.components["hinter0"].fail("it has no idea")
+    turns = dict[float, list[str]]()
+    for tenth in range(60):
+        lab.components["pilot"].emit("turn", tenth)
+        lab.let_pass(0.1)
+        turns[tenth / 10] = [said[0] for said in lab.components["motor"].said if said[0] != "turn"]
+    assert (turns[0.8], turns[1.3]) == (["started"], ["started", "stopped"])
+    assert agent.state.phase is Phase.RUNNING
+    assert turns[5.9] == ["started", "stopped", "started"]

@@ -272,6 +272,32 @@ def test_what_is_outside_may_change_while_the_inside_of_a_composite_is_repaired(
     assert history.answer(DRIVE, Call.APPLY)[0] == Running(inside)
 
 
+def test_the_actuators_inside_of_a_composite_rest_while_that_is_part_of_something_incomplete() -> None:
+    whole = IRI("urn:c:whole")
+    inside = replace(navigation(), connections=(*navigation().connections, Connection(whole, "hint", TRACKER, "hint")))
+    history = History(TASK).running(inside)
+    for rests in (True, False):
+        effects = [effect for effect in history.hear(Rewired(whole, rests)) if isinstance(effect, ApplyTo)]
+        assert {effect.component: effect.rests for effect in effects} == {TRACKER: False, DRIVE: rests}
+        history.all_answer()
+        assert history.state.phase is Phase.RUNNING
+        assert applied(history.hear(Rewired(whole, rests))) == [TRACKER], "the actuator is told once"
+        history.all_answer()
+
+
+def test_the_actuators_inside_of_a_composite_rest_once_it_is_repaired_if_that_is_still_so() -> None:
+    whole = IRI("urn:c:whole")
+    inside = replace(navigation(), connections=(*navigation().connections, Connection(whole, "hint", TRACKER, "hint")))
+    history = History(TASK).running(with_arm(inside))
+    history.hear(Failed(ARM, "1", Cause.FAIL))
+    assert history.hear(Rewired(whole, True)) == []
+    history.composed(inside)
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    told = [effect for effect in history.effects if isinstance(effect, ApplyTo) and effect.component == DRIVE]
+    assert told[-1].rests
+
+
 def test_what_gets_another_input_waits_for_its_source() -> None:
     first = navigation()
     more = replace(first, connections=(*first.connections, Connection(ODOMETRY, "pose", CONTROL, "hint")))

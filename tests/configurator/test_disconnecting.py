@@ -82,7 +82,10 @@ def test_no_actuator_acts_for_long_on_a_part_and_all_start_again_when_it_is_whol
     history = with_dormant_source()
     history.hear(LossLasts())
     rests = [effect for effect in history.hear(LossLasts(frozenset((DRIVE, ARM)))) if isinstance(effect, ApplyTo)]
-    assert [(effect.component, effect.inputs, effect.rests) for effect in rests] == [(DRIVE, {"velocity": ()}, True)]
+    assert [(effect.component, effect.inputs, effect.rests) for effect in rests] == [
+        (DRIVE, {"velocity": ()}, True),
+        (ARM, {"target": ()}, True),
+    ]
     history.answer(ODOMETRY, Call.WAKE)
     history.all_answer(Call.WAKE, Call.RESERVE)
     assert applied(history.answer(ODOMETRY, Call.APPLY)) == [CONTROL], "actuators come last, also one that it feeds"

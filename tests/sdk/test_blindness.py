@@ -7,13 +7,13 @@ from dataclasses import replace
 import pytest
 
 from selfconf.model.profile import Input, Ports
-from selfconf.model.term import IRI, Literal
+from selfconf.model.term import IRI, Literal, Term
 from selfconf.protocol.messages import Cause, Wire
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.component import Refused
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.lab import Recorder
-from tests.sdk.stage import DRIVE, DRIVE_PROFILE, KEYS, TRACKER, US, Stage, apply, follow, release, reserve
+from tests.sdk.stage import DRIVE, DRIVE_PROFILE, KEYS, THEM, TRACKER, US, Stage, apply, follow, release, reserve
 
 
 class Driving(Recorder):
@@ -68,10 +68,49 @@ def test_an_actuator_whose_configuration_stays_incomplete_rests_and_starts_when_
     assert stage.recorder.said[-1] == ("position", 2)
 
 
-def test_what_is_to_rest_acts_on_as_long_as_it_is_fed_and_so_does_what_feeds_others() -> None:
-    stage, _ = driving()
+def test_an_actuator_that_is_to_rest_does_so_though_it_is_fed_and_starts_when_it_is_told() -> None:
+    stage, tracker = driving()
     stage.call(follow(2, values={"goal": Literal("x")}, rests=True))
-    assert stage.recorder.said == []
+    assert stage.recorder.said == [("stopped",)]
+    tracker.component.emit("pose", 2)
+    stage.let_pass(2 * TOLERATES)
+    assert stage.recorder.said[1:] == []
+    stage.call(follow(3, values={"goal": Literal("x")}))
+    assert stage.recorder.said[1:] == [("goal", "x"), ("started",)]
+
+
+@pytest.mark.parametrize(
+    "inputs", [(), (Input("position", (IRI("urn:t:Pose"),), optional=True),)], ids=["none", "optional"]
+)
+def test_an_actuator_that_requires_no_input_rests_as_well(inputs: tuple[Input, ...]) -> None:
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, ports=Ports(inputs)))
+    stage.call(reserve())
+    stage.call(apply(1, US, {}, {"goal": Literal("x")}))
+    stage.call(apply(2, US, {}, {"goal": Literal("x")}, rests=True))
+    assert stage.recorder.said == [("goal", "x"), ("started",), ("stopped",)]
+    stage.let_pass(2 * TOLERATES)
+    stage.call(apply(3, US, {}, {"goal": Literal("y")}))
+    assert [one for one in stage.recorder.said[3:] if one == ("started",)] == [("started",)]
+    assert ("goal", "y") in stage.recorder.said[3:]
+
+
+def test_an_actuator_that_tasks_share_rests_while_all_of_them_lack_something() -> None:
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, ports=Ports(), shareable=True))
+    values: dict[str, Term] = {}
+    for task in (US, THEM):
+        stage.call(reserve(supervisor=task))
+        stage.call(apply(1, task, {}, values))
+    stage.call(apply(2, US, {}, values, rests=True))
+    assert stage.recorder.said[-1] == ("started",), "the other task lacks nothing"
+    stage.call(apply(2, THEM, {}, values, rests=True))
+    assert stage.recorder.said[-1] == ("stopped",)
+    stage.call(apply(3, US, {}, values))
+    assert stage.recorder.said[-1] == ("started",)
+    stage.call(release(3, US))
+    assert stage.recorder.said[-1] == ("stopped",), "the other one lacks something still"
+
+
+def test_what_feeds_others_acts_on_in_a_configuration_that_is_incomplete() -> None:
     source = Stage()
     source.call(follow())
     source.call(apply(2, US, {"position": ()}, rests=True))
