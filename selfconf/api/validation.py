@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,8 +84,10 @@ def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach 
     found: list[Diagnostic] = []
     projects: set[str] = set()
     for path in paths:
-        names = list(_files(path))
-        if not names:
+        unread: list[AuthorError] = []
+        names = list(_files(path, left_out=unread.append))
+        found += (Diagnostic(path, 1, 1, "SC-S03", f"Not all in this folder is checked: {one}.") for one in unread)
+        if not names and not unread:
             message = "There is no Turtle file (*.ttl) in this folder: nothing to validate."
             found.append(Diagnostic(path, 1, 1, "SC-S04", message, Severity.WARNING))
         for name in names:
@@ -132,16 +134,19 @@ def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:
             raise AuthorError(f"the ontology cannot be read: {error.strerror or error}", file=name) from None
 
 
-def _files(given: str, endings: tuple[str, ...] = CHECKED) -> Iterator[str]:
+def _files(
+    given: str, endings: tuple[str, ...] = CHECKED, left_out: Callable[[AuthorError], None] | None = None
+) -> Iterator[str]:
     """The files that a path stands for: those of a folder that end so, by name, or itself.
 
-    Raises AuthorError for a text that names no path.
+    Raises AuthorError for a text that names no path, and for a folder that cannot be read, unless `left_out` is given,
+    which receives the error instead.
     """
     path = checked_path(given)
     if given == "-" or not path.is_dir():
         yield given
     else:
-        found = files.within(path, endings=endings)
+        found = files.within(path, left_out, endings)
         yield from (str(file) for file in found if file.suffix != ".toml" or file.name == PROJECT_FILE)
 
 

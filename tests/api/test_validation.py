@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -57,6 +59,25 @@ def test_what_cannot_be_read_is_a_diagnostic_and_an_ontology_that_cannot_be_is_a
     assert found.code == "SC-S03"
     with pytest.raises(AuthorError, match="ontology cannot be read"):
         sc.validate(BAD, ontologies="no-such-ontology.ttl")
+
+
+def test_a_folder_that_cannot_be_read_keeps_no_other_from_being_checked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "closed").mkdir()
+    (tmp_path / "bad.ttl").write_bytes(Path(BAD).read_bytes())
+    scandir = os.scandir
+
+    def guarded(path: str) -> Iterator[os.DirEntry[str]]:
+        if str(path).endswith("closed"):
+            raise PermissionError(13, "Permission denied")
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", guarded)
+    found = {(one.file, one.code): one.message for one in sc.validate(tmp_path).diagnostics}
+    assert (str(tmp_path / "bad.ttl"), "SC-K03") in found
+    closed = f"cannot read the folder {tmp_path / 'closed'}: Permission denied"
+    assert found[str(tmp_path), "SC-S03"] == f"Not all in this folder is checked: {closed}."
 
 
 def test_an_empty_text_is_not_the_current_folder() -> None:
