@@ -94,7 +94,7 @@ def test_a_rule_that_is_broken_on_purpose_is_noticed(
     name: str, value: object, wrong: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(name, value)
-    for seed in range(40):
+    for seed in range(60, 130):
         contention = begun(seed, folder, True, True)
         contention.settle(3.0)
         if any(wrong in what for what in contention.wrong):
