@@ -202,6 +202,9 @@ class InsideOfComposite:
         if first is not None and self.runner is not None:
             self.runner.rank(first.claim.priority, first.claim.beginning)
 
+    def say_again(self, woken_by: str) -> None:
+        """Do nothing: signals go straight to the components inside."""
+
     def end(self) -> None:
         """Take the inside down; `ending` lasts as long as that takes."""
         self._again = None

@@ -43,8 +43,13 @@ class ComponentCode:
         profile: Profile,
         component: Component,
         fail: Callable[[str], None],
+        woken: Callable[[str], None] = lambda port: None,
     ) -> None:
-        """`fail` raises FAIL for what breaks."""
+        """`fail` raises FAIL for what breaks; `woken` is called when the code has been woken from its rest by an input.
+
+        That is on the bus's thread, and the input is empty where it was not one that had been unfed.
+        """
+        self._woken = woken
         self._bus, self._thread, self._component, self._fail = bus, thread, component, fail
         self._parameters = {parameter.name for parameter in profile.parameters}
         self._name = profile.component.short
@@ -146,7 +151,7 @@ class ComponentCode:
 
         def complete() -> None:
             if self._blindness.end(INCOMPLETE) and self._resting and not self._blindness.blind:
-                self._wake()
+                self._wake(INCOMPLETE)
 
         if not lacking:
             if INCOMPLETE in self._blindness.unfed:
@@ -172,7 +177,7 @@ class ComponentCode:
             return
         if self._blindness.end(port):
             if self._resting and not self._blindness.blind:
-                self._wake()
+                self._wake(port)
             self._guarded("fed", lambda: self._component.fed(port))
         if not self._resting:
             self._guarded("received", partial(self._component.received, port, signal))
@@ -230,7 +235,7 @@ class ComponentCode:
 
     # What runs on the thread of the code.
 
-    def _wake(self) -> None:
+    def _wake(self, port: str) -> None:
         self._resting = False
         self._rests += 1
         turn = self.turn
@@ -240,6 +245,8 @@ class ComponentCode:
             trouble = self._started()
         if trouble is not None:
             self._fail(trouble)
+            return
+        self._bus.wake_up(lambda: self._woken(port) if turn == self.turn else None)
 
     def _over(self, turn: int) -> str | None:
         if turn != self.turn:

@@ -9,7 +9,8 @@ promised periods, and again as long as none comes.
 
 *Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it,
 and once more one that has stood by, unless that has just issued one, or that was lost with the life of its component
-and is in sight again: it may have nothing else to issue.
+and is in sight again: it may have nothing else to issue. So it asks for what a component that has been at rest passed
+over, or knew before it was stopped.
 """
 
 from __future__ import annotations
@@ -152,6 +153,12 @@ class InputSubscription:
         if self._queue:
             self._code.signal(self._read)
 
+    def say_again(self) -> None:
+        """Deliver the last signal once more: the component's code has been started again."""
+        if not (self.muted or self.lost):
+            self._life, self._sequence = "", 0
+            self._ask()
+
     def mute(self) -> None:
         """Pass over what is received."""
         self.muted = True
@@ -248,10 +255,12 @@ class InputSubscription:
     def _ask_for_last(self, again: tuple[float, ...]) -> None:
         if self._ended or (self.issued and again is not ASK_FOR_LAST):
             return
-        key = self._keys.output(self._wire.component, self._wire.output)
-        self._bus.ask(key, b"", LAST_SIGNAL, self._latched)
+        self._ask()
         if again:
             self._bus.later(again[0], partial(self._ask_for_last, again[1:]))
+
+    def _ask(self) -> None:
+        self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, self._latched)
 
     def _latched(self, replies: Replies) -> None:
         for sample in () if self._ended else replies.samples:

@@ -84,6 +84,10 @@ class InputFollower(Protocol):
         """Take note that other tasks hold the component than before, or otherwise."""
         ...
 
+    def say_again(self, woken_by: str) -> None:
+        """Deliver the last signals once more, but for those of the input by which the code was woken from its rest."""
+        ...
+
     def end(self) -> None:
         """Follow nothing."""
         ...
@@ -191,6 +195,12 @@ class Inputs:
 
     def holders_changed(self) -> None:
         """Do nothing: the inputs of code follow the same for all that hold the component."""
+
+    def say_again(self, woken_by: str) -> None:
+        """Ask for what inputs have passed over while the code was at rest, or had before, but for one that is fed."""
+        for (port, _), subscription in self._subscriptions.items():
+            if port != woken_by:
+                subscription.say_again()
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""

@@ -97,7 +97,7 @@ class ComponentRuntime:
         self.activation = Activation()
         self._superseded = superseded
         thread = code_thread or CodeThread(inline=True)
-        self.code = ComponentCode(bus, thread, profile, component, self.fail)
+        self.code = ComponentCode(bus, thread, profile, component, self.fail, lambda port: self.inputs.say_again(port))
         self._timers: dict[int, Undo] = {}
         self._timer_numbers = itertools.count()
         self._closed = False

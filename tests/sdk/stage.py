@@ -90,12 +90,12 @@ class Stage:
         (sample,) = self.ask("state", encode(StateOf(task)) if task else b"").samples
         return decode(sample.payload, CallAnswer)
 
-    def neighbour(self, rate: float | None = None, life: str = "life-t") -> ComponentRuntime:
-        """A tracker that is active."""
-        profile = Profile(TRACKER, ports=Ports(outputs=(Output("pose", (IRI("urn:s:Pose"),), rate),)))
+    def neighbour(self, rate: float | None = None, life: str = "life-t", component: IRI = TRACKER) -> ComponentRuntime:
+        """A tracker, or another component that issues the same, that is active."""
+        profile = Profile(component, ports=Ports(outputs=(Output("pose", (IRI("urn:s:Pose"),), rate),)))
         runtime = ComponentRuntime(self.network.node(), KEYS, profile, Component(), life)
         replies: list[Replies] = []
-        self.caller.ask(KEYS.call(TRACKER, "apply"), encode(apply()), 1.0, replies.append)
+        self.caller.ask(KEYS.call(component, "apply"), encode(apply()), 1.0, replies.append)
         assert self.network.run(lambda: bool(replies), 5.0)
         return runtime
 

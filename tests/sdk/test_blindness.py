@@ -15,6 +15,8 @@ from selfconf.sdk.runtime import ComponentRuntime
 from tests.lab import Recorder
 from tests.sdk.stage import DRIVE, DRIVE_PROFILE, KEYS, THEM, TRACKER, US, Stage, apply, follow, release, reserve
 
+CHART = IRI("urn:c:chart")
+
 
 class Driving(Recorder):
     """Writes down when it is blind, and counts the ticks of a timer that it begins in `started`."""
@@ -76,7 +78,30 @@ def test_an_actuator_that_is_to_rest_does_so_though_it_is_fed_and_starts_when_it
     stage.let_pass(2 * TOLERATES)
     assert stage.recorder.said[1:] == []
     stage.call(follow(3, values={"goal": Literal("x")}))
-    assert stage.recorder.said[1:] == [("goal", "x"), ("started",)]
+    stage.let_pass(0.1)
+    assert stage.recorder.said[1:] == [("goal", "x"), ("started",), ("position", 2)], "it hears what it has missed"
+
+
+def test_an_actuator_that_starts_again_hears_the_last_of_its_other_inputs_once_more() -> None:
+    ports = Ports((*DRIVE_PROFILE.inputs, Input("map", (IRI("urn:s:Pose"),))))
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, ports=ports))
+    tracker, chart = stage.neighbour(), stage.neighbour(component=CHART)
+    inputs = {"position": (Wire(TRACKER, "pose"),), "map": (Wire(CHART, "pose"),)}
+    stage.call(reserve())
+    stage.call(apply(1, US, inputs, {"goal": Literal("x")}))
+    for source, value in ((tracker, 1), (chart, "old map")):
+        source.component.emit("pose", value)
+    stage.let_pass(0.1)
+    stage.call(apply(2, US, inputs | {"position": ()}, {"goal": Literal("x")}))
+    stage.let_pass(2 * TOLERATES)
+    assert stage.recorder.said[-1] == ("stopped",)
+    chart.component.emit("pose", "new map")
+    stage.let_pass(0.1)
+    stage.recorder.said.clear()
+    stage.call(apply(3, US, inputs, {"goal": Literal("x")}))
+    stage.let_pass(0.1)
+    assert stage.recorder.said[:3] == [("goal", "x"), ("started",), ("fed", "position")]
+    assert stage.recorder.said[3:] == [("position", 1), ("map", "new map")]
 
 
 @pytest.mark.parametrize(
