@@ -135,9 +135,9 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
             continue
         pending.add((component, Call.APPLY))
         inputs, set_, called_by = wires[component], values[component], calling[component]
-        held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, active=True)
-        gently, adopted = state.fallback is not None, before.is_adopted
         rests = state.rests and component in state.order.actuators
+        held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, active=True, rests=rests)
+        gently, adopted = state.fallback is not None, before.is_adopted
         effects.append(ApplyTo(component, state.epoch, inputs, set_, called_by, gently, adopted, rests))
     return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
 

@@ -36,15 +36,20 @@ def _follows(held: Held, components: frozenset[IRI]) -> bool:
     return any(wire.component in components for wires in held.inputs.values() for wire in wires)
 
 
-def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires], rests: bool = False) -> Reaction:
-    """Let components follow less than before, in an epoch that is newer than that of any call which says otherwise."""
+def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires]) -> Reaction:
+    """Let components follow less than before, in an epoch that is newer than that of any call which says otherwise.
+
+    One that was told to rest is told so once more, or it would act again.
+    """
     if not fewer:
         return state, ()
     epoch, held, effects = state.epoch + 1, dict(state.held), []
     for one, inputs in fewer.items():
         mine = state.held[one]
         held[one] = replace(mine, inputs=inputs, confirmed=False)
-        effects.append(ApplyTo(one, epoch, inputs, mine.values, mine.callers, adopted=mine.is_adopted, rests=rests))
+        effects.append(
+            ApplyTo(one, epoch, inputs, mine.values, mine.callers, adopted=mine.is_adopted, rests=mine.rests)
+        )
     return replace(state, epoch=epoch, held=held), tuple(effects)
 
 
@@ -89,7 +94,6 @@ def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
         for one, mine in state.held.items()
         if one in actuators and mine.active and (mine.acts or (one, Call.APPLY) not in state.pending)
     }
-    told = {one: inputs for one, inputs in resting.items() if state.held[one].acts or inputs != state.held[one].inputs}
-    known, effects = _follow_fewer(state, told, rests=True)
-    at_rest = {one: replace(known.held[one], acts=False) for one in resting}
-    return replace(known, held={**known.held, **at_rest}), effects
+    told = {one: ins for one, ins in resting.items() if ins != state.held[one].inputs or not state.held[one].rests}
+    at_rest = {one: replace(state.held[one], acts=False, rests=True) for one in resting}
+    return _follow_fewer(replace(state, held={**state.held, **at_rest}), told)

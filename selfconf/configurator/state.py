@@ -57,6 +57,8 @@ class Held:
     """Whether it was applied to: it may act, if with other inputs."""
     acts: bool = False
     """Whether it has said that it acts, if with other inputs."""
+    rests: bool = False
+    """Whether it is an actuator that was told to rest, as something lacks a part, and not to act again since."""
     confirmed: bool = False
     """Whether it has said that it acts with these inputs and values, for these callers."""
 

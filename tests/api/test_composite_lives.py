@@ -372,10 +372,15 @@ PILOTED = BASE | {
 """An actuator inside of a composite that is driven by another component inside, and not from outside."""
 
 
-def test_an_actuator_that_is_driven_from_inside_rests_as_well(tmp_path: Path) -> None:
-    lab = Lab(tmp_path, advertised=PILOTED)
-    lab.site("home", *PILOTED)
-    for name in sorted(PILOTED.keys() - {"base"}):
+SECOND = {"second-pilot": PILOTED["pilot"].replace(":pilot-1 a", ":pilot-2 sc:preference -1 ; a")}
+"""Another component that may drive it."""
+
+
+@pytest.mark.parametrize("advertised", [PILOTED, PILOTED | SECOND], ids=["one may", "two may"])
+def test_an_actuator_that_is_driven_from_inside_rests_as_well(advertised: dict[str, str], tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=advertised)
+    lab.site("home", *advertised)
+    for name in sorted(advertised.keys() - {"base"}):
         lab.component(name)
     lab.let_pass(3.0)
     slow_code(lab, "hinter1")

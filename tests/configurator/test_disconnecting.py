@@ -7,10 +7,20 @@ from dataclasses import replace
 import pytest
 
 from selfconf.configurator.effects import ApplyTo, AwaitRelease
-from selfconf.configurator.events import Adopted, Call, Discovered, Event, Failed, Improvable, LossLasts, Reconnected
+from selfconf.configurator.events import (
+    Adopted,
+    Call,
+    Discovered,
+    Event,
+    Failed,
+    Improvable,
+    LossLasts,
+    Reconnected,
+    Rewired,
+)
 from selfconf.configurator.starting_order import wiring
 from selfconf.configurator.state import Phase
-from selfconf.model.configuration import Connection
+from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Wire
@@ -31,6 +41,9 @@ from tests.configurator.builders import (
     state_in,
     with_arm,
 )
+
+LAMP = IRI("urn:c:lamp")
+LOST = Failed(TRACKER, "1", Cause.CRASH)
 
 
 @pytest.mark.parametrize("holder", [OTHERS, LOWER])
@@ -106,6 +119,44 @@ def test_an_actuator_rests_that_acts_and_is_just_being_connected_anew() -> None:
     assert history.state.phase is Phase.RUNNING
 
 
+def driven_by_calls() -> Configuration:
+    """The arm has no input: it calls an operation of a lamp, which may be lost as well."""
+    calls = Connection(LAMP, "shine()", ARM, "light()")
+    roles = (Assignment(IRI("urn:r:arm"), (ARM,)), Assignment(IRI("urn:r:lamp"), (LAMP,)))
+    whole = navigation()
+    return replace(whole, assignments=(*whole.assignments, *roles), connections=(*whole.connections, calls))
+
+
+@pytest.mark.parametrize("events", [(Reconnected(), LOST), (LOST, Reconnected())], ids=["before", "after"])
+def test_an_actuator_without_inputs_rests_though_nothing_is_sure_any_more(events: tuple[Event, ...]) -> None:
+    history = History(TASK).running(driven_by_calls())
+    history.hear(*events)
+    told = [effect for effect in history.hear(LossLasts(frozenset((ARM,)))) if isinstance(effect, ApplyTo)]
+    assert [one.rests for one in told if one.component == ARM] == [True]
+    assert ARM not in applied(history.hear(LossLasts(frozenset((ARM,))))), "it is told once"
+
+
+def test_an_actuator_that_rests_rests_on_when_what_it_calls_is_lost_as_well() -> None:
+    history = History(TASK).running(driven_by_calls())
+    history.hear(LOST)
+    history.hear(LossLasts(frozenset((ARM,))))
+    history.hear(Failed(LAMP, "1", Cause.CRASH))
+    told = [effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo) and effect.component == ARM]
+    assert [(one.inputs, one.rests) for one in told] == [({"light()": ()}, True)]
+
+
+def test_an_actuator_inside_of_a_composite_that_is_to_rest_rests_on_when_something_inside_is_lost() -> None:
+    whole = IRI("urn:c:whole")
+    ports = (Connection(whole, "hint", CONTROL, "hint"), Connection(TRACKER, "pose", DRIVE, "way"))
+    inside = replace(navigation(), connections=(*navigation().connections, *ports))
+    history = History(TASK).running(inside)
+    history.hear(Rewired(whole, True))
+    history.all_answer()
+    history.hear(LOST)
+    told = [effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)]
+    assert {one.component: one.rests for one in told} == {CONTROL: False, DRIVE: True}
+
+
 @pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.REFUSED, Phase.DISMANTLING, Phase.IDLE])
 def test_nothing_comes_of_a_loss_that_was_made_good_or_has_ended_the_task(phase: Phase) -> None:
     history = History(state_in(phase))
@@ -117,9 +168,6 @@ def test_actuators_act_on_in_what_ran_while_something_better_is_prepared() -> No
     history.hear(Improvable(), Discovered())
     history.composed(with_arm(navigation()))
     assert history.hear(LossLasts(frozenset((DRIVE, ARM)))) == []
-
-
-LOST = Failed(TRACKER, "1", Cause.CRASH)
 
 
 @pytest.mark.parametrize("events", [(Reconnected(), LOST), (LOST, Reconnected())], ids=["before", "after"])

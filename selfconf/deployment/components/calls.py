@@ -217,7 +217,8 @@ class Calls:
             claim = self._calling.claim(component, self._state().epoch)
             inputs, spare = self._ends.wires(wires[component]), self._ends.wires(outputs)
             who = self._ends.callers(calling[component])
-            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component], callers=who)
+            rests = self._state().held[component].rests
+            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component], callers=who, rests=rests)
             self._calling.ask(component, Call.APPLY, message)
 
     # Turning off.
