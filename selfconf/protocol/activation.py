@@ -89,6 +89,8 @@ class Hold:
         """The hold of a task for which the component now does what the task wished."""
         if self.wish is None:
             return self
+        if isinstance(self.wish, Apply):
+            return Hold(replace(self.wish, epoch=self.claim.epoch), self.active)
         return Hold(replace(self.claim, inputs=self.wish.inputs, values=self.wish.values), self.active)
 
 
@@ -271,7 +273,8 @@ def _wish(activation: Activation, own: Hold | None, call: Reserve | Apply) -> Ac
         return activation
     others = tuple(hold for hold in activation.holds if hold is not own)
     if own.active:
-        return replace(activation, holds=(*others, replace(own, wish=call)))
+        claim = replace(own.claim, supervisor=call.supervisor)
+        return replace(activation, holds=(*others, replace(own, claim=claim, wish=call)))
     ended = (*_ended(activation, call), (call.task, own.claim.epoch))[-MOST_ENDED:]
     return replace(activation, holds=others, ended=ended)
 
@@ -286,6 +289,14 @@ def served(before: Activation, after: Activation) -> tuple[str, ...]:
         and hold.claim.epoch == before.epoch_of(hold.claim.task)  # else it has been served just now
         and all(other.wishes == hold.wishes for other in after.holds)
     )
+
+
+def granted(activation: Activation) -> Apply | None:
+    """What is wished of a component by all that hold it, since those that disagreed have let go of it."""
+    wish = next((hold.wish for hold in activation.holds if isinstance(hold.wish, Apply)), None)
+    if wish is None or activation.phase is not ActivationPhase.ACTIVE:
+        return None
+    return wish if all(hold.wishes == (wish.inputs, wish.values) for hold in activation.holds) else None
 
 
 def _no_longer_waiting(activation: Activation, task: str) -> Activation:

@@ -282,7 +282,7 @@ class ComponentRuntime:
             unseen=self.supervision.unseen,
         )
         if verdict is not Verdict.DONE:
-            self.activation = after
+            self._become(after, step)
             detail = "it has failed" if verdict is Verdict.REFUSED else ""
             busy = verdict is Verdict.BUSY
             reply(self._busy(message) if busy else self._verdict(verdict, message.task, detail))
@@ -294,6 +294,7 @@ class ComponentRuntime:
             self._apply(message, step, reply)
         elif isinstance(message, Release):
             self.code.lack_a_part(after.rests)
+            self._grant()
             if step is ActivationStep.STOP and self.profile.signal_outputs:
                 # For inputs that follow it all the same; it may be held by now for a task that was reserved.
                 self._put_fail(Cause.LET_GO, "it was released", epoch=0)
@@ -457,6 +458,13 @@ class ComponentRuntime:
     def _drop(self, tasks: Sequence[str], epoch: int = 0) -> None:
         self._become(*table.drop(self.activation, tasks, epoch))
         self.code.lack_a_part(self.activation.rests)
+        self._grant()
+
+    def _grant(self) -> None:
+        """Do what is wished by all that still hold the component; those that wait for it ask again, and are served."""
+        wish = table.granted(self.activation)
+        if wish is not None:
+            self._obey(wish, lambda answer: None)
 
     def _stop(self) -> None:
         """Be off: no timers, no inputs, and the component's code at rest."""

@@ -20,6 +20,7 @@ from selfconf.protocol.activation import (
     Hold,
     drop,
     fail,
+    granted,
     in_the_way,
     obey,
     offer,
@@ -501,6 +502,27 @@ def test_a_component_that_is_shared_is_cut_off_once_all_ask_for_that() -> None:
     assert (verdict, inputs_of(after)) == (Verdict.DONE, dict.fromkeys((A, B), nothing))
 
 
+def test_what_a_task_wishes_is_granted_once_nobody_disagrees_any_more() -> None:
+    wish = call_of(Apply, A, 6, inputs=OTHER)
+    shared, _, _ = obey(shared_by(A, B, C), wish, shareable=True)
+    assert granted(shared) is None
+    shared, _, _ = obey(shared, call_of(Release, B, 6), shareable=True)
+    assert granted(shared) is None
+    shared, _, _ = obey(shared, call_of(Release, C, 6), shareable=True)
+    assert granted(shared) == wish
+    assert granted(fail(shared)[0]) is None, "it would hide the failure"
+    after, verdict, _ = obey(shared, wish, shareable=True)
+    assert (verdict, granted(after)) == (Verdict.DONE, None)
+
+
+def test_another_configurator_of_a_task_goes_on_with_it_also_where_it_wishes_something_else() -> None:
+    call = call_of(Apply, A, 6, run=2, inputs=OTHER)
+    gone = frozenset((supervisor(A),))
+    shared, verdict, _ = obey(shared_by(A, B), call, shareable=True, gone=gone)
+    assert (verdict, inputs_of(shared)) == (Verdict.BUSY, dict.fromkeys((A, B), INPUTS))
+    assert orphan(shared, supervisor(A))[0] == shared, "its configurator lives"
+
+
 @pytest.mark.parametrize("ends", ["release", "orphan"])
 def test_a_task_is_told_when_nobody_disagrees_any_more_with_what_it_wishes(ends: str) -> None:
     shared, _, _ = obey(shared_by(A, B), call_of(Apply, A, 6, inputs=OTHER), shareable=True)
@@ -650,7 +672,10 @@ def _check_call(
         kept = [hold for hold in before.holds if hold is not own]
         assert [hold for hold in after.holds if hold.claim.task != call.task] == kept
         mine = after.hold(call.task)
-        assert (mine and (mine.claim, mine.active)) == (own and (own.claim, own.active)) or (own and not own.active)
+        same = (mine and (mine.claim.epoch, mine.wants, mine.active)) == (
+            own and (own.claim.epoch, own.wants, own.active)
+        )
+        assert same or (own and not own.active)
     if verdict is Verdict.DONE:
         assert own is None or own.claim.supervisor in (call.supervisor, *gone)
         assert after.epoch_of(call.task) == call.epoch

@@ -135,6 +135,44 @@ def test_an_actuator_that_tasks_share_rests_while_all_of_them_lack_something() -
     assert stage.recorder.said[-1] == ("stopped",), "the other one lacks something still"
 
 
+def shared_drive() -> Stage:
+    """An actuator that acts for two tasks, and follows the tracker for both."""
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, shareable=True))
+    stage.others.announce(THEM)
+    tracker = stage.neighbour()
+    for task in (US, THEM):
+        stage.call(reserve(supervisor=task, inputs=follow().inputs))
+        stage.call(follow(supervisor=task))
+    tracker.component.emit("pose", 1)
+    stage.let_pass(0.1)
+    return stage
+
+
+@pytest.mark.parametrize("ends", ["release", "orphan"])
+def test_a_shared_actuator_rests_when_the_task_lets_go_of_it_that_lacked_nothing(ends: str) -> None:
+    stage = shared_drive()
+    stage.call(apply(2, THEM, {"position": ()}, rests=True))
+    stage.let_pass(0.1)
+    assert stage.recorder.said[-1] == ("position", 1), "the other task lacks nothing"
+    if ends == "release":
+        stage.call(release(2, US))
+    else:
+        stage.leave()
+        stage.let_pass(1.2)
+    assert stage.recorder.said[-1] == ("stopped",)
+    stage.let_pass(0.1)
+    stage.call(follow(3, supervisor=THEM))
+    stage.let_pass(0.1)
+    assert (stage.recorder.said[-1] == ("position", 1)) is (ends == "release"), "the tracker has ended with its task"
+
+
+def test_a_shared_actuator_rests_when_the_last_of_its_tasks_says_so() -> None:
+    stage = shared_drive()
+    for task in (US, THEM):
+        stage.call(apply(2, task, {"position": ()}, rests=True))
+    assert stage.recorder.said[-1] == ("stopped",)
+
+
 def test_what_feeds_others_acts_on_in_a_configuration_that_is_incomplete() -> None:
     source = Stage()
     source.call(follow())
