@@ -186,8 +186,10 @@ class InsideOfComposite:
             priority=claim.priority,
             ended=self._ended,
         )
-        self.runner = TaskRunner(self._bus, self._ecology, request, beginning=claim.beginning)
-        self.runner.start()
+        self.runner = runner = TaskRunner(self._bus, self._ecology, request, beginning=claim.beginning)
+        runner.start()
+        if self._rests:
+            runner.rewire(rests=True)
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once the inside runs, or cannot."""
@@ -201,6 +203,13 @@ class InsideOfComposite:
         first = self.runtime.activation.first
         if first is not None and self.runner is not None:
             self.runner.rank(first.claim.priority, first.claim.beginning)
+
+    def lack_a_part(self, lacking: bool) -> None:
+        """Let the actuators inside rest, or act again, if a task has let go of the composite that was in the way."""
+        if lacking != self._rests:
+            self._rests = lacking
+            if self.runner is not None:
+                self.runner.rewire(lacking)
 
     def say_again(self, woken_by: str) -> None:
         """Do nothing: signals go straight to the components inside."""

@@ -84,6 +84,10 @@ class InputFollower(Protocol):
         """Take note that other tasks hold the component than before, or otherwise."""
         ...
 
+    def lack_a_part(self, lacking: bool) -> None:
+        """Let actuators inside rest while all tasks that the component acts for lack a part."""
+        ...
+
     def say_again(self, woken_by: str) -> None:
         """Deliver the last signals once more, but for those of the input by which the code was woken from its rest."""
         ...
@@ -195,6 +199,9 @@ class Inputs:
 
     def holders_changed(self) -> None:
         """Do nothing: the inputs of code follow the same for all that hold the component."""
+
+    def lack_a_part(self, lacking: bool) -> None:
+        """Do nothing: it is the code that rests."""
 
     def say_again(self, woken_by: str) -> None:
         """Ask for what inputs have passed over while the code was at rest, or had before, but for one that is fed."""

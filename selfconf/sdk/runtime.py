@@ -293,7 +293,7 @@ class ComponentRuntime:
         if isinstance(message, Apply):
             self._apply(message, step, reply)
         elif isinstance(message, Release):
-            self.code.lack_a_part(after.rests)
+            self._rest_or_act()
             self._grant()
             if step is ActivationStep.STOP and self.profile.signal_outputs:
                 # For inputs that follow it all the same; it may be held by now for a task that was reserved.
@@ -346,7 +346,7 @@ class ComponentRuntime:
                 self._tell_waiting("")
         self.inputs.follow(message)
         self.operations.follow(message)
-        self.code.lack_a_part(self.activation.rests)  # once what it lost is known to be unfed
+        self._rest_or_act()  # once what it lost is known to be unfed
 
     def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
         if self._after_start is waiting:
@@ -457,8 +457,14 @@ class ComponentRuntime:
 
     def _drop(self, tasks: Sequence[str], epoch: int = 0) -> None:
         self._become(*table.drop(self.activation, tasks, epoch))
-        self.code.lack_a_part(self.activation.rests)
+        self._rest_or_act()
         self._grant()
+
+    def _rest_or_act(self) -> None:
+        """Let actuators rest while all tasks that the component acts for lack a part, and else act."""
+        lacking = self.activation.rests
+        self.code.lack_a_part(lacking)
+        self.inputs.lack_a_part(lacking)
 
     def _grant(self) -> None:
         """Do what is wished by all that still hold the component; those that wait for it ask again, and are served."""
