@@ -61,7 +61,7 @@ class ComponentCode:
         """Counts starts and stops: what belongs to an earlier one is not run any more."""
         self._wanted_turn = self._acting_turn = self._started_turn = -1
         self._rests = 0
-        self._on = self._resting = False
+        self._on = self._resting = self._lacking = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
         required = frozenset(port.name for port in profile.required if not port.is_operation)
         self._blindness = Blindness(bus, required | {INCOMPLETE}, None if profile.outputs else tolerates, self._rest)
@@ -150,9 +150,12 @@ class ComponentCode:
         """Count an actuator as blind for as long as its tasks have lacked a part, and until they lack none any more."""
 
         def complete() -> None:
+            if self._lacking:  # once more, while the code was busy
+                return
             if self._blindness.end(INCOMPLETE) and self._resting and not self._blindness.blind:
                 self._wake(INCOMPLETE)
 
+        self._lacking = lacking
         if not lacking:
             if INCOMPLETE in self._blindness.unfed:
                 self._thread.call(complete)

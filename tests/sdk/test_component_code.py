@@ -5,12 +5,14 @@ from __future__ import annotations
 import itertools
 import threading
 import time
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Urgency
+from selfconf.model.profile import Ports, Profile
 from selfconf.model.term import IRI, Literal
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import decode, encode
@@ -23,7 +25,6 @@ from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.living import PATIENCE, LivingStage, until
 from tests.sdk.stage import (
-    CAP,
     CAP_PROFILE,
     DRIVE,
     DRIVE_PROFILE,
@@ -42,13 +43,13 @@ from tests.sdk.stage import (
 class Split:
     """A component in simulated time whose code runs when the test says so, as if it were busy until then."""
 
-    def __init__(self, component: Component) -> None:
+    def __init__(self, component: Component, profile: Profile = CAP_PROFILE) -> None:
         self.network, self.code = Network(), CodeThread(inline=False)
         self.caller = self.network.node()
         self.leave = self.caller.announce(US)
         self.caller.announce(THEM)
         node = self.network.node()
-        self.runtime = ComponentRuntime(node, KEYS, CAP_PROFILE, component, "life-1", self.code)
+        self.runtime = ComponentRuntime(node, KEYS, profile, component, "life-1", self.code)
         self.answers: list[CallAnswer] = []
 
     def let_pass(self, seconds: float = 0.1) -> None:
@@ -62,7 +63,7 @@ class Split:
             self.answers += [decode(sample.payload, CallAnswer) for sample in replies.samples]
 
         name = {Reserve: "reserve", Apply: "apply", Release: "release"}[type(message)]
-        self.caller.ask(KEYS.call(CAP, name), encode(message), 100.0, answered)
+        self.caller.ask(KEYS.call(self.runtime.profile.component, name), encode(message), 100.0, answered)
         self.let_pass()
 
     def run_code(self) -> None:
@@ -204,6 +205,21 @@ def test_a_component_is_preempted_though_its_code_is_busy() -> None:
     split.run_code()
     split.call(reserve(1, THEM, priority=1))
     assert split.verdicts == [Verdict.DONE, Verdict.BUSY, Verdict.DONE]
+
+
+def test_an_actuator_that_is_to_act_and_to_rest_again_while_its_code_is_busy_rests() -> None:
+    split = Split(recorder := Recorder(), replace(DRIVE_PROFILE, ports=Ports()))
+    split.call(reserve(1, US))
+    split.call(apply(1, US))
+    split.run_code()
+    for rests in (True, False, True):
+        split.call(apply(1, US, rests=rests))
+    split.run_code()
+    assert recorder.said[-1] == ("stopped",)
+    for rests in (False, True, False):
+        split.call(apply(1, US, rests=rests))
+    split.run_code()
+    assert recorder.said[-1] == ("started",)
 
 
 def test_a_timer_that_is_late_is_run_once_and_not_made_up_for() -> None:
