@@ -505,6 +505,28 @@ def test_of_tasks_that_share_what_has_lost_its_source_the_one_of_higher_priority
     assert lab.active() >= {"source1", "filter", "high"}
 
 
+@pytest.mark.parametrize("patient", [True, False])
+def test_of_tasks_that_share_the_one_that_gives_way_follows_what_the_other_insists_on(
+    tmp_path: Path, patient: bool
+) -> None:
+    """It would rather follow the second of three sources, which the other one does not."""
+    third = {"source2": _SHARED["source0"].replace("source0", "source2").replace("-0", "-2")}
+    near = {name: (_SHARED | third)[name].replace(":Source ;", ":Source , :Near ;") for name in ("source0", "source2")}
+    advertised = _SHARED | near
+    lab = Lab(tmp_path, advertised=advertised)
+    lab.site("shared", *advertised)
+    for name in advertised:
+        lab.component(name)
+    insists = lab.agent(_SHARING.replace("SINK", "High").replace(":Source ;", ":Near ;"), (), name="first")
+    assert lab.running(insists)
+    gives_way = lab.agent(_SHARING.replace("SINK", "Low"), (), patient=patient, name="second")
+    assert lab.running(gives_way)
+    lab.components["source0"].fail("it is dark")
+    lab.let_pass(4.0)
+    assert lab.active() == {"source2", "filter", "high", "low"}
+    assert {insists.state.phase, gives_way.state.phase} == {Phase.RUNNING}
+
+
 def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
     """It lives, but hears nothing of what it is asked."""
     low = lab.agent()
