@@ -84,10 +84,9 @@ class Hold:
         newest = self.wish or self.claim
         return newest.inputs, newest.values
 
-    @property
-    def fulfilled(self) -> Hold:
-        """The hold of a task for which the component now does what the task wished."""
-        if self.wish is None:
+    def fulfilled_by(self, call: Apply) -> Hold:
+        """The hold of a task once the component does as another task says, which may be what this one wished."""
+        if self.wish is None or self.wishes != (call.inputs, call.values):
             return self
         if isinstance(self.wish, Apply):
             return Hold(replace(self.wish, epoch=self.claim.epoch), self.active)
@@ -213,10 +212,11 @@ def _activate(activation: Activation, call: Apply, gone: frozenset[str]) -> Acti
     """Act for a task, and no more for tasks whose supervisor is gone: those cannot say any more what they want."""
     others = [hold for hold in activation.holds if hold.claim.task != call.task]
     left = {hold.claim.task: hold.claim.epoch for hold in others if hold.claim.supervisor in gone}
+    kept = (hold for hold in others if hold.claim.task not in left)
     return replace(
         activation,
         phase=ActivationPhase.ACTIVE,
-        holds=(*(hold.fulfilled for hold in others if hold.claim.task not in left), Hold(call, True)),
+        holds=(*(hold.fulfilled_by(call) for hold in kept), Hold(call, True)),
         ended=(*_ended(activation, call), *left.items())[-MOST_ENDED:],
         passed=frozenset(),
     )
@@ -240,9 +240,11 @@ def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gon
     if any(one.task == activation.kept_for != call.task and _rank(one) < _rank(call) for one in activation.waiting):
         return True
     others = [h for h in activation.holds if h.claim.task != call.task and h.claim.supervisor not in gone]
-    return len(others) >= MOST_HOLDING or any(
-        not shareable or hold.wishes != (call.inputs, call.values) for hold in others
-    )
+    wanted = call.inputs, call.values
+    own = activation.hold(call.task)
+    if own is not None and own.active and all(hold.wants == wanted for hold in (own, *others)):
+        return False  # it goes on as it is, whatever others wish
+    return len(others) >= MOST_HOLDING or any(not shareable or hold.wishes != wanted for hold in others)
 
 
 def _others_may_agree(own: Hold | None, call: Reserve | Apply) -> bool:

@@ -502,6 +502,26 @@ def test_a_component_that_is_shared_is_cut_off_once_all_ask_for_that() -> None:
     assert (verdict, inputs_of(after)) == (Verdict.DONE, dict.fromkeys((A, B), nothing))
 
 
+@pytest.mark.parametrize("kind", [Apply, Reserve])
+def test_a_task_may_ask_again_for_what_it_has_though_another_wishes_something_else(kind: type[Call]) -> None:
+    nothing = {"position": ()}
+    shared, _, _ = obey(shared_by(A, B), call_of(Apply, B, 6, inputs=nothing), shareable=True)
+    shared, verdict, step = obey(shared, call_of(kind, A, 6, priority=1, inputs=INPUTS), shareable=True)
+    assert (verdict, step, outranked(shared)) == (Verdict.DONE, ActivationStep.NONE, ())
+    assert inputs_of(shared) == dict.fromkeys((A, B), INPUTS), "it acts as before"
+    shared, verdict, _ = obey(shared, call_of(Apply, A, 7, inputs=nothing), shareable=True)
+    assert (verdict, inputs_of(shared)) == (Verdict.DONE, dict.fromkeys((A, B), nothing))
+
+
+def test_a_task_wants_again_what_it_has_once_another_wishes_something_else_than_it_does() -> None:
+    shared = shared_by(A, B)
+    for task, inputs in ((A, OTHER), (B, THIRD)):
+        shared, verdict, _ = obey(shared, call_of(Apply, task, 6, inputs=inputs), shareable=True)
+        assert verdict is Verdict.BUSY
+    shared, verdict, _ = obey(shared, call_of(Apply, A, 7, inputs=INPUTS), shareable=True)
+    assert (verdict, inputs_of(shared)) == (Verdict.DONE, dict.fromkeys((A, B), INPUTS))
+
+
 def test_what_a_task_wishes_is_granted_once_nobody_disagrees_any_more() -> None:
     wish = call_of(Apply, A, 6, inputs=OTHER)
     shared, _, _ = obey(shared_by(A, B, C), wish, shareable=True)
