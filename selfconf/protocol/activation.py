@@ -79,18 +79,28 @@ class Hold:
         return self.claim.inputs, self.claim.values
 
     @property
-    def wishes(self) -> tuple[object, object]:
-        """The inputs and the values of parameters that its task has asked for last."""
-        newest = self.wish or self.claim
-        return newest.inputs, newest.values
+    def newest(self) -> Reserve | Apply:
+        """What its task has asked for last."""
+        return self.wish or self.claim
+
+    def agrees_with(self, call: Reserve | Apply) -> bool:
+        """Whether its task wishes what another one asks for; one that has an actuator rest leaves that to others."""
+        mine = self.newest
+        if mine.values != call.values:
+            return False
+        rests = isinstance(mine, Apply) and mine.rests
+        left = {port: wires for port, wires in mine.inputs.items() if wires} if rests else {}
+        return mine.inputs == call.inputs or (rests and left.items() <= call.inputs.items())
 
     def fulfilled_by(self, call: Apply) -> Hold:
         """The hold of a task once the component does as another task says, which may be what this one wished."""
-        if self.wish is None or self.wishes != (call.inputs, call.values):
+        mine, wanted = self.newest, (call.inputs, call.values)
+        if not self.agrees_with(call) or (self.wish is None and self.wants == wanted):
             return self
-        if isinstance(self.wish, Apply):
-            return Hold(replace(self.wish, epoch=self.claim.epoch), self.active)
-        return Hold(replace(self.claim, inputs=self.wish.inputs, values=self.wish.values), self.active)
+        if not isinstance(mine, Apply):
+            return Hold(replace(self.claim, inputs=call.inputs, values=call.values), self.active)
+        claim = replace(mine, epoch=self.claim.epoch, inputs=call.inputs)
+        return Hold(claim, self.active, None if mine.inputs == call.inputs else mine)
 
 
 @immutable
@@ -244,7 +254,7 @@ def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gon
     own = activation.hold(call.task)
     if own is not None and own.active and all(hold.wants == wanted for hold in (own, *others)):
         return False  # it goes on as it is, whatever others wish
-    return len(others) >= MOST_HOLDING or any(not shareable or hold.wishes != wanted for hold in others)
+    return len(others) >= MOST_HOLDING or any(not shareable or not hold.agrees_with(call) for hold in others)
 
 
 def _others_may_agree(own: Hold | None, call: Reserve | Apply) -> bool:
@@ -255,7 +265,8 @@ def _others_may_agree(own: Hold | None, call: Reserve | Apply) -> bool:
     """
     if own is None or not own.active or not isinstance(call, Apply):
         return False
-    return own.wishes != (call.inputs, call.values) or not all(call.inputs.values())
+    newest = own.newest
+    return (newest.inputs, newest.values) != (call.inputs, call.values) or not all(call.inputs.values())
 
 
 def _wait(activation: Activation, call: Reserve | Apply) -> Activation:
@@ -289,16 +300,16 @@ def served(before: Activation, after: Activation) -> tuple[str, ...]:
         for hold in after.holds
         if hold.claim.task in wished
         and hold.claim.epoch == before.epoch_of(hold.claim.task)  # else it has been served just now
-        and all(other.wishes == hold.wishes for other in after.holds)
+        and all(other.agrees_with(hold.newest) for other in after.holds)
     )
 
 
 def granted(activation: Activation) -> Apply | None:
     """What is wished of a component by all that hold it, since those that disagreed have let go of it."""
-    wish = next((hold.wish for hold in activation.holds if isinstance(hold.wish, Apply)), None)
-    if wish is None or activation.phase is not ActivationPhase.ACTIVE:
+    if activation.phase is not ActivationPhase.ACTIVE:
         return None
-    return wish if all(hold.wishes == (wish.inputs, wish.values) for hold in activation.holds) else None
+    wishes = [hold.wish for hold in activation.holds if isinstance(hold.wish, Apply)]
+    return next((wish for wish in wishes if all(hold.agrees_with(wish) for hold in activation.holds)), None)
 
 
 def _no_longer_waiting(activation: Activation, task: str) -> Activation:

@@ -527,6 +527,42 @@ def test_of_tasks_that_share_the_one_that_gives_way_follows_what_the_other_insis
     assert {insists.state.phase, gives_way.state.phase} == {Phase.RUNNING}
 
 
+def test_a_shared_actuator_acts_again_for_a_task_that_is_whole_before_another_is(tmp_path: Path) -> None:
+    """Both have lost what it follows, and for long; one has lost something else as well, and that for longer."""
+    lights = {
+        f"light{n}": f":light{n} a sc:Component, :Light ; sc:preference -{n} ;"
+        ' sc:hasOutput [ sc:name "out" ; sc:signalType :L ] .'
+        for n in range(2)
+    }
+    sinks = {
+        "low": ':low a sc:Component, :Low ; sc:shareable true ; sc:hasInput [ sc:name "y" ; sc:signalType :Y ] .',
+        "high": ':high a sc:Component, :High ; sc:hasInput [ sc:name "l" ; sc:signalType :L ] .',
+    }
+    lab = Lab(tmp_path, advertised=_SHARED | lights | sinks)
+    lab.site("shared", *lab.advertised)
+    for name in lab.advertised:
+        lab.component(name)
+    for name, seconds in (("source1", 3.0), ("light1", 7.5)):
+        slow_code(lab, name)
+        lab.components[name].slow = seconds
+    text = _SHARING.replace("SINK", "Low")
+    more = ":light a sc:Role ; sh:class :Light ; sc:feeds :high . :high a sc:Role ; sh:class :High ."
+    whole = lab.agent(text, (), name="whole")
+    assert lab.running(whole)
+    lacking = lab.agent(text.replace(":sink-role )", ":sink-role :light :high )") + more, (), name="lacking")
+    assert lab.running(lacking)
+    for name in ("source0", "light0"):
+        lab.components[name].fail("it is dark")
+    lab.let_pass(2.0)
+    assert lab.components["low"].said[-1] == ("stopped",)
+    for seconds, phase in ((3.0, Phase.DEPLOYING), (5.0, Phase.RUNNING)):
+        lab.let_pass(seconds)
+        lab.components["filter"].emit("out", seconds)
+        lab.let_pass(0.1)
+        assert lab.components["low"].said[-1] == ("y", seconds)
+        assert (whole.state.phase, lacking.state.phase) == (Phase.RUNNING, phase)
+
+
 def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
     """It lives, but hears nothing of what it is asked."""
     low = lab.agent()

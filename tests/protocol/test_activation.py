@@ -502,6 +502,28 @@ def test_a_component_that_is_shared_is_cut_off_once_all_ask_for_that() -> None:
     assert (verdict, inputs_of(after)) == (Verdict.DONE, dict.fromkeys((A, B), nothing))
 
 
+@pytest.mark.parametrize("first", ["rests", "acts"])
+def test_a_task_that_has_a_shared_actuator_rest_leaves_what_it_follows_to_the_others(first: str) -> None:
+    nothing = {"position": ()}
+    rest = call_of(Apply, B, 6, inputs=nothing, rests=True)
+    shared = shared_by(A, B)
+    if first == "acts":
+        shared, verdict, _ = obey(shared, rest, shareable=True)
+        assert (verdict, shared.rests) == (Verdict.BUSY, False)
+    else:
+        for task in (A, B):
+            shared, _, _ = obey(shared, call_of(Apply, task, 6, inputs=nothing, rests=True), shareable=True)
+        assert shared.rests
+    shared, verdict, _ = obey(shared, call_of(Apply, A, 7, inputs=OTHER), shareable=True)
+    assert (verdict, inputs_of(shared), shared.rests) == (Verdict.DONE, dict.fromkeys((A, B), OTHER), False)
+    resting, verdict, _ = obey(shared, call_of(Apply, A, 8, inputs=nothing, rests=True), shareable=True)
+    assert (verdict, resting.rests, inputs_of(resting)) == (Verdict.DONE, True, dict.fromkeys((A, B), nothing))
+    left, _, _ = obey(shared, call_of(Release, A, 8), shareable=True)
+    assert (left.rests, granted(left)) == (True, rest)
+    whole, verdict, _ = obey(shared, call_of(Apply, B, 7, inputs=OTHER), shareable=True)
+    assert (verdict, granted(whole)) == (Verdict.DONE, None)
+
+
 @pytest.mark.parametrize("kind", [Apply, Reserve])
 def test_a_task_may_ask_again_for_what_it_has_though_another_wishes_something_else(kind: type[Call]) -> None:
     nothing = {"position": ()}
@@ -618,15 +640,15 @@ def test_a_component_is_kept_for_no_task_once_another_that_ranks_before_it_has_i
 
 GONE = {supervisor(task, run): False for task in (A, B, C) for run in (1, 2)}
 calls = st.builds(
-    lambda kind, task, epoch, run, priority, wants, waits: call_of(
+    lambda kind, task, epoch, run, priority, wants, idles: call_of(
         kind,
         task,
         epoch,
         run,
         priority=priority,
         beginning=float(ord(task[0])),
-        **({} if kind is Release else {"inputs": wants}),
-        **({"waits": waits} if kind is Reserve else {}),
+        **({} if kind is Release else {"inputs": {"position": ()} if kind is Apply and idles else wants}),
+        **({} if kind is Release else {"waits" if kind is Reserve else "rests": idles}),
     ),
     st.sampled_from([Reserve, Apply, Release]),
     st.sampled_from([A, B, C]),
@@ -652,6 +674,8 @@ def test_the_invariants_hold_in_every_history(
             kind = {"shareable": shareable, "actuator": actuator}
             activation, verdict, told = obey(activation, event, **kind, gone=frozenset(gone))
             _check_call(before, event, activation, verdict, gone, shareable, actuator)
+        wish = granted(activation)
+        assert wish is None or obey(activation, wish, shareable=shareable, gone=frozenset(gone))[1] is Verdict.DONE
         for task in (A, B, C):
             assert activation.epoch_of(task) >= before.epoch_of(task)
         running = _check_step(running, told)
