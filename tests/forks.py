@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import time
 import traceback
 from collections import OrderedDict, deque
 from collections.abc import Sequence
@@ -23,6 +24,8 @@ import pytest
 
 from tests import schedule
 
+LEAVING = 20.0
+"""Seconds that a process may take to leave the fixtures of its tests when no further ones are to be run."""
 AHEAD = 3
 """Tests that a process has before it: it waits for no further ones, and knows after each what the next one needs."""
 
@@ -73,9 +76,19 @@ class Fork:
         self.connection.close()
         os.waitpid(self.process, 0)
 
-    def kill(self) -> None:
-        """End it."""
-        os.kill(self.process, signal.SIGKILL)
+    def interrupt(self) -> None:
+        """Have it leave the test that it runs, and begin no other."""
+        os.kill(self.process, signal.SIGINT)
+
+    def end(self) -> None:
+        """Wait until it has left its fixtures, which may have begun programs; kill it if that takes too long."""
+        deadline = time.monotonic() + LEAVING
+        try:
+            while wait([self.connection], max(0.0, deadline - time.monotonic())):
+                self.connection.recv()
+            os.kill(self.process, signal.SIGKILL)
+        except (EOFError, OSError):
+            pass
         self.over()
 
 
@@ -104,9 +117,13 @@ class Forks:
                         raise session.Failed(session.shouldfail)
                     if session.shouldstop:
                         raise session.Interrupted(session.shouldstop)
+        except (session.Failed, session.Interrupted):  # a terminal interrupts all of its processes itself
+            for fork in self._forks.values():
+                fork.interrupt()
+            raise
         finally:
             for fork in self._forks.values():
-                fork.kill()
+                fork.end()
 
     def _begin(self, number: int) -> None:
         fork = Fork(self._session, number)
@@ -186,7 +203,7 @@ def _work(session: pytest.Session, number: int, connection: Connection) -> NoRet
         _run_tests(session, number, connection)
         code = 0
     except KeyboardInterrupt:
-        pass
+        session._setupstate.teardown_exact(None)
     except BaseException:
         traceback.print_exc()
     finally:

@@ -67,6 +67,25 @@ def test_writes(number, tmp_path, capfd):
     os.system(f"echo {number}")
     assert capfd.readouterr().out == f"{number}\\n"
 """
+INTERRUPTED = """
+import threading
+import pytest
+
+@pytest.fixture
+def begun(tmp_path):
+    (tmp_path.parent.parent / "begun").touch()
+    yield
+    (tmp_path / "left").touch()
+
+def test_fails(tmp_path):
+    while not (tmp_path.parent.parent / "begun").exists():
+        threading.Event().wait(0.01)
+    assert False
+
+@pytest.mark.parametrize("number", range(6))
+def test_lasts(begun, number):
+    threading.Event().wait(30.0)
+"""
 
 
 def outcome(folder: Path, text: str, *options: str) -> subprocess.CompletedProcess[str]:
@@ -114,3 +133,11 @@ def test_no_further_test_is_begun_after_as_many_failures_as_are_allowed(tmp_path
     assert ended.returncode == 1
     assert "1 failed" in ended.stdout
     assert "stopping after 1 failures" in ended.stdout
+
+
+def test_what_runs_when_no_further_test_is_begun_leaves_its_fixtures(tmp_path: Path) -> None:
+    """It may have begun programs, which else would run for ever."""
+    ended = outcome(tmp_path, INTERRUPTED, "-x", "--basetemp", str(tmp_path / "temporary"))
+    assert "1 failed" in ended.stdout
+    assert [*(tmp_path / "temporary").rglob("left")]
+    assert "Traceback" not in ended.stderr
