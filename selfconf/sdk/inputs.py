@@ -159,10 +159,12 @@ class Inputs:
         before, self._handovers = self._handovers, {}
         for port, old in left.items():
             new = message.inputs.get(port, ())
-            if not message.gently or not new or all(self._subscriptions[port, wire].lost for wire in old):
+            # A call that was repeated, or of another task that wants the same of the component.
+            same = before[port] if port in before and before[port].new == new else None
+            gently = message.gently or same is not None
+            if not gently or not new or all(self._subscriptions[port, wire].lost for wire in old):
                 self._events.unfed(port)
                 continue
-            same = before[port] if port in before and before[port].new == new else None  # a call that was repeated
             self._handovers[port] = same or Handover.beginning(now, old, new)
         self._tell_unfed(left.keys(), message.inputs)
         self._wanted, self._spare = frozenset(wanted), frozenset(spare)

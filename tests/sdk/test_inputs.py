@@ -385,9 +385,11 @@ def test_an_input_goes_on_following_what_fed_it_while_the_next_issues_nothing_an
     assert change.answers
 
 
-def test_a_gentle_call_that_is_repeated_goes_on_with_the_same_handover() -> None:
+@pytest.mark.parametrize("gently", [True, False], ids=["repeated", "made for another task that shares the component"])
+def test_a_gentle_call_that_is_repeated_goes_on_with_the_same_handover(gently: bool) -> None:
     change = Change()
     change.let_pass(HANDOVER / 2, change.tracker)
+    change.message = replace(change.message, gently=gently)
     change.ask()
     change.let_pass(HANDOVER / 2 + 0.4, change.tracker)
     assert silence(change.stage) == [(ODOMETRY, "")]
