@@ -39,7 +39,7 @@ def _follows(held: Held, components: frozenset[IRI]) -> bool:
 def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires]) -> Reaction:
     """Let components follow less than before, in an epoch that is newer than that of any call which says otherwise.
 
-    One that was told to rest is told so once more, or it would act again.
+    The call to one that is to rest says so once more, or it would act again.
     """
     if not fewer:
         return state, ()

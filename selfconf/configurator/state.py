@@ -58,7 +58,7 @@ class Held:
     acts: bool = False
     """Whether it has said that it acts, if with other inputs."""
     rests: bool = False
-    """Whether it is an actuator that was told to rest, as something lacks a part, and not to act again since."""
+    """Whether it is an actuator that is to rest by its last call, as something lacks a part."""
     confirmed: bool = False
     """Whether it has said that it acts with these inputs and values, for these callers."""
 
