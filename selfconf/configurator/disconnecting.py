@@ -70,6 +70,17 @@ def loss_lasts(state: State, actuators: frozenset[IRI]) -> Reaction:
     return then(effects, deploying.deploy(known) if effects and state.phase in DEPLOYING else (known, ()))
 
 
+def let_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
+    """Let actuators inside of a composite rest at once, whatever is done inside: what that is part of is incomplete."""
+    if state.phase not in (Phase.DISCOVERING, Phase.COMPOSING, *DEPLOYING):
+        return state, ()
+    acting = {one: mine for one, mine in state.held.items() if one in actuators and mine.active and not mine.rests}
+    resting = {one: replace(mine, rests=True) for one, mine in acting.items()}
+    told = {one: mine.inputs for one, mine in acting.items()}
+    known, effects = _follow_fewer(replace(state, held={**state.held, **resting}), told)
+    return then(effects, deploying.deploy(known) if effects and state.phase in DEPLOYING else (known, ()))
+
+
 def _outside(state: State) -> set[IRI]:
     """The composite that this is the inside of, if it is one: what follows that follows what is outside."""
     if state.target is None:

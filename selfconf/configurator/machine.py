@@ -46,7 +46,7 @@ from types import MappingProxyType
 
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
-from selfconf.configurator.disconnecting import disconnect, loss_lasts
+from selfconf.configurator.disconnecting import disconnect, let_rest, loss_lasts
 from selfconf.configurator.effects import (
     Compose,
     Decline,
@@ -562,7 +562,10 @@ def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
         changed |= state.held.keys() & (state.order.actuators if state.order is not None else frozenset())
     if state.phase is Phase.RUNNING or _waits_for(state, changed):
         return deploying.rewire(state, changed)
-    return (replace(state, rewired=state.rewired | changed) if wired else state), ()  # also while another is looked for
+    if not wired:
+        return state, ()
+    known = replace(state, rewired=state.rewired | changed)  # also while another configuration is looked for
+    return let_rest(known, changed) if known.rests else (known, ())
 
 
 def _waits_for(state: State, components: frozenset[IRI]) -> bool:

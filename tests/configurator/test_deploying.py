@@ -285,17 +285,34 @@ def test_the_actuators_inside_of_a_composite_rest_while_that_is_part_of_somethin
         history.all_answer()
 
 
-def test_the_actuators_inside_of_a_composite_rest_once_it_is_repaired_if_that_is_still_so() -> None:
+def test_the_actuators_inside_of_a_composite_rest_while_it_is_repaired_and_then_if_that_is_still_so() -> None:
     whole = IRI("urn:c:whole")
     inside = replace(navigation(), connections=(*navigation().connections, Connection(whole, "hint", TRACKER, "hint")))
     history = History(TASK).running(with_arm(inside))
     history.hear(Failed(ARM, "1", Cause.FAIL))
-    assert history.hear(Rewired(whole, True)) == []
+    assert [effect.rests for effect in history.hear(Rewired(whole, True)) if isinstance(effect, ApplyTo)] == [True]
+    assert history.hear(Rewired(whole, True)) == [], "they are told once"
     history.composed(inside)
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
     told = [effect for effect in history.effects if isinstance(effect, ApplyTo) and effect.component == DRIVE]
     assert told[-1].rests
+
+
+def test_the_actuators_inside_of_a_composite_rest_also_while_another_one_is_started() -> None:
+    whole = IRI("urn:c:whole")
+    inside = replace(navigation(), connections=(*navigation().connections, Connection(whole, "hint", TRACKER, "hint")))
+    history = History(TASK).running(with_arm(inside))
+    history.hear(Failed(ARM, "1", Cause.CRASH, startable=True))
+    history.composed(with_arm(inside))
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    assert history.state.pending == {(ARM, Call.APPLY)}
+    for rests in (True, False):
+        effects = [effect for effect in history.hear(Rewired(whole, rests)) if isinstance(effect, ApplyTo)]
+        assert any(effect.component == DRIVE and effect.rests for effect in effects) is rests
+        history.all_answer()
+        assert history.state.phase is Phase.RUNNING
+        assert history.state.held[DRIVE].rests is rests
 
 
 def test_what_gets_another_input_waits_for_its_source() -> None:
