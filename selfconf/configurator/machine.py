@@ -187,8 +187,9 @@ def _avoid(state: State, configuration: Configuration) -> tuple[State, Avoided]:
 
 
 def _avoided_in_vain(state: State) -> State:
-    """Count the shared components as taken without whose sources there is no configuration."""
-    return replace(state, taken={**state.taken, **{one: state.sharers[one] for one in state.avoided.values()}})
+    """Count as taken the shared components, if they are not free, without whose sources there is no configuration."""
+    contested = {one: state.sharers[one] for one in state.avoided.values() if one in state.sharers}
+    return replace(state, taken={**state.taken, **contested})
 
 
 def _composed(state: State, event: Composed) -> Reaction:

@@ -8,7 +8,17 @@ import pytest
 
 from selfconf.configurator.deploying import MOST_ASKED_AHEAD, MOST_ASKED_BEHIND
 from selfconf.configurator.effects import AwaitRelease, Compose, Effect
-from selfconf.configurator.events import Accepted, Call, Discovered, Failed, Freed, Improvable, WaitedLong
+from selfconf.configurator.events import (
+    Accepted,
+    Call,
+    Discovered,
+    Event,
+    Failed,
+    Freed,
+    Improvable,
+    Ranked,
+    WaitedLong,
+)
 from selfconf.configurator.state import Phase, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
@@ -18,6 +28,7 @@ from tests.configurator.builders import (
     CONTROL,
     ODOMETRY,
     OTHERS,
+    REFUSAL,
     TRACKER,
     History,
     applied,
@@ -133,3 +144,14 @@ def test_a_loss_begins_a_search_that_avoids_nothing() -> None:
     effects = history.hear(Failed(ODOMETRY, "1", Cause.FAIL))
     assert effects[-1] == Compose(3, frozenset({ODOMETRY}), navigation(ODOMETRY))
     assert not history.state.avoided
+
+
+@pytest.mark.parametrize("event", [Freed(CONTROL), Ranked(1)], ids=["free", "ranked"])
+def test_a_component_may_be_had_that_others_have_let_go_of_while_a_search_avoids_sources_for_it(event: Event) -> None:
+    history = History(TASK)
+    history.hear(Accepted(100), Discovered({}, sharers(navigation(ODOMETRY))))
+    history.composed(navigation())
+    history.hear(event)
+    effects = history.composed(REFUSAL)
+    assert effects == [Compose(3, frozenset(), None)]
+    assert not history.state.taken
