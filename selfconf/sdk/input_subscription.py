@@ -45,6 +45,9 @@ JUST_COME = 0.5
 """Seconds for which the newest signal of an output that stood by counts when the output becomes an input's own."""
 UNSEEN = 1.0
 """Seconds until the component of an output has to have shown that it lives, unless the output issues something."""
+BY_ITSELF = 0.02
+"""Seconds for which an output that stood by is not asked for its last signal: one that is just being started issues its
+first by itself, and who asks meanwhile takes its time."""
 LATE = 10_000
 """By how many signals one that is late can be behind the newest. One that is further behind is not late: the number of
 the newest was none of its source's, and may not mute it."""
@@ -147,7 +150,7 @@ class InputSubscription:
         self._queue.keep(1 if heard else 0)
         self.muted = False
         if self._asked and not heard:
-            self._ask_for_last(ASK_FOR_LAST)
+            self._bus.later(BY_ITSELF, partial(self._ask_if_quiet, self._bus.now()))
         self._bus.later(UNSEEN, partial(self._look_for_life, self._bus.now()))
         self._expect()
         if self._queue:
@@ -258,6 +261,10 @@ class InputSubscription:
         self._ask()
         if again:
             self._bus.later(again[0], partial(self._ask_for_last, again[1:]))
+
+    def _ask_if_quiet(self, since: float) -> None:
+        if not self.muted and self._heard_at < since:
+            self._ask_for_last(ASK_FOR_LAST)
 
     def _ask(self) -> None:
         self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, self._latched)
