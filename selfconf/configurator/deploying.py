@@ -8,8 +8,8 @@ released when everything has confirmed.
 
 Why in the order of the IRIs: a task that waits for a component holds none that comes later, so tasks cannot wait for
 each other in a circle (Havender 1968). One that was asked in a deployment which began anew before the answer came
-counts as held. In a repair, which holds components already, one that is held by another task counts as taken, unless
-that task is of lower priority: it is made to let go.
+counts as held, and so does one that has not obeyed its last release. In a repair, which holds components already, one
+that is held by another task counts as taken, unless that task is of lower priority: it is made to let go.
 
 A repair that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
 reservation, and everything else acts already.
@@ -70,7 +70,7 @@ def deploy(state: State) -> Reaction:
     wires, values, calling = wiring(target), parameter_values(target), callers(target)
     held = dict(state.held)
     for component, inputs in wires.items():
-        before = held.get(component, Held({}))
+        before = held.get(component, Held({}, asked=component in state.owed))
         wanted = inputs, values[component], calling[component]
         same = before.confirmed and (before.inputs, before.values, before.callers) == wanted
         held[component] = before if same else replace(before, confirmed=False)

@@ -50,7 +50,7 @@ class Held:
     callers: Callers = field(default_factory=dict)
     life: str = ""
     asked: bool = False
-    """Whether it was asked to be held for this task and has not answered: it may be held, as an answer can get lost."""
+    """Whether it was asked to be held for this task, or no more, and has not answered: it may be held."""
     reserved: bool = False
     """Whether it has said that it is held for this task."""
     active: bool = False

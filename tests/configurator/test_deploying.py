@@ -540,6 +540,21 @@ def test_what_was_asked_before_a_deployment_began_anew_may_be_held_until_it_answ
     assert kinds(effects) == ([ReleaseFrom, Compose] if answer is None else [AwaitRelease])
 
 
+@pytest.mark.parametrize("obeyed", [True, False])
+def test_what_has_not_obeyed_its_release_may_be_held_in_the_next_deployment(obeyed: bool) -> None:
+    history = reserving(patient=True)
+    history.answer(CONTROL, Call.RESERVE)
+    history.hear(Failed(CONTROL, "1", Cause.LET_GO))
+    for component in (CONTROL, DRIVE, TRACKER):
+        if (component, Call.RELEASE) in history.state.pending:
+            kept = component == DRIVE and not obeyed
+            history.answer(component, Call.RELEASE, None if kept else Verdict.DONE)
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    effects = history.busy(CONTROL, RESERVING)
+    assert kinds(effects) == ([AwaitRelease] if obeyed else [ReleaseFrom, Compose])
+
+
 def test_a_component_of_a_task_of_lower_priority_is_waited_for() -> None:
     history = reserving()
     epoch = history.state.epoch

@@ -41,6 +41,10 @@ def test_a_history_of_a_crowd_that_was_broken_once_is_not_any_more(seed: int, fo
     play_well(recipe(seed), folder)
 
 
+def test_a_task_that_wants_again_what_has_not_obeyed_its_release_waits_for_no_other(folder: Path) -> None:
+    play_well(Recipe(902408, CROWDED, large=True), folder)
+
+
 def test_in_a_crowd_most_tasks_begin_at_once_and_some_are_of_either_template() -> None:
     scripts = [with_crowd(write(seed, ecology=CROWDED)) for seed in range(20)]
     at_once = [sum(one.kind == "begin" and one.time <= 0.5 for one in script.actions) for script in scripts]
