@@ -83,7 +83,7 @@ from selfconf.configurator.starting_order import parameter_values, resting_next,
 from selfconf.configurator.state import Held, Loss, Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal
-from selfconf.model.sharing import Avoided, avoid
+from selfconf.model.sharing import Avoided, avoid, avoided_in_vain
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 
@@ -187,9 +187,8 @@ def _avoid(state: State, configuration: Configuration) -> tuple[State, Avoided]:
 
 
 def _avoided_in_vain(state: State) -> State:
-    """Count as taken the shared components, if they are not free, without whose sources there is no configuration."""
-    contested = {one: state.sharers[one] for one in state.avoided.values() if one in state.sharers}
-    return replace(state, taken={**state.taken, **contested})
+    """Count as taken the shared components without whose sources there is no configuration."""
+    return replace(state, taken={**state.taken, **avoided_in_vain(state.avoided, state.sharers)})
 
 
 def _composed(state: State, event: Composed) -> Reaction:

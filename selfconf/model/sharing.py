@@ -41,6 +41,11 @@ def avoid(
     return taken, more
 
 
+def avoided_in_vain(avoided: Avoided, sharers: Mapping[IRI, Holder]) -> dict[IRI, Holder]:
+    """The shared components, of those that are held still, without whose sources there is no configuration."""
+    return {component: sharers[component] for component in avoided.values() if component in sharers}
+
+
 def agreed(
     search: Callable[[frozenset[IRI]], Found],
     sharers: Mapping[IRI, Holder],
@@ -56,7 +61,7 @@ def agreed(
         found = search(frozenset((*taken, *avoided)))
         outcome = configuration_of(found)
         if isinstance(outcome, Refusal) and avoided:
-            taken |= {component: sharers[component] for component in avoided.values()}
+            taken |= avoided_in_vain(avoided, sharers)
             avoided = {}
             continue
         free = {component: holder for component, holder in sharers.items() if component not in taken}

@@ -337,27 +337,6 @@ DRIVE_BASE = f"""{LAB_PREFIXES}
 :control-role a sc:Role ; sh:class :Control ; sc:feeds :base-role . :base-role a sc:Role ; sh:class :Base ."""
 
 
-def test_an_actuator_inside_rests_as_soon_as_one_outside_would(tmp_path: Path) -> None:
-    lab = Lab(tmp_path, advertised=BASE)
-    lab.site("home", *BASE)
-    for name in sorted(BASE.keys() - {"base"}):
-        lab.component(name)
-    lab.let_pass(3.0)
-    slow_code(lab, "hinter1")
-    lab.components["hinter1"].slow = 4.0
-    agent = lab.agent(DRIVE_BASE, ())
-    assert lab.running(agent)
-    lab.components["hinter0"].fail("it has no idea")
-    turns = dict[float, list[str]]()
-    for tenth in range(60):
-        lab.components["control"].emit("go", tenth)
-        lab.let_pass(0.1)
-        turns[tenth / 10] = [said[0] for said in lab.components["motor"].said if said[0] != "go"]
-    assert (turns[0.8], turns[1.3]) == (["started"], ["started", "stopped"])
-    assert agent.state.phase is Phase.RUNNING
-    assert turns[5.9] == ["started", "stopped", "started"]
-
-
 PILOTED = BASE | {
     "base": """:base a sc:Component, :Base ; sc:hasInput [ sc:name "go" ; sc:signalType :Go ] ;
         sc:grounding [ sc:template :driving ] .
@@ -370,14 +349,18 @@ PILOTED = BASE | {
     "motor": ':motor-1 a sc:Component, :Motor ; sc:hasInput [ sc:name "turn" ; sc:signalType :Turn ] .',
 }
 """An actuator inside of a composite that is driven by another component inside, and not from outside."""
-
-
 SECOND = {"second-pilot": PILOTED["pilot"].replace(":pilot-1 a", ":pilot-2 sc:preference -1 ; a")}
 """Another component that may drive it."""
 
 
-@pytest.mark.parametrize("advertised", [PILOTED, PILOTED | SECOND], ids=["one may", "two may"])
-def test_an_actuator_that_is_driven_from_inside_rests_as_well(advertised: dict[str, str], tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("advertised", "driver", "output"),
+    [(BASE, "control", "go"), (PILOTED, "pilot", "turn"), (PILOTED | SECOND, "pilot", "turn")],
+    ids=["from outside", "from inside", "from inside, where two may"],
+)
+def test_an_actuator_inside_rests_as_soon_as_one_outside_would(
+    advertised: dict[str, str], driver: str, output: str, tmp_path: Path
+) -> None:
     lab = Lab(tmp_path, advertised=advertised)
     lab.site("home", *advertised)
     for name in sorted(advertised.keys() - {"base"}):
@@ -390,9 +373,9 @@ def test_an_actuator_that_is_driven_from_inside_rests_as_well(advertised: dict[s
     lab.components["hinter0"].fail("it has no idea")
     turns = dict[float, list[str]]()
     for tenth in range(60):
-        lab.components["pilot"].emit("turn", tenth)
+        lab.components[driver].emit(output, tenth)
         lab.let_pass(0.1)
-        turns[tenth / 10] = [said[0] for said in lab.components["motor"].said if said[0] != "turn"]
+        turns[tenth / 10] = [said[0] for said in lab.components["motor"].said if said[0] != output]
     assert (turns[0.8], turns[1.3]) == (["started"], ["started", "stopped"])
     assert agent.state.phase is Phase.RUNNING
     assert turns[5.9] == ["started", "stopped", "started"]

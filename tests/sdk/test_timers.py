@@ -16,7 +16,8 @@ from tests.sdk.stage import (
 )
 
 
-def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
+def ticking() -> tuple[Stage, list[float]]:
+    """A component that acts and begins a timer as it is started, with the times at which that has ticked."""
     ticks: list[float] = []
 
     class Ticking(Recorder):
@@ -25,6 +26,11 @@ def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
 
     stage = Stage(Ticking())
     stage.call(apply(1, US))
+    return stage, ticks
+
+
+def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
+    stage, ticks = ticking()
     stage.let_pass(0.55)
     assert len(ticks) == 5
     stage.call(release(2, US))
@@ -36,14 +42,7 @@ def test_timers_run_while_the_component_is_active_and_no_longer() -> None:
 
 
 def test_a_timer_that_has_ticked_for_a_long_time_is_kept_once() -> None:
-    ticks: list[float] = []
-
-    class Ticking(Recorder):
-        def started(self) -> None:
-            self.every(0.1, lambda: ticks.append(stage.network.time))
-
-    stage = Stage(Ticking())
-    stage.call(apply(1, US))
+    stage, ticks = ticking()
     stage.let_pass(100.05)
     assert len(ticks) == 1000
     assert len(stage.runtime._timers) == 1
