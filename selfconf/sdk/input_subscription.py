@@ -287,8 +287,13 @@ class InputSubscription:
             self._bus.later(0.0, partial(self._end_life, self._heard_at))
 
     def _end_life(self, heard: float) -> None:
-        """The output is lost, unless it has issued a signal after that time; its component may be in sight again."""
+        """The output is lost, unless a signal has come after that time; its component may be in sight again.
+
+        Such a signal may have been on its way when that life ended, and be the last for ever.
+        """
         self._lose(heard)
+        if self._heard_at > heard:
+            self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
         if self._lives:
             self._ask_if_lost()
 
@@ -299,15 +304,19 @@ class InputSubscription:
 
     def _look_for_life(self, began: float) -> None:
         """An output that promises no rate is lost as well if nothing shows that its component lives, or is in reach."""
-        if not self._ended and not self._lives and self._heard_at < began:
+        if self._ended or self._lives:
+            return
+        if self._heard_at < began:
             self._lose(self._heard_at)
+        else:  # it may have been on its way when the component ended
+            self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
 
     def _shows(self, life: str) -> bool:
         """Whether a life of the component is seen to live."""
         return self._keys.life(self._wire.component, life) in self._lives
 
     def _look_for_sign(self, heard: float) -> None:
-        """An output that was lost and has issued a signal since, as of some time, is lost again without a further sign.
+        """An output of which no life is seen, and that has issued a signal, as of some time, is lost without a sign.
 
         That is the life that has issued it, or another signal, and so on.
         """

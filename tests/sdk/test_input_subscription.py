@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import Network
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
@@ -246,10 +247,12 @@ def test_what_waits_when_an_output_is_lost_is_not_delivered_after_its_loss_and_f
 class Late:
     """An actuator that follows a tracker whose every message is given by hand."""
 
-    def __init__(self) -> None:
+    def __init__(self, lives: bool = True) -> None:
+        """`lives`: its life is seen."""
         self.stage = Stage(profile=DRIVE_PROFILE)
         self.tracker = self.stage.others
-        self.leave = self.tracker.announce(KEYS.life(TRACKER, "t"))
+        if lives:
+            self.leave = self.tracker.announce(KEYS.life(TRACKER, "t"))
         self._asked: list[Request] = []
         self.tracker.serve(KEYS.outputs(TRACKER), self._asked.append)
         self.stage.call(reserve())
@@ -383,6 +386,27 @@ def test_a_late_signal_of_a_life_that_has_ended_feeds_for_a_moment_though_anothe
     assert late.came_to_rest()
     late.issue(2)
     assert late.stage.recorder.said[-1] == ("position", 2)
+    assert late.came_to_rest()
+
+
+def test_a_signal_that_comes_with_the_end_of_the_life_of_its_source_feeds_for_a_moment() -> None:
+    """So it is when the actuator was frozen: what is urgent comes first as it goes on, then what was issued before."""
+    late = Late()
+    node = late.stage.runtime.bus
+    assert isinstance(node, MemoryBus)
+    late.stage.network.pause(node)
+    late.leave()
+    late.issue(2)
+    late.stage.network.resume(node)
+    late.stage.let_pass(0.01)
+    assert late.stage.recorder.said[-1] == ("position", 2)
+    assert late.came_to_rest()
+
+
+def test_a_signal_of_a_source_of_which_no_life_was_ever_seen_feeds_for_a_moment() -> None:
+    late = Late(lives=False)
+    assert late.stage.recorder.said[-1] == ("position", 1)
+    late.stage.let_pass(UNSEEN)  # it is looked for at first
     assert late.came_to_rest()
 
 
