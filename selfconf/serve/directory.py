@@ -37,6 +37,9 @@ class Directory:
 
     async def things(self, request: Request) -> Response:
         """`/things`: all descriptions, or a page of them, as an array or a collection."""
+        for name in ("offset", "limit", "format"):
+            if len(request.query_params.getlist(name)) > 1:
+                return problem(400, f"{name} is given more than once")
         try:
             offset = _whole(request.query_params.get("offset", "0"), 0)
             said = request.query_params.get("limit")

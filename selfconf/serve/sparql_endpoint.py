@@ -136,11 +136,15 @@ async def _read(line: socket.socket) -> bytes:
 
 
 async def body_of(request: Request) -> bytes:
-    """The body of a request. Raises RequestRefusedError for one that is too large."""
+    """The body of a request. Raises RequestRefusedError for one that is too large, before it comes where it says so."""
+    too_large = RequestRefusedError(413, f"the request has more than {LARGEST_REQUEST >> 20} MiB")
+    announced = request.headers.get("content-length", "")
+    if announced.isascii() and announced.isdigit() and int(announced) > LARGEST_REQUEST:
+        raise too_large
     parts, size = [], 0
     async for part in request.stream():
         parts.append(part)
         size += len(part)
         if size > LARGEST_REQUEST:
-            raise RequestRefusedError(413, f"the request has more than {LARGEST_REQUEST >> 20} MiB")
+            raise too_large
     return b"".join(parts)

@@ -54,7 +54,7 @@ def test_a_collection_of_all_things_names_no_limit(app: ASGIApp) -> None:
     assert "next" not in answer
 
 
-@pytest.mark.parametrize("parameters", ["limit=0", "limit=x", "offset=-1", "format=table"])
+@pytest.mark.parametrize("parameters", ["limit=0", "limit=x", "offset=-1", "format=table", "limit=1&limit=2"])
 def test_a_parameter_that_makes_no_sense_is_a_problem(app: ASGIApp, parameters: str) -> None:
     answer = ask(app, f"/things?{parameters}")
     assert (answer.status, answer.media) == (400, "application/problem+json")

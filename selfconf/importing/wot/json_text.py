@@ -14,6 +14,7 @@ from selfconf.model.immutable import immutable
 DEEPEST_JSON = 100
 """How deep arrays and objects may be nested; descriptions need about ten levels, the parser allows a thousand."""
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|([\[{])|([\]}])', re.DOTALL)
+_CONSTANT = re.compile(r'"(?:[^"\\]|\\.)*"|(NaN|-?Infinity)', re.DOTALL)
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 
 
@@ -38,7 +39,11 @@ def parse_json(source: SourceDocument) -> JsonText:
         return found
 
     def no_number(name: str) -> None:
-        raise AuthorError(f"this is not JSON: {name} is no number of JSON", file=source.shown)
+        found = next((token for token in _CONSTANT.finditer(text) if token[1]), None)
+        line, column = (None, None) if found is None else _place(text, found.start())
+        raise AuthorError(
+            f"this is not JSON: {name} is no number of JSON", file=source.shown, line=line, column=column
+        )
 
     try:
         value = json.loads(text, object_pairs_hook=members, parse_constant=no_number)
@@ -70,11 +75,13 @@ def _check_depth(text: str, shown: str) -> None:
         if token[1]:
             depth += 1
             if depth > DEEPEST_JSON:
-                line, column = (
-                    text.count("\n", 0, token.start()) + 1,
-                    token.start() - text.rfind("\n", 0, token.start()),
-                )
+                line, column = _place(text, token.start())
                 message = f"its JSON is nested more than {DEEPEST_JSON} levels deep, which no description needs"
                 raise AuthorError(message, file=shown, line=line, column=column)
         elif token[2]:
             depth -= 1
+
+
+def _place(text: str, offset: int) -> tuple[int, int]:
+    """The line and the column of a character, both from 1."""
+    return text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)

@@ -24,14 +24,15 @@ def test_the_value_and_the_names_that_occur_twice() -> None:
     [
         ('{\n  "a": 1,\n}', r"x\.json:3:1: this is not JSON"),
         ("", r"x\.json:1:1: this is not JSON"),
-        ("[NaN]", "NaN is no number of JSON"),
+        ('{\n "NaN": [1, NaN]}', r"x\.json:2:13: this is not JSON: NaN is no number of JSON"),
+        ("[-Infinity]", r"x\.json:1:2: this is not JSON: -Infinity is no number of JSON"),
         ("9" * 5000, "more digits than can be read"),
         (r'["\ud83d"]', "half of a surrogate pair"),
         ("[" * 100_000 + "]" * 100_000, r"x\.json:1:101: its JSON is nested more than 100 levels deep"),
         ('{"a":' * 100_000, "nested more than 100 levels deep"),
         ('["' + '\\"' * 200, "this is not JSON"),
     ],
-    ids=range(8),
+    ids=range(9),
 )
 def test_what_cannot_be_read_is_one_sentence(text: str, words: str) -> None:
     with pytest.raises(AuthorError, match=words):
