@@ -61,9 +61,7 @@ def test_errors_are_problems_with_the_status_of_the_protocol(board: Board, datas
         assert answer.json["detail"]
 
 
-def test_a_body_that_is_announced_too_large_is_refused_before_it_comes(
-    board: Board, dataset: StandingDataset
-) -> None:
+def test_a_body_that_is_announced_too_large_is_refused_before_it_comes(board: Board, dataset: StandingDataset) -> None:
     headers = {"content_type": "application/sparql-query", "content_length": str(2 << 20)}
     assert ask(served(board, dataset), "/sparql", "POST", b"ASK {}", **headers).status == 413
 

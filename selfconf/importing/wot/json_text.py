@@ -41,9 +41,7 @@ def parse_json(source: SourceDocument) -> JsonText:
     def no_number(name: str) -> None:
         found = next((token for token in _CONSTANT.finditer(text) if token[1]), None)
         line, column = (None, None) if found is None else _place(text, found.start())
-        raise AuthorError(
-            f"this is not JSON: {name} is no number of JSON", file=source.shown, line=line, column=column
-        )
+        raise AuthorError(f"this is not JSON: {name} is no number of JSON", file=source.shown, line=line, column=column)
 
     try:
         value = json.loads(text, object_pairs_hook=members, parse_constant=no_number)
