@@ -76,8 +76,9 @@ def _run(words: list[str], environment: dict[str, str], folder: str, out: Connec
     out.close()
     error.close()
     # Those that are there know of other files whether they can be sought in, and whether they are terminals.
-    sys.stdout = sys.__stdout__ = os.fdopen(1, "w", closefd=False)
-    sys.stderr = sys.__stderr__ = os.fdopen(2, "w", 1, errors="backslashreplace", closefd=False)
+    sys.stdout = os.fdopen(1, "w", closefd=False)
+    sys.stderr = os.fdopen(2, "w", 1, errors="backslashreplace", closefd=False)
+    vars(sys).update(__stdout__=sys.stdout, __stderr__=sys.stderr)  # to assign them is for an interpreter alone
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
