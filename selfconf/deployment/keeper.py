@@ -4,6 +4,10 @@ Which one is the same for all who see the same sites: the site whose name gives 
 identity (rendezvous hashing, Thaler and Ravishankar 1998). When it goes, the next one goes on with what runs: no
 component is stopped or started, each only hears whose life to watch from now on. When a site comes that is to have a
 task, the one that has it lets go first; until then the components do not listen to the other.
+
+A site that was frozen, or cut off, finds by a newer record that another one has gone on with its task meanwhile. It
+leaves that as it runs, and goes on with it in turn: what it knows itself is outdated, and the components would come to
+rest before it has asked all of them.
 """
 
 from __future__ import annotations
@@ -67,6 +71,8 @@ class Keeper:
         self.bus, self.ecology, self.keys, self.site = bus, ecology, Keys(ecology), site
         self.folder, self._request_for, self._clock = folder, request_for, clock
         self.runners: dict[str, TaskRunner] = {}
+        self._revisions: dict[str, int] = {}
+        """The revision of the record that each runner has begun with, or that was written of it last."""
         self._requests: dict[str, RunRequest | None] = {}
         self._respites: dict[str, float] = {}
         """Until when each task is left alone that has given trouble."""
@@ -194,9 +200,9 @@ class Keeper:
             runner = self.runners.get(task)
             if runner is not None and record.ended:
                 runner.stop()
-            elif runner is not None and not mine:
+            elif runner is not None and not (mine and record.revision == self._revisions[task]):
                 runner.hand_over()
-            elif runner is None and mine and not record.ended and not self._has_respite(task):
+            if task not in self.runners and mine and not record.ended and not self._has_respite(task):
                 self._run(record)
 
     def _without_configurator(self, known: Set[str]) -> list[Holding]:
@@ -229,6 +235,7 @@ class Keeper:
 
         def ended(_: object) -> None:
             runner = self.runners.pop(record.task, None)
+            self._revisions.pop(record.task, None)
             if runner is not None and runner.trouble is not None:
                 log.error("%s: %s; trying again in %.0f s", record.task, runner.trouble, RESPITE)
                 self._respites[record.task] = self.bus.now() + RESPITE
@@ -245,7 +252,7 @@ class Keeper:
             task=record.task,
             beginning=record.beginning,
         )
-        self.runners[record.task] = runner
+        self.runners[record.task], self._revisions[record.task] = runner, record.revision
         if record.configuration:
             try:
                 runner.adopt(recorded_configuration(record.configuration), record.epoch)
@@ -257,14 +264,15 @@ class Keeper:
     def _report(self, task: str, event: RunEvent) -> None:
         """Let every site know what runs, so that the next one can go on with it."""
         log.info("%s: %s", task, event.act)
-        if isinstance(event, TaskRunning) and task in self.runners:
-            known = self.folder.records[task]
+        known = self.folder.records[task]
+        if isinstance(event, TaskRunning) and self._revisions.get(task) == known.revision:
             record = replace(
                 known,
                 revision=known.revision + 1,
                 epoch=event.epoch,
                 configuration=configuration_record(event.configuration),
             )
+            self._revisions[task] = record.revision
             self._learn(record)
             notice = self.bus.publisher(self.keys.task(task), Urgency.EVENT)
             notice.put(encode(record))

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import Faults
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Bus, Urgency
 from selfconf.composition import Composer
 from selfconf.configurator import ApplyTo
@@ -112,6 +113,41 @@ def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> No
     assert keepers.lab.active() == TASK | {"tracker"}
     keepers.lab.components["tracker"].fail("lost")
     assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"odometry"})
+
+
+@pytest.mark.parametrize("repaired", [False, True])
+@pytest.mark.parametrize("how", ["frozen", "cut off"])
+@pytest.mark.parametrize("seconds", [1.1, 1.5, 2.0, 5.0, 15.0])
+def test_a_site_that_was_away_goes_on_again_without_stopping_anything(
+    keepers: Keepers, seconds: float, how: str, repaired: bool
+) -> None:
+    """While it was away the next site went on with the task, and perhaps repaired it."""
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    (keeper,) = keepers.running()
+    network, node = keepers.lab.network, keepers.buses[keeper]
+    assert isinstance(node, MemoryBus)
+    others = [one for one in network.nodes if one is not node and one.open]
+    if how == "frozen":
+        network.pause(node)
+    else:
+        for other in others:
+            network.cut(node, other)
+    keepers.lab.let_pass(seconds - 0.1)
+    if repaired:
+        keepers.lab.components["tracker"].fail("lost")
+    keepers.lab.let_pass(0.1)
+    said = {name: list(recorder.said) for name, recorder in keepers.lab.components.items()}
+    if how == "frozen":
+        network.resume(node)
+    else:
+        for other in others:
+            network.reconnect(node, other)
+    keepers.lab.let_pass(5.0)
+    assert {name: list(recorder.said) for name, recorder in keepers.lab.components.items()} == said
+    assert keepers.running() == [keeper]
+    assert keepers.lab.active() == TASK | {"odometry" if repaired else "tracker"}
 
 
 def test_the_next_site_goes_on_though_its_clock_is_behind(keepers: Keepers) -> None:
