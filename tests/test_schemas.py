@@ -18,8 +18,8 @@ from docs import json_schemas
 from selfconf import Ecology, library
 from selfconf.cli import run, status
 from selfconf.cli.main import COMMANDS, main
+from selfconf.configurator import Phase
 from selfconf.configurator.events import Call
-from selfconf.configurator.machine import Phase
 from selfconf.model import run_event
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder

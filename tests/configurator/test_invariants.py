@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from selfconf.configurator.answering import OBEYED
 from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
@@ -43,7 +44,7 @@ from selfconf.configurator.events import (
     Stopped,
     WaitedLong,
 )
-from selfconf.configurator.machine import OBEYED, step
+from selfconf.configurator.machine import step
 from selfconf.configurator.starting_order import parameter_values, resting_order, wiring
 from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Configuration

@@ -85,7 +85,7 @@ def test_tasks_that_wait_run_one_after_the_other_as_others_end(seed: int, priori
     [
         ("selfconf.sdk.runtime.YIELDING", 0.0, "acts for"),
         ("selfconf.protocol.activation._blocked", lambda *_: False, "is held for"),
-        ("selfconf.configurator.machine.resting_next", lambda wires, left: tuple(left), "acts for"),
+        ("selfconf.configurator.phases.resting_next", lambda wires, left: tuple(left), "acts for"),
         ("selfconf.configurator.deploying._may_begin", lambda *_: True, "is started before"),
     ],
     ids=["taken without asking", "held by all", "all rest at once", "all start at once"],

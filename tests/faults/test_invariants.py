@@ -11,7 +11,7 @@ import pytest
 
 from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults
-from selfconf.configurator import machine
+from selfconf.configurator import losing
 from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import ReleaseFrom
 from selfconf.configurator.events import Answered, Call
@@ -33,7 +33,7 @@ from tests.faults.watch import ENDS, NOTED, STEPS
 from tests.lab import iri
 
 CLAIM, FOLLOW, SET, START = Calling.claim, Inputs.follow, ComponentCode._set, ComponentCode._start
-LOSE = machine._lose
+LOSE = losing.lose
 FOLLOW_CALLS, REPORT = Operations.follow, InsideOfComposite._report
 LATER = Action(20.0, "emit", "sonar")
 """Until then the faults go on."""
@@ -205,7 +205,7 @@ MUTATIONS = {
         upgrades=True,
     ),
     "a failed upgrade leaves what ran": Mutation(
-        {"selfconf.configurator.machine._lose": forgets_what_ran},
+        {"selfconf.configurator.losing.lose": forgets_what_ran},
         (*BETTER, Action(5.5, "refuse", "tracker"), LATER),
         upgrades=True,
     ),

@@ -1,9 +1,12 @@
-"""A patient task waits for the components that others hold, and takes them when they are free."""
+"""What components answer: that others hold them, for which a patient task waits, or what has all begin anew."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
+from selfconf.configurator.answering import MOST_REPEATS
 from selfconf.configurator.effects import (
     Compose,
     Decline,
@@ -24,8 +27,7 @@ from selfconf.configurator.events import (
     Freed,
     Stopped,
 )
-from selfconf.configurator.machine import MOST_REPEATS
-from selfconf.configurator.state import Phase
+from selfconf.configurator.state import Phase, State
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
     DRIVE,
@@ -165,3 +167,47 @@ def test_a_notice_that_comes_after_the_component_was_reserved_lets_it_not_go() -
     history = History(TASK).accepted()
     history.composed(navigation())
     assert history.hear(Freed(TRACKER)) == []  # it is about to be reserved
+
+
+@pytest.mark.parametrize("verdict", [Verdict.STALE, Verdict.NOT_HELD])
+def test_a_component_that_has_everything_begin_anew_without_end_is_given_up(verdict: Verdict) -> None:
+    history = History(TASK).reserved()
+    for _ in range(MOST_REPEATS + 1):
+        assert history.state.phase is Phase.DEPLOYING
+        epoch = history.state.epoch
+        history.hear(Answered(TRACKER, Call.APPLY, epoch, verdict, "1", newest=epoch + 1))
+        if history.state.phase is not Phase.COMPOSING:
+            history.all_answer(Call.WAKE, Call.RESERVE)
+    assert history.state.phase is Phase.COMPOSING
+    assert history.state.lost[TRACKER].cause is Cause.REFUSED
+    history.composed(navigation(ODOMETRY))
+    assert kinds(history.all_answer())[0] is Running
+
+
+def test_an_epoch_that_no_clock_comes_to_is_not_taken_over() -> None:
+    history = History(TASK).reserved()
+    epoch = history.state.epoch
+    history.hear(Answered(TRACKER, Call.APPLY, epoch, Verdict.STALE, "1", newest=(1 << 63) - 1))
+    assert history.state.epoch == epoch + 1
+    assert TRACKER in history.state.lost
+
+
+@pytest.mark.parametrize("alone", [True, False], ids=["its own", "kept by sites"])
+def test_only_a_task_that_another_configurator_may_have_is_left_to_that_one(alone: bool) -> None:
+    history = History(State(task="navigate~1", alone=alone)).accepted()
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    component, _ = min(history.state.pending)
+    history.busy(component, replace(OTHERS, task="navigate~1"))
+    assert history.state.phase is (Phase.COMPOSING if alone else Phase.STOPPED)
+
+
+def test_a_component_that_says_at_each_apply_that_another_task_holds_it_is_given_up() -> None:
+    history = History(State(task="navigate~1", priority=5)).reserved()
+    for _ in range(MOST_REPEATS + 1):
+        assert history.state.phase is Phase.DEPLOYING
+        history.busy(TRACKER, call=Call.APPLY)
+        if history.state.phase is not Phase.COMPOSING:
+            history.all_answer(Call.WAKE, Call.RESERVE)
+    assert history.state.phase is Phase.COMPOSING
+    assert history.state.lost[TRACKER].busy

@@ -1,0 +1,148 @@
+"""What components answer to the calls of a task, and tell of being free for it.
+
+A patient task waits at each component that another task holds and with which it could run: whichever is free first may
+be what it takes, and those that wait for one are served in order only if they all wait there. A component that has
+obeyed a newer epoch of the task, by the clock of another configurator, does not remember one that waits in an older
+epoch: that one asks again in the newer. A component that acts for this task and for others follows something else once
+all of them ask for that; a task that asks waits a moment for the others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from selfconf.configurator import deploying, losing, phases
+from selfconf.configurator.deploying import DEPLOYING, Reaction, then
+from selfconf.configurator.disconnecting import disconnect
+from selfconf.configurator.effects import Decline, ReleaseFrom
+from selfconf.configurator.events import Answered, Call
+from selfconf.configurator.state import Loss, Phase, State
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Cause, Verdict
+
+OBEYED = (Verdict.DONE, Verdict.STALE, Verdict.OTHER_LIFE)
+"""The answers to a release after which a component obeys no older call of this task."""
+MOST_REPEATS = 10
+"""How often one component may make a deployment begin anew, by what it says of its epoch or of its holder."""
+MOST_AHEAD = 100 * 366 * 86_400_000
+"""By how much a component may say that a newer epoch was, in milliseconds as epochs are: no clock is that wrong."""
+
+
+def heed_answer(state: State, event: Answered) -> Reaction:
+    """A component has answered a call, or has not in time; an answer to a call of an older epoch is not waited for."""
+    known = state
+    if event.call is Call.RELEASE and event.verdict in OBEYED and event.epoch >= state.owed.get(event.component, 0):
+        known = replace(state, owed={c: since for c, since in state.owed.items() if c != event.component})
+    if (event.component, event.call) not in state.pending or event.epoch != state.epoch:
+        return _unasked(known, event)
+    rest = replace(known, pending=state.pending - {(event.component, event.call)})
+    if state.phase is Phase.DISMANTLING:
+        return phases.released(rest)
+    return deploying.confirmed(rest, event) if event.verdict is Verdict.DONE else _declined(rest, event)
+
+
+def _declined(state: State, event: Answered) -> Reaction:
+    """A component has not done what it was asked: ask once more where that may help, else do without it."""
+    repeats = state.repeats.get(event.component, 0)
+    counted = replace(_told(state, event), repeats={**state.repeats, event.component: repeats + 1})
+    if event.verdict is Verdict.STALE and _can_catch_up(event) and repeats < MOST_REPEATS:
+        return deploying.deploy(replace(counted, epoch=max(state.epoch, event.newest)))
+    if event.verdict is Verdict.NOT_HELD and repeats < MOST_REPEATS:
+        return _reserve_anew(counted, event.component)
+    if event.verdict is Verdict.BUSY:
+        return _busy(replace(counted, queued=state.queued | {event.component}), event)
+    if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
+        ended = event.detail or "it has begun another life"
+        return losing.lose(state, event.component, Loss(Cause.CRASH, ended, startable=event.startable))
+    silent = event.verdict is None
+    detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
+    # Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough.
+    again = silent and event.startable and event.call is not Call.WAKE and not repeats
+    return losing.lose(counted, event.component, Loss(Cause.REFUSED, detail, event.life, False, not silent, again))
+
+
+def _told(state: State, event: Answered) -> State:
+    """Note that a component that has declined a reserve is not held by that."""
+    if event.verdict is None or event.call is not Call.RESERVE:
+        return state
+    return replace(state, held={**state.held, event.component: replace(state.held[event.component], asked=False)})
+
+
+def _can_catch_up(event: Answered) -> bool:
+    """Whether a component that has obeyed a newer epoch may have it from a clock that was ahead."""
+    return 0 < event.newest - event.epoch < MOST_AHEAD
+
+
+def _busy(state: State, event: Answered) -> Reaction:
+    """Another task holds a component: wait for it, or do without it; nothing of this task follows it meanwhile."""
+    if event.holder is not None and event.holder.task == state.task and not state.alone:
+        return phases.stand_down(state)
+    if event.shared and event.call is Call.APPLY:
+        if deploying.may_agree(state, event.component, event.holder):
+            return deploying.await_agreement(state, event.component)
+        if state.fallback is not None and losing.is_needed(state, event.component):
+            return deploying.deploy(replace(state, target=state.fallback, fallback=None))
+    apart, effects = disconnect(state, frozenset((event.component,)))
+    if deploying.may_wait_for(apart, event.component, event.holder):
+        if event.call is Call.RESERVE and not effects:
+            return deploying.await_release(state, event.component)
+        if state.repeats[event.component] <= MOST_REPEATS:
+            return then(effects, _reserve_anew(apart, event.component))
+    if event.shared:  # others insist on something else: what that is says the ecology, before this is a refusal
+        apart = replace(apart, news=True)
+    busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True)
+    return then(effects, losing.lose(apart, event.component, busy))
+
+
+def _reserve_anew(state: State, component: IRI) -> Reaction:
+    """Reserve a component that does not act for this task, as it was not held any more, or not yet."""
+    forgotten = replace(state.held[component], asked=False, reserved=False, active=False, acts=False, confirmed=False)
+    return deploying.deploy(replace(state, held={**state.held, component: forgotten}))
+
+
+def _unasked(state: State, event: Answered) -> Reaction:
+    """An answer that is not waited for: a component that is held now for nothing is released."""
+    if event.verdict is Verdict.STALE and event.component in state.queued and event.epoch == state.epoch:
+        return _queue_anew(state, event)
+    unwanted = event.component not in state.held and not state.ended
+    if unwanted and event.call is Call.RESERVE and event.verdict is Verdict.DONE:
+        owed = {**state.owed, event.component: state.epoch}
+        release = ReleaseFrom(event.component, state.epoch)
+        queued = state.queued - {event.component}
+        return then((release,), _free(replace(state, owed=owed, queued=queued), event.component))
+    return state, ()
+
+
+def _queue_anew(state: State, event: Answered) -> Reaction:
+    """Ask again for a component that does not remember this task, as it has obeyed a newer epoch of it.
+
+    That was another configurator of the task, by a clock that was ahead of this one's.
+    """
+    repeats = state.repeats.get(event.component, 0)
+    if state.phase is not Phase.REFUSED or not _can_catch_up(event) or repeats >= MOST_REPEATS:
+        return state, ()
+    counted = {**state.repeats, event.component: repeats + 1}
+    # All are asked: what one of them answers in the epoch that is over now would be passed over.
+    return phases.queue(replace(state, epoch=event.newest, repeats=counted))
+
+
+def heed_free(state: State, component: IRI) -> Reaction:
+    """A component is free, and kept for this task for a moment."""
+    if state.phase is Phase.IDLE or state.ended:
+        return state, (Decline(component, state.epoch),)
+    if state.phase in DEPLOYING and {(component, Call.RESERVE), (component, Call.APPLY)} & state.pending:
+        return deploying.ask_again(state, component)
+    known, effects = _free(state, component)
+    if effects or component in state.held:
+        return known, effects  # it remembers this task until it is reserved or released
+    return replace(known, queued=known.queued - {component}), (Decline(component, state.epoch),)
+
+
+def _free(state: State, component: IRI) -> Reaction:
+    """No other task holds a component any more: it counts again for the search."""
+    lost = {c: loss for c, loss in state.lost.items() if c != component or not loss.busy}
+    taken, sharers = (
+        {c: holder for c, holder in holders.items() if c != component} for holders in (state.taken, state.sharers)
+    )
+    known = replace(state, lost=lost, taken=taken, sharers=sharers, free=state.free | {component}, news=True)
+    return phases.discover(known) if state.phase is Phase.REFUSED else (known, ())

@@ -1,0 +1,90 @@
+"""A component is lost: it has failed, its life has ended, or it cannot be had; the rest is kept, or comes to rest.
+
+`REPAIR` keeps what runs and changes what must change; `DISMANTLE` first takes everything down, as the paper does
+(section 4.2). Either way the lost component is turned off and its profile dropped, and the search runs again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from selfconf.configurator import deploying, phases
+from selfconf.configurator.deploying import DEPLOYING, Reaction, then
+from selfconf.configurator.effects import ReleaseFrom, WakeUp
+from selfconf.configurator.events import Call, Failed
+from selfconf.configurator.state import Held, Loss, Phase, Policy, State
+from selfconf.model.term import IRI
+from selfconf.protocol.messages import Cause
+
+PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
+"""The causes for which a component is started again: a site ends a process that hangs."""
+
+
+def heed_failure(state: State, event: Failed) -> Reaction:
+    """A component has failed, has ended, has let go of the task, or is asked to; others do not matter to it."""
+    held = state.held.get(event.component)
+    if held is None or state.phase is Phase.DISMANTLING:
+        return state, ()
+    if event.life and not held.life and state.ended_lives.get(event.component) == event.life:
+        return _lost_already(state, event.component)
+    if _passes_over(held, event):
+        return state, ()
+    startable = event.startable and event.cause in PROCESS_ENDS
+    if startable:  # the next life has not made the deployment begin anew
+        state = replace(state, repeats={c: times for c, times in state.repeats.items() if c != event.component})
+    loss = Loss(event.cause, event.detail, event.life or held.life, event.cause is Cause.YIELD, startable=startable)
+    if event.cause not in (Cause.YIELD, Cause.LET_GO):
+        return lose(state, event.component, loss)
+    if not held.reserved:
+        return state, ()  # another task is asked to let go of it, perhaps for this one
+    return _let_go(state, event.component, loss)
+
+
+def _passes_over(held: Held, event: Failed) -> bool:
+    """Whether it is another life than the one that is held which has failed, or one silent that may not have begun."""
+    another = bool(event.life and held.life and event.life != held.life)
+    return another or (event.cause is Cause.SILENCE and not held.confirmed)
+
+
+def _lost_already(state: State, component: IRI) -> Reaction:
+    """A component is held anew whose last life was lost: have it woken again, as its site may have thought it alive."""
+    return state, (WakeUp(component, state.epoch),) if (component, Call.WAKE) in state.pending else ()
+
+
+def _let_go(state: State, component: IRI, loss: Loss) -> Reaction:
+    """Let go of a component that another task asks for, or that has let go of this one and so can be had again."""
+    lost = {**state.lost, component: loss} if loss.busy else state.lost
+    if not is_needed(state, component):
+        known, effects = lose(state, component, loss)
+        return replace(known, lost=lost), effects
+    # Nothing may act on a part: all come to rest, the component in its turn.
+    return phases.dismantle(replace(state, lost=lost, news=state.news or not loss.busy), Phase.COMPOSING)
+
+
+def lose(state: State, component: IRI, loss: Loss) -> Reaction:
+    """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
+    epoch = state.epoch + 1
+    without = replace(
+        state,
+        epoch=epoch,
+        held={kept: held for kept, held in state.held.items() if kept != component},
+        owed={**state.owed, component: epoch},
+        lost={**state.lost, component: loss},
+        queued=state.queued - {component},
+    )
+    if loss.cause in PROCESS_ENDS and loss.life:
+        without = replace(without, ended_lives={**state.ended_lives, component: loss.life})
+    effects = (ReleaseFrom(component, epoch),)  # also what seems to be dead: it may hear, and not be heard
+    if not is_needed(state, component):
+        return then(effects, deploying.deploy(replace(without, target=state.fallback or state.target, fallback=None)))
+    if state.policy is Policy.DISMANTLE:
+        return phases.dismantle(without, Phase.COMPOSING)
+    if state.phase is Phase.DISCOVERING:
+        return without, effects
+    return then(effects, phases.compose(replace(without, target=state.fallback or state.target, fallback=None)))
+
+
+def is_needed(state: State, component: IRI) -> bool:
+    """Whether a component may be part of what is to run: not if that is being deployed, or ran before, without it."""
+    wanted = state.fallback or state.target
+    return state.phase not in DEPLOYING or wanted is None or component in wanted.components

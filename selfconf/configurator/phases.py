@@ -1,0 +1,132 @@
+"""How a task enters its phases: it asks the ecology, searches, comes to rest, waits for others, or is left to another.
+
+A component that was released is *owed* a release until it answers: one that was cut off meanwhile may still act, and is
+released again when it is seen again. What is to come to rest does so in its order: what is fed before what feeds it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+
+from selfconf.configurator.deploying import Reaction, then
+from selfconf.configurator.effects import (
+    Compose,
+    Discover,
+    Effect,
+    Finish,
+    QueueFor,
+    ReleaseFrom,
+    Unwatch,
+)
+from selfconf.configurator.events import Call
+from selfconf.configurator.starting_order import resting_next
+from selfconf.configurator.state import Phase, Policy, State
+from selfconf.model.configuration import Configuration
+from selfconf.model.sharing import Avoided
+
+NOTHING: Avoided = MappingProxyType({})
+"""What is avoided by most searches."""
+
+
+def discover(state: State) -> Reaction:
+    """Ask the ecology what there is: act 1."""
+    asking = replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False, repeats={}, improving=False)
+    return asking, (Discover(),)
+
+
+def compose(state: State, despite: bool = False, avoided: Avoided = NOTHING) -> Reaction:
+    """Search for a configuration: act 3. With `despite` it says what would do, if others held nothing."""
+    running = state.target if state.policy is Policy.REPAIR else None
+    searching = replace(state, phase=Phase.COMPOSING, pending=frozenset(), despite=despite)
+    return begin_search(searching, running, avoided)
+
+
+def begin_search(state: State, running: Configuration | None, avoided: Avoided) -> Reaction:
+    """Search near what runs, if anything, without what is lost, held by others or `avoided`; older searches end."""
+    attempt = state.attempt + 1
+    without = state.lost.keys() if state.despite else state.lost.keys() | state.taken.keys() | avoided.keys()
+    return replace(state, attempt=attempt, avoided=avoided), (Compose(attempt, frozenset(without), running),)
+
+
+def refuse(state: State) -> Reaction:
+    """End in a refusal, or wait where the task is patient, once everything is at rest."""
+    return dismantle(replace(state, put_off=0), Phase.REFUSED)
+
+
+def dismantle(state: State, afterwards: Phase) -> Reaction:
+    """Release everything that is held or owed a release, what is fed before what feeds; then comes `afterwards`."""
+    epoch = state.epoch + 1
+    owed = dict.fromkeys((*state.owed, *state.held), epoch)
+    dismantling = replace(
+        state,
+        phase=Phase.DISMANTLING,
+        afterwards=afterwards,
+        epoch=epoch,
+        pending=frozenset(),
+        unreleased=tuple(owed),
+        queued=state.queued - owed.keys(),
+        fallback=None,
+        owed=owed,
+        watched=frozenset(),
+    )
+    return then([Unwatch(component) for component in sorted(state.watched)], released(dismantling))
+
+
+def released(state: State) -> Reaction:
+    """Go on once all that were to come to rest have: with those that feed nothing any more, or with what follows."""
+    if state.pending:
+        return state, ()
+    if state.unreleased:
+        return _release_next(state)
+    empty = replace(state, held={}, target=None, order=None)
+    if state.afterwards is Phase.COMPOSING:
+        return compose(empty)
+    ended = replace(empty, phase=state.afterwards)
+    if not ended.ended:
+        return discover(ended) if state.news else queue(ended)
+    if state.queued:
+        return _wait_no_more(state)
+    return ended, (Finish(state.refusal if ended.phase is Phase.REFUSED else None),)
+
+
+def _release_next(state: State) -> Reaction:
+    """Release those that feed none of the others that are to come to rest."""
+    wires = {component: held.inputs for component, held in state.held.items() if held.active}
+    now = resting_next(wires, state.unreleased)
+    left = tuple(component for component in state.unreleased if component not in set(now))
+    pending = frozenset((component, Call.RELEASE) for component in now)
+    effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
+    return replace(state, unreleased=left, pending=pending), effects
+
+
+def _wait_no_more(state: State) -> Reaction:
+    """Have the components that remember that this task waits forget it: the task is about to end."""
+    waited_for = tuple(sorted(state.queued))
+    owed = {**state.owed, **dict.fromkeys(waited_for, state.epoch)}
+    return _release_next(replace(state, queued=frozenset(), unreleased=waited_for, owed=owed))
+
+
+def queue(state: State) -> Reaction:
+    """Ask for each component that another task holds, so that it tells when it is free."""
+    queued = state.queued.union(component for component, loss in state.lost.items() if loss.busy)
+    effects = tuple(QueueFor(component, state.epoch) for component in sorted(queued - state.owed.keys()))
+    return replace(state, queued=queued), effects
+
+
+def stand_down(state: State) -> Reaction:
+    """Another configurator goes on with this task: leave everything as it is to that one."""
+    effects: list[Effect] = [Unwatch(component) for component in sorted(state.watched)]
+    left = replace(
+        state,
+        phase=Phase.STOPPED,
+        target=None,
+        order=None,
+        held={},
+        owed={},
+        pending=frozenset(),
+        unreleased=(),
+        watched=frozenset(),
+        queued=frozenset(),
+    )
+    return left, (*effects, Finish())
