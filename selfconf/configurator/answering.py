@@ -133,7 +133,8 @@ def heed_free(state: State, component: IRI) -> Reaction:
     if state.phase in DEPLOYING and {(component, Call.RESERVE), (component, Call.APPLY)} & state.pending:
         return deploying.ask_again(state, component)
     known, effects = _free(state, component)
-    if effects or component in state.held:
+    searches = known.phase in (Phase.DISCOVERING, Phase.COMPOSING)  # and may find that it is what it takes
+    if searches or component in state.held:
         return known, effects  # it remembers this task until it is reserved or released
     return replace(known, queued=known.queued - {component}), (Decline(component, state.epoch),)
 

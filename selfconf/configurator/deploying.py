@@ -227,13 +227,12 @@ def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:
     """
     if holder is None:
         return False
+    reserved = [one for one, held in state.held.items() if held.may_be_held and one != component]
+    if not holder.task and reserved and not any(state.held[one].active for one in reserved):
+        return False  # it is kept for a task that goes before, which may need what is held here
     if holder.priority < state.priority:  # it is asked to yield, and made to: the component waits two seconds for that
         return state.repeats.get(component, 0) <= MOST_ASKED
-    return (
-        state.patient
-        and not holder.acting
-        and not any(one > component for one, held in state.held.items() if held.may_be_held)
-    )
+    return state.patient and not holder.acting and not any(one > component for one in reserved)
 
 
 def may_agree(state: State, component: IRI, holder: Holder | None) -> bool:

@@ -23,6 +23,8 @@ GOAL = Literal("(AT BEDROOM)")
 OTHERS = Holder("tidy~2", 0, 5.0, "c2", acting=True)
 """Another task of the same priority, for which a component acts."""
 HIGHER, LOWER, RESERVING = replace(OTHERS, priority=1), replace(OTHERS, priority=-1), replace(OTHERS, acting=False)
+KEPT = Holder("", acting=False)
+"""No task holds a component, but it is kept for one that goes before."""
 TASK = State(task="go~1")
 PATIENT = State(task="go~1", patient=True)
 DISMANTLE = State(task="go~1", policy=Policy.DISMANTLE)

@@ -161,6 +161,16 @@ def test_what_is_kept_for_a_task_that_cannot_take_it_now_goes_to_the_next() -> N
     assert history.hear(Freed(ODOMETRY)) == [Decline(ODOMETRY, history.state.epoch)]
 
 
+def test_what_is_free_while_a_task_searches_goes_to_no_other_before_that_has_found_something() -> None:
+    history = waiting()
+    history.hear(Freed(TRACKER))
+    assert history.state.phase is Phase.DISCOVERING
+    assert history.hear(Freed(ODOMETRY)) == []
+    history.hear(Discovered())
+    assert history.state.phase is Phase.COMPOSING
+    assert history.hear(Freed(ODOMETRY)) == []
+
+
 def test_a_notice_that_comes_after_the_component_was_reserved_lets_it_not_go() -> None:
     history = History(TASK).running()
     assert history.hear(Freed(TRACKER)) == []

@@ -44,6 +44,7 @@ from tests.configurator.builders import (
     CONTROL,
     DRIVE,
     GOAL,
+    KEPT,
     LOWER,
     ODOMETRY,
     OTHERS,
@@ -519,9 +520,9 @@ def test_waiting_is_for_what_will_come_and_in_no_circle(
     assert may_wait_for(State(patient=patient, held=held), DRIVE, holder) is expected
 
 
-def reserving(patient: bool = False) -> History:
+def reserving(patient: bool = False, priority: int = 0) -> History:
     """A task asks for its first component."""
-    history = History(PATIENT if patient else TASK).accepted()
+    history = History(replace(PATIENT if patient else TASK, priority=priority)).accepted()
     history.composed(navigation())
     history.all_answer(Call.WAKE)
     return history
@@ -593,6 +594,26 @@ def test_a_task_that_is_about_to_act_is_waited_for_by_a_patient_one_until_it_act
     assert released(effects) == [CONTROL]
     assert effects[-1] == Compose(2, frozenset({CONTROL}), navigation())
     assert history.state.lost[CONTROL].busy
+
+
+@pytest.mark.parametrize("priority", [0, 1])
+def test_a_task_holds_nothing_while_it_waits_for_what_is_kept_for_one_that_goes_before(priority: int) -> None:
+    """That one may need it: else both would wait until the component is kept for the first no more."""
+    history = reserving(patient=True, priority=priority)
+    assert kinds(history.busy(CONTROL, KEPT)) == [AwaitRelease], "it holds nothing yet"
+    history.hear(WaitedLong(CONTROL, history.state.epoch))
+    history.answer(CONTROL, Call.RESERVE)
+    history.busy(DRIVE, KEPT)
+    assert history.state.lost[DRIVE].busy
+
+
+def test_a_task_that_runs_waits_for_what_is_kept_for_one_that_goes_before() -> None:
+    history = History(replace(TASK, patient=True)).running()
+    history.hear(Failed(TRACKER, "1", Cause.FAIL))
+    history.composed(navigation(ODOMETRY))
+    history.answer(ODOMETRY, Call.WAKE)
+    history.busy(ODOMETRY, KEPT, Call.APPLY)
+    assert ODOMETRY not in history.state.lost
 
 
 def test_a_repair_whose_only_lack_is_held_by_a_task_of_lower_priority_waits_for_it() -> None:

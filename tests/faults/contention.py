@@ -95,9 +95,10 @@ class Contention:
         self.network.stepped = self._look
         for number in range(tasks):
             wanted = self.chance.sample(range(SENSORS), self.chance.randint(1, SENSORS))
-            self._begin(number, wanted, patient, self.chance.choice((0, 0, 1, 2)) if priorities else 0)
+            self.begin(number, wanted, patient, self.chance.choice((0, 0, 1, 2)) if priorities else 0)
 
-    def _begin(self, number: int, wanted: list[int], patient: bool, priority: int) -> None:
+    def begin(self, number: int, wanted: Sequence[int], patient: bool, priority: int) -> None:
+        """Begin a task that needs some sensors and a drive."""
         agent = self.lab.agent(
             template(wanted, f"task{number}"), (), patient=patient, name=f"task{number}", priority=priority
         )

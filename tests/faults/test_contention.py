@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from random import Random
 from statistics import median
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from selfconf.configurator.state import Phase
 from selfconf.model.configuration import Configuration
 from tests.effort import NIGHTLY, examples
-from tests.faults.contention import Contention, Settled
+from tests.faults.contention import SENSORS, Contention, Settled
 
 SEEDS = 1_000 if NIGHTLY else examples(4)
 BATCH = 4
@@ -78,6 +79,23 @@ def test_tasks_that_wait_run_one_after_the_other_as_others_end(seed: int, priori
                 agent.stop()
     assert len(ran) == len(contention.agents)
     assert not contention.wrong
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4 * SEEDS))
+def test_of_tasks_that_wait_for_the_same_the_one_that_began_first_runs_first(seed: int, folder: Path) -> None:
+    """They want components that all become free at once, in whatever order, and can have any of the drives."""
+    contention, chance = Contention(seed, folder, 0, True, False), Random(seed)
+    contention.begin(0, range(SENSORS), True, 0)
+    contention.settle(1.0)
+    shared = chance.randrange(SENSORS)
+    for number in range(1, chance.randint(3, 5)):
+        wanted = chance.sample(range(SENSORS), chance.randint(1, SENSORS))
+        contention.begin(number, wanted if shared in wanted else [*wanted, shared], True, 0)
+        contention.settle(1.0)
+    holder, oldest, *_ = contention.agents
+    holder.stop()
+    assert contention.settle(3.0).running == [oldest.name]
 
 
 @pytest.mark.parametrize(
