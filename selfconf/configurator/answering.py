@@ -88,8 +88,7 @@ def _busy(state: State, event: Answered) -> Reaction:
             return deploying.await_release(state, event.component)
         if state.repeats[event.component] <= MOST_REPEATS:
             return then(effects, _reserve_anew(apart, event.component))
-    if event.shared:  # others insist on something else: what that is says the ecology, before this is a refusal
-        apart = replace(apart, news=True)
+    apart = replace(apart, news=True)  # what the others hold, and insist on, says the ecology before this is a refusal
     busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True)
     return then(effects, losing.lose(apart, event.component, busy))
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from selfconf.configurator.effects import (
     ApplyTo,
     Compose,
+    Discover,
     Finish,
     Running,
     Unwatch,
@@ -24,6 +27,7 @@ from selfconf.configurator.events import (
 from selfconf.configurator.state import Phase
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
 from tests.configurator.builders import (
@@ -144,6 +148,28 @@ def test_what_a_task_of_lower_priority_wants_of_a_component_that_can_be_shared_d
     history.hear(Accepted(100), Discovered({}, {CONTROL: replace(LOWER, wants=other.wants(CONTROL))}))
     history.composed(navigation())
     assert history.state.phase is Phase.RESERVING
+
+@pytest.mark.parametrize("how", ["yield", "busy"])
+def test_a_refusal_names_the_task_to_which_this_one_has_lost_a_component(how: str) -> None:
+    """Before it is a refusal, the ecology is asked who holds what: that another asks for it does not say so."""
+    if how == "yield":
+        history = History(TASK).running()
+        history.hear(Failed(TRACKER, "1", Cause.YIELD))
+        history.all_answer()
+    else:
+        history = History(TASK).accepted()
+        history.composed(navigation())
+        history.all_answer(Call.WAKE)
+        history.busy(CONTROL, OTHERS)
+    lost = TRACKER if how == "yield" else CONTROL
+    assert history.composed(REFUSAL)[-1] == Discover()
+    history.hear(Discovered({lost: HIGHER}))
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    history.all_answer()
+    assert isinstance(history.state.refusal, Refusal)
+    assert history.state.refusal.held == ((lost, HIGHER),)
+
 
 
 def test_a_task_that_is_asked_to_yield_comes_to_rest_sinks_first_and_is_configured_without_that_component() -> None:
