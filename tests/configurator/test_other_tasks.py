@@ -149,6 +149,7 @@ def test_what_a_task_of_lower_priority_wants_of_a_component_that_can_be_shared_d
     history.composed(navigation())
     assert history.state.phase is Phase.RESERVING
 
+
 @pytest.mark.parametrize("how", ["yield", "busy"])
 def test_a_refusal_names_the_task_to_which_this_one_has_lost_a_component(how: str) -> None:
     """Before it is a refusal, the ecology is asked who holds what: that another asks for it does not say so."""
@@ -169,7 +170,6 @@ def test_a_refusal_names_the_task_to_which_this_one_has_lost_a_component(how: st
     history.all_answer()
     assert isinstance(history.state.refusal, Refusal)
     assert history.state.refusal.held == ((lost, HIGHER),)
-
 
 
 def test_a_task_that_is_asked_to_yield_comes_to_rest_sinks_first_and_is_configured_without_that_component() -> None:
