@@ -347,9 +347,9 @@ def fail(activation: Activation) -> tuple[Activation, ActivationStep]:
     return activation, ActivationStep.NONE
 
 
-def orphan(activation: Activation, supervisor: str) -> tuple[Activation, ActivationStep]:
-    """Return what becomes of an activation when a supervisor has been gone for the grace period."""
-    return drop(activation, [hold.claim.task for hold in activation.holds if hold.claim.supervisor == supervisor])
+def held_under(activation: Activation, supervisor: str) -> tuple[str, ...]:
+    """The tasks that hold a component and are supervised by a configurator: orphaned once that has been gone."""
+    return tuple(hold.claim.task for hold in activation.holds if hold.claim.supervisor == supervisor)
 
 
 def outranked(activation: Activation) -> tuple[str, ...]:

@@ -495,7 +495,7 @@ class ComponentRuntime:
             self._when_at_rest(action)
 
     def _orphaned(self, supervisor: str) -> None:
-        tasks = [hold.claim.task for hold in self.activation.holds if hold.claim.supervisor == supervisor]
+        tasks = table.held_under(self.activation, supervisor)
         self._let_go(tasks, "the configurator of the task seemed to be gone")
 
     def _let_go(self, tasks: Sequence[str], why: str) -> None:

@@ -21,10 +21,10 @@ from selfconf.protocol.activation import (
     drop,
     fail,
     granted,
+    held_under,
     in_the_way,
     obey,
     offer,
-    orphan,
     outranked,
     served,
     withdraw,
@@ -127,7 +127,8 @@ def test_fail_is_raised_once_and_only_by_an_active_component(
 
 @pytest.mark.parametrize("phase", ActivationPhase)
 def test_an_orphan_turns_itself_off_and_is_free_for_others(phase: ActivationPhase) -> None:
-    activation, told = orphan(activation_in(phase), supervisor(A))
+    before = activation_in(phase)
+    activation, told = drop(before, held_under(before, supervisor(A)))
     assert (activation.phase, activation.holds, activation.epoch_of(A)) == (IDLE, (), 5)
     assert told is (ActivationStep.NONE if phase is IDLE else ActivationStep.STOP)
     assert obey(activation, call_of(Apply, B, 1))[1] is Verdict.DONE
@@ -136,7 +137,7 @@ def test_an_orphan_turns_itself_off_and_is_free_for_others(phase: ActivationPhas
 @pytest.mark.parametrize("phase", ActivationPhase)
 def test_a_supervisor_of_no_hold_leaves_no_orphan(phase: ActivationPhase) -> None:
     before = activation_in(phase)
-    assert orphan(before, supervisor(B)) == (before, ActivationStep.NONE)
+    assert drop(before, held_under(before, supervisor(B))) == (before, ActivationStep.NONE)
 
 
 def test_a_reserved_component_does_not_act() -> None:
@@ -251,7 +252,7 @@ def test_of_two_configurators_of_one_task_the_second_is_busy_unless_the_first_is
 def test_another_configurator_of_the_same_task_goes_on_with_it_without_a_stop() -> None:
     after, verdict, step = obey(activation_in(ACTIVE), call_of(Apply, epoch=9, run=2), gone=frozenset({supervisor(A)}))
     assert (verdict, step, after.phase) == (Verdict.DONE, ActivationStep.NONE, ACTIVE)
-    assert orphan(after, supervisor(A)) == (after, ActivationStep.NONE)
+    assert drop(after, held_under(after, supervisor(A))) == (after, ActivationStep.NONE)
 
 
 def test_a_release_of_a_task_that_does_not_hold_the_component_changes_nothing_for_the_one_that_does() -> None:
@@ -278,7 +279,7 @@ def test_a_supervisor_that_is_gone_stands_in_no_other_tasks_way() -> None:
     applied, verdict, _ = obey(reserved, call_of(Apply, B), gone=gone)
     assert verdict is Verdict.DONE
     assert [hold.claim.task for hold in applied.holds] == [B]
-    rested, step = orphan(reserved, supervisor(A))
+    rested, step = drop(reserved, held_under(reserved, supervisor(A)))
     assert (step, rested.phase, [hold.claim.task for hold in rested.holds]) == (ActivationStep.STOP, IDLE, [B])
 
 
@@ -562,7 +563,7 @@ def test_another_configurator_of_a_task_goes_on_with_it_also_where_it_wishes_som
     gone = frozenset((supervisor(A),))
     shared, verdict, _ = obey(shared_by(A, B), call, shareable=True, gone=gone)
     assert (verdict, inputs_of(shared)) == (Verdict.BUSY, dict.fromkeys((A, B), INPUTS))
-    assert orphan(shared, supervisor(A))[0] == shared, "its configurator lives"
+    assert drop(shared, held_under(shared, supervisor(A)))[0] == shared, "its configurator lives"
 
 
 @pytest.mark.parametrize("ends", ["release", "orphan"])
@@ -571,7 +572,7 @@ def test_a_task_is_told_when_nobody_disagrees_any_more_with_what_it_wishes(ends:
     if ends == "release":
         after, _, _ = obey(shared, call_of(Release, B, 6), shareable=True)
     else:
-        after, _ = orphan(shared, supervisor(B))
+        after, _ = drop(shared, held_under(shared, supervisor(B)))
     assert (served(shared, after), inputs_of(after)) == ((A,), {A: INPUTS})
     after, verdict, _ = obey(after, call_of(Apply, A, 6, inputs=OTHER), shareable=True)
     assert (verdict, inputs_of(after)) == (Verdict.DONE, {A: OTHER})
@@ -692,7 +693,7 @@ def _mishap(activation: Activation, event: str) -> tuple[Activation, ActivationS
         return withdraw(activation, activation.kept_for), ActivationStep.NONE
     if event == "preempt":
         return drop(activation, outranked(activation))
-    return orphan(activation, event)
+    return drop(activation, held_under(activation, event))
 
 
 def _check_call(
