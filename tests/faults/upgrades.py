@@ -195,8 +195,9 @@ class UpgradeWatch:
                 if source in followed:
                     going.heard[one] = max(going.heard.get(one, 0.0), followed[source]._heard_at)
             lately = going.heard.get(one, 0.0) > now - HANDOVER / 2
+            late = self._history.script.faults.most_event_delay  # so late it may be heard that a source was stopped
             delivered = any(
-                following.heard_since(max(going.began - JUST_COME, self._started(source)))
+                following.heard_since(max(going.began - JUST_COME, self._started(source) - late))
                 for source, following in followed.items()
             )
             kept = followed.keys() & {*old}
