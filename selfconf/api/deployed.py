@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from selfconf.bus.port import Sample
-from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
 from selfconf.render import value_body
@@ -76,12 +73,8 @@ def _value(value: Term | None) -> object:
     return None if value is None else value_body(value)
 
 
-def connected(sample: Sample) -> Iterator[tuple[IRI, IRI]]:
-    """Yield which component feeds which in a configuration that a configurator has answered; nothing for no Turtle."""
-    try:
-        document = turtle.parse(sample.payload, sample.key)
-    except TurtleError:
-        return
+def connected(document: Document) -> Iterator[tuple[IRI, IRI]]:
+    """Yield which component feeds which in the configuration of a document."""
     for node in document.instances(SC.Connection):
         for source in document.values(node, SC["from"]):
             for sink in document.values(node, SC.to):

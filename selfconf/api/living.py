@@ -24,7 +24,7 @@ from selfconf.api.component_states import ComponentState, component_states
 from selfconf.api.deployed import connected, deployed_body
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
-from selfconf.api.living_tasks import LivingTask, LivingTasks
+from selfconf.api.living_tasks import STATE_PATIENCE, LivingTask, LivingTasks
 from selfconf.api.membership import MEMBERS, beliefs, check_may_run, member
 from selfconf.api.output_sources import follow_output
 from selfconf.api.site_access import SiteAccess, site_accesses
@@ -39,7 +39,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import component_chunk, owner_of, task_name
+from selfconf.protocol.keys import component_chunk, configurator_of, owner_of, task_name
 from selfconf.protocol.messages import (
     End,
     LogPart,
@@ -51,6 +51,7 @@ from selfconf.protocol.messages import (
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
+from selfconf.rdf.turtle import Document
 from selfconf.render.why import told_why
 
 if TYPE_CHECKING:
@@ -59,8 +60,6 @@ if TYPE_CHECKING:
     from selfconf.api.task import TaskSpecification
     from selfconf.model.refusal import Refusal, Undecided
 
-STATES = 1.0
-"""How long, in seconds, the components may take to say how they are."""
 ENDING_PROCESS = 10.0
 """How long, in seconds, a site may take to end a process."""
 LIVES_AGAIN = 20.0
@@ -153,7 +152,7 @@ class LivingEcology(Ecology):
         discovery = self.discover()
         asked = self._view.keys.any_call("state")
         # No component would hear the question of a reader.
-        replies = Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATES)
+        replies = Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATE_PATIENCE)
         holders = self.holders() if self._looks_on_only else {}
         found = []
         silent: list[str] = []
@@ -252,15 +251,24 @@ class LivingEcology(Ecology):
 
     def deployed(self) -> dict[str, dict[str, Any]]:
         """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
-        found = {}
-        for sample in self._synchronous.ask(self._view.keys.configuration()).samples:
+        complaints: list[str] = []
+        bodies = [(name, deployed_body(document)) for name, document in self._configurations(complaints)]
+        self._complaints = tuple(complaints)
+        return {name: body for name, body in bodies if body is not None}
+
+    def _configurations(self, complaints: list[str]) -> Iterator[tuple[str, Document]]:
+        """Yield what each configurator has deployed, with its name; what is no such thing adds to the complaints."""
+        keys = self._view.keys
+        for sample in self._synchronous.ask(keys.configuration()).samples:
             try:
-                body = deployed_body(turtle.parse(sample.payload, sample.key))
-            except TurtleError:
+                name = configurator_of(sample.key)
+                if sample.key != keys.configuration(name):
+                    raise PeerError(f"{sample.key!r} is not the key of the configuration of {name!r}")
+                document = turtle.parse(sample.payload, sample.key)
+            except (PeerError, TurtleError) as error:
+                complaints.append(f"left out a configuration: {error}")
                 continue
-            if body is not None:
-                found[sample.key.split("/")[-2]] = body
-        return found
+            yield name, document
 
     @property
     def sites(self) -> tuple[str, ...]:
@@ -329,23 +337,20 @@ class LivingEcology(Ecology):
         if not names:
             return None
         heard: dict[IRI, set[IRI]] = {c: set() for s in running if s.configurator in names for c in s.components}
-        for sample in self._synchronous.ask(self._view.keys.configuration()).samples:
-            if sample.key.split("/")[-2] in names:
-                for source, sink in connected(sample):
+        complaints: list[str] = []
+        for name, document in self._configurations(complaints):
+            if name in names:
+                for source, sink in connected(document):
                     heard.setdefault(sink, set()).add(source)
+        self._complaints = tuple(complaints)
         return {component: tuple(sorted(sources)) for component, sources in sorted(heard.items())}
 
     def dataset(self) -> Dataset:
         """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
         dataset = super().dataset()
         complaints = list(self.complaints)
-        for sample in self._synchronous.ask(self._view.keys.configuration()).samples:
-            try:
-                document = turtle.parse(sample.payload, sample.key)
-            except TurtleError as error:
-                complaints.append(f"left out a configuration: {error}")
-                continue
-            dataset.add(IRI.unchecked(f"urn:selfconf:{sample.key}"), document.triples())
+        for name, document in self._configurations(complaints):
+            dataset.add(IRI.unchecked(f"urn:selfconf:{self._view.keys.configuration(name)}"), document.triples())
         self._complaints = tuple(complaints)
         return dataset
 
@@ -359,7 +364,7 @@ class LivingEcology(Ecology):
         checked_text(term, "the term that is asked about")
         at = checked_moment(at)
         told: dict[str, list[Notice]] = {}
-        rejected = []
+        rejected: list[str] = []
         for sample in self._synchronous.ask(self._view.keys.notices()).samples:
             try:
                 notice = decode(sample.payload, Notice)
@@ -368,7 +373,7 @@ class LivingEcology(Ecology):
                 continue
             if sample.key == self._view.keys.notices(notice.configurator):
                 told.setdefault(notice.configurator, []).append(notice)
-        passed_over = {} if at is not None else self._passed_over()
+        passed_over = {} if at is not None else self._passed_over(rejected)
         sentences: list[str] = []
         for configurator, notices in sorted(told.items()):
             events = [notice.event for notice in sorted(notices, key=lambda notice: notice.sequence)]
@@ -379,9 +384,10 @@ class LivingEcology(Ecology):
         self._complaints = tuple(rejected)
         return sentences
 
-    def _passed_over(self) -> dict[str, dict[str, list[str]]]:
-        """By configurator and role, the candidates that go before those that are deployed."""
+    def _passed_over(self, complaints: list[str]) -> dict[str, dict[str, list[str]]]:
+        """By configurator and role, the candidates that go before those that are deployed; adds to the complaints."""
         deployed = self.deployed().items()
+        complaints += self.complaints
         return {name: {role["role"]: role["passed_over"] for role in body["roles"]} for name, body in deployed}
 
     def configure(

@@ -21,8 +21,8 @@ from selfconf.rendezvous import ClaimedName, LocalTask, claim, suspended_tasks
 
 COMING_TO_REST = 5.0
 """Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""
-STATE = 1.0
-"""Seconds that a component may take to say how it is."""
+STATE_PATIENCE = 1.0
+"""Seconds that the components may take to say how they are."""
 UNNUMBERED = 56
 """How many characters of a task's name stand before a number; with that they are 64 at most."""
 REST_CHECK = 0.1
@@ -155,7 +155,7 @@ class LivingTasks:
     def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:
         """What components are held by configurators that are not among some, sorted by the configurator's name."""
         found: dict[tuple[str, str], list[IRI]] = {}
-        for one in _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE), self._keys):
+        for one in _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE_PATIENCE), self._keys):
             with suppress(PeerError):
                 if one.supervisor and (configurator := owner_of(one.supervisor)) not in known:
                     found.setdefault((configurator, one.task), []).append(one.component)
@@ -266,7 +266,7 @@ class LivingTasks:
 
         Whether a task is left that knows of them or not: each component is asked. It takes time where one is stopping.
         """
-        answers = _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE), self._keys)
+        answers = _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE_PATIENCE), self._keys)
         stopping = {(one.component, "") for one in answers if one.stopping}
         return {component: why for (component, _), why in self._after_some_time(stopping).items()}
 
@@ -286,7 +286,7 @@ class LivingTasks:
         pairs, keys = sorted(asked), self._keys
         questions = [(keys.call(component, "state"), encode(StateOf(task))) for component, task in pairs]
         troubles = {}
-        for (component, task), replies in zip(pairs, self._bus.ask_each(questions, STATE), strict=True):
+        for (component, task), replies in zip(pairs, self._bus.ask_each(questions, STATE_PATIENCE), strict=True):
             answers = _states(replies, keys)
             acting = [one for one in answers if one.stopping or (one.active and one.task == task)]
             if acting:

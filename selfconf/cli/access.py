@@ -71,6 +71,8 @@ def _task(given: argparse.Namespace, ecology: LivingEcology) -> int:
     if links is None:
         complain(f"no configurator runs a task {given.task!r}")
         return 1
+    for one in ecology.complaints:
+        complain(one)
     if given.format == "json":
         print(json.dumps({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]}))
         return 0

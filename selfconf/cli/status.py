@@ -10,11 +10,12 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
-from selfconf.cli.terminal import STATE_COLOURS, paint
+from selfconf.cli.terminal import STATE_COLOURS, complain, paint
 from selfconf.model.term import IRI
 from selfconf.model.wording import one_line
 
 if TYPE_CHECKING:
+    from selfconf.api.living import LivingEcology
     from selfconf.protocol.messages import Status
     from selfconf.render import Names
 
@@ -34,9 +35,9 @@ def run(given: argparse.Namespace) -> int:
     """
     with joined(given) as ecology:
         found = ecology.tasks
-        deployed = ecology.deployed() if found else {}
-        disobedient = ecology.out_of_control() if given.format != "json" else {}
         complain_of(ecology)
+        deployed = _deployed(ecology) if found else {}
+        disobedient = ecology.out_of_control() if given.format != "json" else {}
         code = 2 if ecology.silent or ecology.suspended else 0
     if given.format == "json":
         bodies = [_body(status, deployed.get(status.configurator, {})) for status in found]
@@ -47,6 +48,14 @@ def run(given: argparse.Namespace) -> int:
     for line in _told(found, deployed, disobedient):
         print(line)
     return code
+
+
+def _deployed(ecology: LivingEcology) -> dict[str, dict[str, Any]]:
+    """What each configurator has deployed; on stderr, what was left out of that."""
+    deployed = ecology.deployed()
+    for one in ecology.complaints:
+        complain(one)
+    return deployed
 
 
 def _told(

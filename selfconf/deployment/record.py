@@ -10,7 +10,7 @@ from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import LARGEST, encode
-from selfconf.protocol.keys import Keys
+from selfconf.protocol.keys import Keys, call_of
 from selfconf.protocol.messages import Status
 from selfconf.rdf.provenance import configuration_iri, configuration_triples
 from selfconf.rdf.turtle import to_turtle
@@ -115,7 +115,7 @@ class DeploymentRecord:
 
     def _serve_call(self, request: Request) -> None:
         try:
-            call = request.key.rsplit("/", 1)[-1]
+            call = call_of(request.key)
             if call == "stop":
                 request.reply(self._keys.configurator_call(self._name, "stop"), encode(self._status()))
                 self.bus.wake_up(self._stop)

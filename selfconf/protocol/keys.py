@@ -93,6 +93,10 @@ class Keys:
     def advertisements(self, site: str = "*") -> str:
         return self._site(site, "ads/**")
 
+    def no_advertisements(self, site: str) -> str:
+        """The key under which a site replies that it has none to tell, which is that of no component."""
+        return self._site(site, "ads/none")
+
     def changed(self, site: str = "*") -> str:
         return self._site(site, "changed")
 
@@ -297,6 +301,14 @@ def site_of(key: str) -> str:
     chunks = key.split("/")
     if len(chunks) < 5 or chunks[2] != "site":
         raise PeerError(f"{key!r} is no key of a site")
+    return chunks[3]
+
+
+def configurator_of(key: str) -> str:
+    """The name of the configurator that a configurator's key belongs to; a wildcard, for one, names none."""
+    chunks = key.split("/")
+    if len(chunks) < 5 or chunks[2] != "conf" or not _NAME.fullmatch(chunks[3]):
+        raise PeerError(f"{key!r} is no key of a configurator")
     return chunks[3]
 
 

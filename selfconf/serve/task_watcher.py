@@ -13,7 +13,7 @@ from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import Literal
 from selfconf.protocol.codec import decode
-from selfconf.protocol.keys import Keys, owner_of, task_name
+from selfconf.protocol.keys import Keys, configurator_of, owner_of, task_name
 from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
@@ -236,7 +236,10 @@ class TaskWatcher:
 
     def _take_deployed(self, replies: Replies) -> None:
         for sample in replies.samples:
-            name = sample.key.split("/")[3] if sample.key.count("/") == 4 else ""
+            try:
+                name = configurator_of(sample.key)
+            except PeerError:
+                continue
             task = self._tasks.get(name)
             if task is None or not task.alive or sample.key != self.keys.configuration(name):
                 continue

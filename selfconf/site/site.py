@@ -159,7 +159,7 @@ class Site:
             total = len(self._served)
             if total == 0 or self._is_known(request.payload):
                 page = Page(0, total, self._revision, life=self.life, insecure=self._insecure)
-                request.reply(self.keys.advertisements(self.name).replace("**", "none"), b"", encode(page))
+                request.reply(self.keys.no_advertisements(self.name), b"", encode(page))
                 return
             for index, one in enumerate(self._served):
                 page = Page(

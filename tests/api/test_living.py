@@ -12,6 +12,7 @@ import selfconf as sc
 from selfconf import LivingEcology, Refusal, join, template
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
+from selfconf.bus.port import Request
 from selfconf.discovery import ecology_view
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from tests.cli.processes import Home
@@ -222,6 +223,37 @@ def test_a_run_of_this_machine_that_is_suspended_is_told_by_its_task_apart_from_
         assert living.all_tasks() == ()
         assert (living.silent, living.suspended) == ((), ("patrol",))
     assert living.all_tasks() == living.suspended == ()
+
+
+@pytest.mark.parametrize(
+    ("configurator", "payload"),
+    [("stranger", b"no Turtle"), ("*", b"<urn:a> a <https://w3id.org/selfconf#Configuration> .")],
+    ids=["what is no Turtle", "the key of no configurator"],
+)
+def test_a_configuration_that_cannot_be_read_is_left_out_and_named(
+    living: LivingEcology, house: Home, configurator: str, payload: bytes
+) -> None:
+    key = living._view.keys.configuration(configurator)
+
+    def answer(request: Request) -> None:
+        request.reply(key, payload)
+        request.finish()
+
+    undo = living._bus.serve(key, answer)
+    program = house.run()
+    program.act("running")
+    (status,) = living.tasks
+    assert list(living.deployed()) == [status.configurator]
+    (complaint,) = living.complaints
+    assert complaint.startswith("left out a configuration: ")
+    assert living.links_of(status.name)
+    assert living.complaints == (complaint,)
+    living.dataset()
+    assert complaint in living.complaints
+    assert living.why(status.name)
+    assert living.complaints == (complaint,)
+    undo()
+    assert program.end() == 0
 
 
 def test_an_ecology_that_is_not_there_is_an_error_that_says_what_to_try(house: Home) -> None:

@@ -26,6 +26,7 @@ def every_key(component: IRI, port: str) -> list[str]:
     return [
         HOME.site_life("s", "1"),
         HOME.advertisement("s", component),
+        HOME.no_advertisements("s"),
         HOME.changed("s"),
         HOME.wake("s"),
         HOME.end("s"),
@@ -162,6 +163,25 @@ def test_what_is_no_liveliness_key_has_no_owner(key: str) -> None:
 def test_what_is_no_key_of_a_site_names_no_site(key: str) -> None:
     with pytest.raises(PeerError):
         keys.site_of(key)
+
+
+@given(names)
+def test_the_keys_of_a_configurator_name_it(name: str) -> None:
+    for key in (HOME.configuration(name), HOME.notices(name), HOME.configurator_call(name, "stop")):
+        assert keys.configurator_of(key) == name
+
+
+@pytest.mark.parametrize(
+    "key", ["", "selfconf/home/conf/*/cfg", "selfconf/home/site/s/changed", "selfconf/home/conf/c"]
+)
+def test_what_is_no_key_of_one_configurator_names_none(key: str) -> None:
+    with pytest.raises(PeerError, match="is no key of a configurator"):
+        keys.configurator_of(key)
+
+
+@given(names)
+def test_a_site_without_advertisements_replies_to_the_question_for_them(name: str) -> None:
+    assert zenoh.KeyExpr(HOME.advertisements(name)).includes(zenoh.KeyExpr(HOME.no_advertisements(name)))
 
 
 @given(names, names)
