@@ -1,4 +1,4 @@
-"""Turtle files as every program of selfconf reads them: which there are, what is in them, and what that means.
+"""Files of RDF as every program of selfconf reads them: which there are, what is in them, and what that means.
 
 A mark of the byte order is no part of the text, and a relative IRI counts from the file (RFC 3986, section 5.1.3). So a
 file has one meaning, whether a command, a site or a component reads it.
@@ -114,6 +114,31 @@ def is_same(one: str, other: str) -> bool:
         return False
 
 
+def listed_files(paths: Iterable[Path], endings: tuple[str, ...] = TURTLE) -> list[Path]:
+    """The files, and all below the folders that end so, each once, sorted. Raises AuthorError for what is not there."""
+    found: set[Path] = set()
+    for path in paths:
+        if path != STDIN:
+            existing(path)
+        found.update(within(path, endings=endings))
+    return sorted(found, key=Path.absolute)
+
+
+def ontology_files(paths: Iterable[Path]) -> list[Path]:
+    """The ontologies that paths stand for: files in any format of RDF, all below a folder; each once, sorted.
+
+    Raises AuthorError for what is not there.
+    """
+    return listed_files(paths, ONTOLOGY)
+
+
+def existing(path: Path) -> Path:
+    """The path, if there is something; raises AuthorError."""
+    if not path.exists():
+        raise AuthorError(f"there is no file or folder {path}")
+    return path
+
+
 def advertisements(
     path: Path, segments: SegmentCache | None = None
 ) -> tuple[list[Advertisement], list[MalformedAdvertisement]]:
@@ -127,18 +152,18 @@ def advertisements(
 
 
 def signal_fields(
-    paths: Iterable[Path], signals: Iterable[IRI], texts: Iterable[tuple[bytes, str, str | None]] = ()
+    ontologies: Iterable[Path], signals: Iterable[IRI], texts: Iterable[tuple[bytes, str, str | None]] = ()
 ) -> dict[IRI, SignalFields]:
-    """The fields of those kinds of signals of which some Turtle files, or texts, say what they consist of.
+    """The fields of those kinds of signals of which some ontologies, or texts in Turtle, say what they consist of.
 
     A text goes with its name, and with the IRI that relative IRIs in it are relative to.
 
-    Raises AuthorError for what is not there, cannot be read, or is not Turtle.
+    Raises AuthorError for what is not there, cannot be read, or is not in the format that it seems.
     """
     from selfconf.rdf.signal_fields import SAYING, fields_of  # loads a parser
-    from selfconf.rdf.turtle import parse
+    from selfconf.rdf.turtle import parse, read_ontology
 
-    documents = [parse(text(octets(path), str(path)), str(path), base(path), SAYING) for path in paths]
+    documents = [read_ontology(text(octets(path), str(path)), str(path), base(path), SAYING) for path in ontologies]
     documents += (parse(text(found, name), name, base_iri, SAYING) for found, name, base_iri in texts)
     found = {signal: fields_of(documents, signal) for signal in signals}
     return {signal: fields for signal, fields in found.items() if fields is not None}

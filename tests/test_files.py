@@ -9,10 +9,13 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import pyoxigraph as ox
 import pytest
 
 from selfconf import files
 from selfconf.errors import AuthorError, TurtleError
+from selfconf.model.term import IRI
+from selfconf.rdf.vocabulary import ROB, XSD
 from selfconf.site import Shelf
 
 CLOCK = "@prefix sc: <https://w3id.org/selfconf#> . @prefix : <urn:x:> . :clock a sc:Component, :Clock ."
@@ -95,7 +98,18 @@ def test_an_ontology_may_be_in_any_format_of_rdf(tmp_path: Path) -> None:
         "f.trig",
         "g.jsonld",
     ]
+    assert files.ontology_files([tmp_path, tmp_path / "b.rdf"]) == files.within(tmp_path, endings=files.ONTOLOGY)
     assert [path.name for path in files.within(tmp_path)] == ["a.ttl"]
+    with pytest.raises(AuthorError, match="there is no file or folder nowhere"):
+        files.ontology_files([Path("nowhere")])
+
+
+@pytest.mark.parametrize("form", [ox.RdfFormat.TURTLE, ox.RdfFormat.RDF_XML, ox.RdfFormat.JSON_LD])
+def test_the_fields_of_a_signal_are_read_in_any_format_of_rdf(form: ox.RdfFormat, tmp_path: Path) -> None:
+    words = f'<urn:t:Switch> <{ROB.field}> ( [ <{ROB.fieldName}> "on" ; <{ROB.datatype}> <{XSD.boolean}> ] ) .'
+    ox.serialize(ox.parse(words.encode(), format=ox.RdfFormat.TURTLE), tmp_path / f"words.{form.file_extension}", form)
+    found = files.signal_fields(files.ontology_files([tmp_path]), [IRI("urn:t:Switch")])
+    assert [field.name for one in found.values() for field in one.fields] == ["on"]
 
 
 def test_a_file_means_one_thing_with_and_without_a_mark_and_by_any_path(

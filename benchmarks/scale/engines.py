@@ -12,8 +12,9 @@ import pyoxigraph as ox
 import rdflib
 
 from benchmarks.scale.worlds import ROLES, task
+from selfconf import files
 from selfconf.api.ontologies import hierarchy_of
-from selfconf.api.reading import listed_files, read
+from selfconf.api.reading import read
 from selfconf.composition import TimeLimit, explained
 from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
@@ -54,7 +55,7 @@ def peak() -> float:
 
 def bare(path: Path) -> None:
     """Every triple of the parser, and nothing done with it."""
-    for file in listed_files([path]):
+    for file in files.listed_files([path]):
         for _ in ox.parse(file.read_bytes(), format=ox.RdfFormat.TURTLE, base_iri="file:///ads.ttl"):
             pass
 

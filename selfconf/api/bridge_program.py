@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from selfconf.api.reading import existing
+from selfconf import files
 from selfconf.api.site_program import serve
 from selfconf.bridging import Bridge, ForeignWorld
 from selfconf.model.immutable import immutable
@@ -67,7 +67,7 @@ def serve_things(
 
     for source in sources:
         if not is_url(source):
-            existing(Path(source))
+            files.existing(Path(source))
     wrong = [unreadable_file(source) for source in sources]
     if wrong[0] is not None and all(wrong):
         raise wrong[0]

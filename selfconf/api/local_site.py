@@ -11,9 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 
-from selfconf import rendezvous
+from selfconf import files, rendezvous
 from selfconf.api.arguments import checked_text
-from selfconf.api.reading import existing
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
 from selfconf.files import STDIN
 from selfconf.model.setting_names import setting
@@ -51,7 +50,7 @@ class SiteProcess:
             ads = setting("ads")
             raise AuthorError(f"a site watches the files of its advertisements, so give files to {ads}, not -")
         for path in self.paths:
-            existing(path)
+            files.existing(path)
         ecology, self._connect = rendezvous.asked_for(ecology, connect)
         self.ecology = f"run-{secrets.token_hex(3)}" if ecology is None else ecology
         self.name = f"s{secrets.token_hex(3)}"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import entailment, files, library
-from selfconf.api.reading import Text, file_text, listed_files
+from selfconf.api.reading import Text, file_text
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
@@ -28,7 +28,7 @@ def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hiera
 
     Raises AuthorError for what is not there or cannot be read, also in the mode `syntactic`, which uses none of it.
     """
-    own = listed_files(ontologies, files.ONTOLOGY)
+    own = files.ontology_files(ontologies)
     if reasoning is Reasoning.SYNTACTIC:
         # Standard input, which can be read once, is left to the mode that an explanation may look at afterwards.
         return _of_texts(reasoning, tuple(file_text(path) for path in own if path != files.STDIN))
@@ -45,7 +45,7 @@ def _of_texts(reasoning: Reasoning, texts: tuple[Text, ...]) -> Hierarchy:
 def with_ontologies(dataset: Dataset, question: Question, ontologies: Sequence[Path]) -> tuple[Dataset, Question]:
     """A dataset with ontologies, each a named graph, and a question that may use their prefixes."""
     prefixes: dict[str, str] = {}
-    for path in listed_files(ontologies, files.ONTOLOGY):
+    for path in files.ontology_files(ontologies):
         document = turtle.read_ontology(*file_text(path))
         prefixes |= document.prefixes
         dataset.add(IRI.unchecked(path.resolve().as_uri()), document.triples())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
@@ -120,7 +120,7 @@ def _texts(sources: Iterable[object]) -> Iterator[Text]:
             paths.append(_path(source))
         else:
             yield text_of(source)
-    yield from map(file_text, listed_files(paths))
+    yield from map(file_text, files.listed_files(paths))
 
 
 def text_of(source: object) -> Text:
@@ -185,23 +185,6 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
                     if other is None or not files.is_same(other.source, place.source):
                         left_out.append(LeftOut(place, advertisement.component, f"it is advertised in {other} already"))
         return AdvertisementIndex(found), tuple(left_out)
-
-
-def listed_files(paths: Sequence[Path], endings: tuple[str, ...] = files.TURTLE) -> list[Path]:
-    """The files, and all below the folders that end so, each once, sorted. Raises AuthorError for what is not there."""
-    found: set[Path] = set()
-    for path in paths:
-        if path != files.STDIN:
-            existing(path)
-        found.update(files.within(path, endings=endings))
-    return sorted(found, key=Path.absolute)
-
-
-def existing(path: Path) -> Path:
-    """The path, if there is something; raises AuthorError."""
-    if not path.exists():
-        raise AuthorError(f"there is no file or folder {path}")
-    return path
 
 
 def described_in(advertisement: Advertisement) -> Document:

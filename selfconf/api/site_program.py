@@ -20,7 +20,7 @@ from selfconf import files, rendezvous
 from selfconf.api.arguments import option
 from selfconf.api.joining import Joining
 from selfconf.api.ontologies import hierarchy_of
-from selfconf.api.reading import described_in, existing
+from selfconf.api.reading import described_in
 from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
 from selfconf.bus.port import Bus
@@ -74,8 +74,8 @@ def serve(
     folder `log` what the components print that it starts; by default both are folders of the runtime folder. With the
     folder `keys` only holders of certificates of its authority are let in; without it the site listens beyond loopback
     only if it may be `insecure`. `beside` is what lives with the site, from when it listens to when it ends. By
-    `ontologies`, files and folders of Turtle, the components that it starts check what they emit, and in
-    the mode `reasoning` the insides of its composites see them. Raises AuthorError and NetworkError.
+    `ontologies`, files and folders, the components that it starts check what they emit, and in the mode `reasoning` the
+    insides of its composites see them. Raises AuthorError and NetworkError.
     """
     _check_readable(paths, ontologies)
     hierarchy = hierarchy_of(option(Reasoning, "reasoning", reasoning), ontologies)
@@ -159,8 +159,8 @@ def _do_next(work: WorkQueue) -> None:
 def _check_readable(paths: Sequence[Path], ontologies: Sequence[Path]) -> None:
     """Raise AuthorError for paths that are not there, or are no files, and for ontologies that cannot be read."""
     for path in (*paths, *ontologies):
-        files.check_kind(existing(path))
-    files.signal_fields((file for path in ontologies for file in files.within(path)), ())
+        files.check_kind(files.existing(path))
+    files.signal_fields(files.ontology_files(ontologies), ())
 
 
 def _beyond_loopback(listen: str | None) -> bool:

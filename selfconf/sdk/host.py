@@ -182,17 +182,19 @@ def signal_fields_of(path: Path, profile: Profile) -> Mapping[IRI, SignalFields]
 
     What they are is said by its advertisement, the ontologies of selfconf, and those of the site that has started it.
     """
-    paths = [path, *rendezvous.site_ontologies()]
     carried = {signal for port in profile.signal_outputs for signal in port.signals}
     calls = [(port.request, port.response) for port in profile.operations]
     calls += [(port.request, port.response) for port in profile.needed_operations]
     carried.update(one for call in calls for one in call if one is not None)
-    return _signal_fields(tuple(file for path in paths for file in files.within(path)), frozenset(carried))
+    return _signal_fields(path, tuple(files.ontology_files(rendezvous.site_ontologies())), frozenset(carried))
 
 
 @cache
-def _signal_fields(paths: tuple[Path, ...], signals: frozenset[IRI]) -> Mapping[IRI, SignalFields]:
-    return files.signal_fields([*paths, *library.ontologies()], signals) if signals else {}
+def _signal_fields(path: Path, ontologies: tuple[Path, ...], signals: frozenset[IRI]) -> Mapping[IRI, SignalFields]:
+    if not signals:
+        return {}
+    advertisement = files.octets(path), str(path), files.base(path)
+    return files.signal_fields([*ontologies, *library.ontologies()], signals, [advertisement])
 
 
 def profile_of(kind: type[Component]) -> Profile:

@@ -175,12 +175,12 @@ class MemoryEcology:
     ) -> None:
         """`seed` decides the delays and losses of the network; without `faults` nothing is lost.
 
-        By `ontologies`, files and folders of Turtle, it is checked what components emit, as by those of selfconf; the
+        By `ontologies`, files and folders, it is checked what components emit, as by those of selfconf; the
         insides of composites see them in the mode `reasoning`. Raises ProgrammerError for what is none of these.
         """
         if faults is not None and not isinstance(faults, Faults):
             raise ProgrammerError(f"the faults of a network are Faults(...), not {faults!r}")
-        self._ontologies = [file for path in listed_paths(ontologies) for file in files.within(Path(path))]
+        self._ontologies = files.ontology_files(map(Path, listed_paths(ontologies)))
         self.network = Network(seed, faults)
         self._shelf = _MemoryShelf()
         node = self.network.node()

@@ -160,6 +160,9 @@ def test_every_command_takes_a_folder(ending: str, tmp_path: Path, capsys: pytes
     asked = ("query", f"ASK {{ <{iri('CeilingCamera')}> rdfs:subClassOf+ <{iri('Sensor')}> }}", "--ads", given[2])
     assert run(capsys, *asked).out == "false\n"
     assert run(capsys, *asked, "--ontology", words).out == "true\n"
+    # The ontologies are read before the ecology is looked for.
+    outcome = run(capsys, "site", given[2], "--ontology", words)
+    assert outcome.is_one_sentence("a site is part of an ecology")
 
 
 @pytest.mark.parametrize("ending", FORMATS)

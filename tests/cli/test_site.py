@@ -10,6 +10,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+import pyoxigraph as ox
 import pytest
 
 from selfconf.bus.zenoh_bus import ZenohBus, router
@@ -230,15 +231,18 @@ def test_a_component_that_another_program_has_started_is_not_its_site_s_to_resta
     assert refused.is_one_sentence("the site a did not end person-tracker: this site has not started")
 
 
-def test_components_check_what_they_emit_by_the_ontologies_of_their_site(home: Home) -> None:
+@pytest.mark.parametrize("own", [True, False], ids=["site", "run"])
+def test_components_check_what_they_emit_by_the_ontologies_of_their_site(home: Home, own: bool) -> None:
     (home.folder / "words").mkdir()
-    (home.folder / "words" / "poses.ttl").write_text(
-        PREFIXES + 'rob:PlanarPose2D rob:field ( [ rob:fieldName "colour" ; rob:datatype xsd:string ] ) .\n'
-    )
+    words = PREFIXES + 'rob:PlanarPose2D rob:field ( [ rob:fieldName "colour" ; rob:datatype xsd:string ] ) .\n'
+    quads = ox.parse(words.encode(), format=ox.RdfFormat.TURTLE)
+    ox.serialize(quads, home.folder / "words" / "poses.rdf", ox.RdfFormat.RDF_XML)
     for name in ("sonar", "encoder", "tracker", "control", "drive"):
         dormant(home, name)
-    home.site("a", "ads", options=("--ontology", "words"))
-    task = home.run("--wait")
+    given = "--ontology", "words"
+    if own:
+        home.site("a", "ads", options=given)
+    task = home.run("--wait") if own else home.run("--wait", "--ads", "ads", *given)
     lost = task.act("lost")
     assert (lost["component"], lost["cause"]) == (iri("person-tracker"), "malformed")
     assert "colour" in lost["detail"]
