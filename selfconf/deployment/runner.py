@@ -126,24 +126,26 @@ class TaskRunner:
             self._lives,
             self._waking,
             self._ends,
-            self._now,
+            self._current_state,
             self._step,
             self._report,
         )
-        self._liveness = Liveness(self.ecology, self._now, self._step, self._report, self._calls, self._waking)
+        self._liveness = Liveness(
+            self.ecology, self._current_state, self._step, self._report, self._calls, self._waking
+        )
         self._discovery = TaskDiscovery(
             self.ecology,
             self.name,
             self._liveness,
-            self._now,
+            self._current_state,
             self._step,
             self._report,
             request.without_configurator,
         )
         self._search = TaskSearch(
-            self.ecology, request, self._liveness, self._now, self._step, self._report, self._give_up
+            self.ecology, request, self._liveness, self._current_state, self._step, self._report, self._give_up
         )
-        self._retries = Retries(self.ecology, self._lives, self._now, self._step, request.upgrade)
+        self._retries = Retries(self.ecology, self._lives, self._current_state, self._step, request.upgrade)
         self._record = DeploymentRecord(
             bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
         )
@@ -152,12 +154,12 @@ class TaskRunner:
         self._stepping = False
         self._incomplete: Undo | None = None
         """Undoes the look at what runs that comes when it has lacked a component for long; None if it lacks none."""
-        self._looks, self._lost_since = False, False
+        self._look_is_planned, self._lost_since_planned = False, False
         """Whether a look is planned at what was lost, and whether more was lost since."""
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
-        self._messages = ComponentMessages(self.ecology, task, self._lives, self._ends, self._now, self._step)
+        self._messages = ComponentMessages(self.ecology, task, self._lives, self._ends, self._current_state, self._step)
         self._subscriptions = [
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
             bus.subscribe(self.keys.reopens(), lambda _: self._liveness.reopens(), Urgency.EVENT),
@@ -264,7 +266,7 @@ class TaskRunner:
                 self.trouble = ProgrammerError(f"{type(effect).__name__} broke: {type(error).__name__}: {error}")
                 self._events.append(Stopped())
 
-    def _now(self) -> State:
+    def _current_state(self) -> State:
         return self.state
 
     def _pulse(self) -> None:
@@ -327,20 +329,20 @@ class TaskRunner:
 
         It is long if what runs has lacked one or another component for all that time.
         """
-        self._lost_since = True
-        if not self._looks:
+        self._lost_since_planned = True
+        if not self._look_is_planned:
             self._look_soon()
         if self._incomplete is None and any(held.active for held in self.state.held.values()):
             self._incomplete = self.bus.later(LASTS_LONG, self._look_when_it_is_long)
 
     def _look_soon(self) -> None:
-        self._looks, self._lost_since = True, False
+        self._look_is_planned, self._lost_since_planned = True, False
         self.bus.later(LASTS, self._look_now)
 
     def _look_now(self) -> None:
         """Look once for all that was lost of late, as it may be thousands; and once more if some was later."""
-        self._looks = False
-        if self._lost_since:
+        self._look_is_planned = False
+        if self._lost_since_planned:
             self._look_soon()
         self._step(LossLasts())
 
