@@ -55,6 +55,10 @@ class _ClaimFields(TypedDict):
     beginning: float
 
 
+Unanswered = Callable[[Callable[[], None]], None]
+"""What is done where a call has not been answered in time; it is given what there is to do otherwise."""
+
+
 class Calling:
     """Makes single calls for one configurator, and feeds its machine with what becomes of them."""
 
@@ -71,8 +75,8 @@ class Calling:
     ) -> None:
         """`acts` is called when a component has answered that it acts as it was applied to."""
         self.bus, self.ecology, self.keys, self.identity = ecology.bus, ecology, ecology.keys, identity
-        self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
-        self._lives, self._acts = lives, acts
+        self.supervisor, self.state, self.step, self._report = supervisor, state, step, report
+        self.lives, self._acts = lives, acts
 
     def ask(
         self,
@@ -88,7 +92,7 @@ class Calling:
         """Ask a component for its actual state; `seen` receives None if it does not answer."""
 
         def answered(replies: Replies) -> None:
-            answer = self.answer_in(replies, self._lives.life(component))
+            answer = self.answer_in(replies, self.lives.life(component))
             if answer is None and not replies.complete and attempts > 1:
                 self.look(component, seen, attempts - 1)
             else:
@@ -101,125 +105,53 @@ class Calling:
         component: IRI,
         call: Call,
         message: Reserve | Apply | Release,
-        unanswered: Callable[[Callable[[], None]], None] | None = None,
-        attempts: int = CALL_ATTEMPTS,
-        first: float | None = None,
+        unanswered: Unanswered | None = None,
     ) -> None:
         """Make a call; what has become of it is stepped, as `Answered`.
 
         `unanswered` is called where no answer has come in time, with what there is to do then otherwise: to ask for
-        the component's state. `first` is when the call was made for the first time.
+        the component's state.
         """
-        began = self.bus.now()
-        since = began if first is None else first
-        if call is not Call.RELEASE:
-            self._lives.called(component)
-
-        def said(replies: Replies) -> CallAnswer | None:
-            """What the life that is meant has answered; what another one says does not count while it may answer."""
-            answer = self.answer_in(replies, message.life)
-            other = answer is not None and message.life not in ("", answer.life) and not replies.complete
-            return None if other and self.ecology.lives_on(component, message.life) else answer
-
-        def answered(replies: Replies) -> None:
-            answer = said(replies)
-            if answer is not None:
-                self.answered(component, call, message, answer)
-                if answer.verdict is Verdict.OTHER_LIFE and replies.complete:
-                    self._outlived(component, message.life, answer)
-            elif replies.errors:
-                detail = replies.errors[0]
-                self._step(Answered(component, call, message.epoch, Verdict.REFUSED, detail=detail))
-            elif unanswered is not None and not replies.complete:
-                unanswered(inspect)
-            else:
-                inspect()
-
-        def inspect() -> None:
-            """A time-out is not an outcome: ask for the actual state, then decide."""
-            question = encode(StateOf(self.identity.task))
-            self.bus.ask(self.keys.call(component, "state"), question, PAUSE if hasty else CALL, seen)
-
-        hasty = call is Call.RELEASE
-
-        def seen(replies: Replies) -> None:
-            answer = said(replies)
-            current = message.epoch == self._state().epoch
-            silent = answer is None and not replies.errors
-            if answer is not None and self._obeyed(answer, call, message):
-                self.answered(component, call, message, answer)
-            elif answer is not None and current and self.bus.now() - began < min(answer.patience, MOST_PATIENCE):
-                self.bus.later(PAUSE, inspect)  # its inside is being started
-            elif attempts > 1 and answer is not None and current and not hasty:
-                self.call(component, call, message, unanswered, attempts - 1, since)
-            elif answer is not None and current and not hasty and self._works_on(answer, message, since):
-                self.call(component, call, message, unanswered, 1, since)
-            elif silent and current and not hasty and self.bus.now() - began < STARTING:
-                self.bus.later(PAUSE, inspect)  # it may be in `started`; if its life ends, it is lost at once
-            elif current or hasty:
-                stopping = answer is not None and answer.stopping
-                detail = "its code has not come to rest" if stopping else "it does not answer"
-                self._unreachable(component, call, message.epoch, detail)
-
-        self.ask(component, call, message, answered)
-
-    def _obeyed(self, answer: CallAnswer, call: Call, message: Reserve | Apply | Release) -> bool:
-        """Whether a component's state shows that it has obeyed a call of this configurator."""
-        if answer.epoch != message.epoch:
-            return False
-        mine = answer.task == message.task and answer.supervisor == message.supervisor
-        if call is Call.RELEASE:
-            return not mine and not answer.stopping
-        if call is Call.APPLY and answer.patience:
-            return False  # it acts, but follows what it followed before
-        return mine and answer.active == (call is Call.APPLY)
-
-    def _works_on(self, answer: CallAnswer, message: Reserve | Apply | Release, since: float) -> bool:
-        """Whether a component that has not obeyed a call may do so yet: its code starts, or has not come to rest.
-
-        Code that takes longer than it may is a failure, of which the component speaks itself.
-        """
-        found = self.ecology.discovery.found.get(answer.component)
-        deadline = found.advertisement.profile.deadline if found is not None else None
-        came = answer.epoch == message.epoch and answer.task == message.task
-        return (came or answer.stopping) and self.bus.now() - since < max(STARTING, deadline or 0.0) + CALL
+        _Attempt(self, component, call, message, unanswered).make()
 
     def answered(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
+        """A component has answered a call, or its state shows that it has obeyed: report it, and step."""
         detail = answer.detail or answer.verdict.value
         if answer.verdict is not Verdict.DONE:
             if call is Call.APPLY:
                 self._report(CallDeclined(component, detail))
         elif call is Call.RELEASE:
-            if self._lives.has_obeyed(component, answer.life):  # else this task has only waited for it
+            if self.lives.has_obeyed(component, answer.life):  # else this task has only waited for it
                 self._report(ComponentReleased(component, detail))
-            self._lives.released(component)
+            self.lives.released(component)
         elif isinstance(message, Apply):
             if message.values:
                 self._report(ParametersSet(component, detail))
             self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
-            self._lives.obeyed(component, answer.life)
+            self.lives.obeyed(component, answer.life)
         if answer.verdict is Verdict.DONE and call is Call.APPLY:
             self._acts(component, answer)
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
         newest, epoch, verdict = answer.epoch, message.epoch, answer.verdict
-        self._step(Answered(component, call, epoch, verdict, answer.life, newest, answer.detail, holder, answer.shared))
+        self.step(Answered(component, call, epoch, verdict, answer.life, newest, answer.detail, holder, answer.shared))
 
-    def _outlived(self, component: IRI, life: str, answer: CallAnswer) -> None:
+    def outlived(self, component: IRI, life: str, answer: CallAnswer) -> None:
         """Believe that a life has ended, as all were asked, and only another one has answered.
 
         The notices of its end, and of the beginning of the other, may have come before, or be lost with a link.
         """
         self.ecology.ended(component_chunk(component), life)
         if self.ecology.lives_on(component, answer.life):
-            self._step(Appeared({component: answer.life}))
+            self.step(Appeared({component: answer.life}))
 
-    def _unreachable(self, component: IRI, call: Call, epoch: int, detail: str) -> None:
+    def unreachable(self, component: IRI, call: Call, epoch: int, detail: str) -> None:
+        """It is not known what has become of a call, and nothing more is tried: report it, and step soon."""
         self._report(ComponentUnreachable(component, call.value, detail))
         answer = Answered(component, call, epoch, None, detail=detail)
-        self.bus.wake_up(lambda: self._step(answer))
+        self.bus.wake_up(lambda: self.step(answer))
 
     def claim(self, component: IRI, epoch: int) -> _ClaimFields:
         """What every call says: see `selfconf.protocol.messages.Claim`."""
@@ -227,7 +159,7 @@ class Calling:
             "epoch": epoch,
             "supervisor": self.supervisor,
             "task": self.identity.task,
-            "life": self._lives.life(component) or "",
+            "life": self.lives.life(component) or "",
             "priority": self.identity.priority,
             "beginning": self.identity.beginning,
         }
@@ -241,6 +173,124 @@ class Calling:
             except PeerError as error:
                 log.warning("passed over an answer on %s: %s", sample.key, error)
         return min(answers, key=lambda answer: answer.life != life, default=None)
+
+
+class _Attempt:
+    """One call to one component, from when it is made until it is known what has become of it."""
+
+    def __init__(
+        self,
+        calling: Calling,
+        component: IRI,
+        call: Call,
+        message: Reserve | Apply | Release,
+        unanswered: Unanswered | None,
+        left: int = CALL_ATTEMPTS,
+        first: float | None = None,
+    ) -> None:
+        """`left` is how often the call may be made, with this time, and `first` when it was for the first time."""
+        self._calling, self._component, self._call, self._message = calling, component, call, message
+        self._unanswered, self._left = unanswered, left
+        self._began = calling.bus.now()
+        self._first = self._began if first is None else first
+
+    def make(self) -> None:
+        """Make the call."""
+        if self._call is not Call.RELEASE:
+            self._calling.lives.called(self._component)
+        self._calling.ask(self._component, self._call, self._message, self._answered)
+
+    def _answered(self, replies: Replies) -> None:
+        answer = self._said(replies)
+        if answer is not None:
+            self._calling.answered(self._component, self._call, self._message, answer)
+            if answer.verdict is Verdict.OTHER_LIFE and replies.complete:
+                self._calling.outlived(self._component, self._message.life, answer)
+        elif replies.errors:
+            refused = Answered(
+                self._component, self._call, self._message.epoch, Verdict.REFUSED, detail=replies.errors[0]
+            )
+            self._calling.step(refused)
+        elif self._unanswered is not None and not replies.complete:
+            self._unanswered(self._inspect)
+        else:
+            self._inspect()
+
+    def _said(self, replies: Replies) -> CallAnswer | None:
+        """What the life that is meant has answered; what another one says does not count while it may answer."""
+        answer = self._calling.answer_in(replies, self._message.life)
+        other = answer is not None and self._message.life not in ("", answer.life) and not replies.complete
+        waits = other and self._calling.ecology.lives_on(self._component, self._message.life)
+        return None if waits else answer
+
+    def _inspect(self) -> None:
+        """A time-out is not an outcome: ask for the actual state, then decide."""
+        question = encode(StateOf(self._calling.identity.task))
+        key = self._calling.keys.call(self._component, "state")
+        self._calling.bus.ask(key, question, PAUSE if self._hasty else CALL, self._seen)
+
+    @property
+    def _hasty(self) -> bool:
+        """Whether nothing is waited for: a release is made again later as long as it is owed."""
+        return self._call is Call.RELEASE
+
+    def _seen(self, replies: Replies) -> None:
+        """Decide by the state of the component; of an older epoch nothing is done any more, but for a release."""
+        answer = self._said(replies)
+        if answer is not None and self._has_obeyed(answer):
+            self._calling.answered(self._component, self._call, self._message, answer)
+            return
+        if self._message.epoch == self._calling.state().epoch:
+            if self._takes_longer(answer, replies):
+                self._calling.bus.later(PAUSE, self._inspect)
+                return
+            left = self._calls_left(answer)
+            if left:
+                again = self._component, self._call, self._message, self._unanswered, left, self._first
+                _Attempt(self._calling, *again).make()
+                return
+        elif not self._hasty:
+            return
+        stopping = answer is not None and answer.stopping
+        detail = "its code has not come to rest" if stopping else "it does not answer"
+        self._calling.unreachable(self._component, self._call, self._message.epoch, detail)
+
+    def _takes_longer(self, answer: CallAnswer | None, replies: Replies) -> bool:
+        """Whether to ask once more in a moment: its inside is being started, or itself, for all that is known."""
+        elapsed = self._calling.bus.now() - self._began
+        if answer is not None:
+            return elapsed < min(answer.patience, MOST_PATIENCE)
+        # It may be in `started`; if its life ends, it is lost at once.
+        return not replies.errors and not self._hasty and elapsed < STARTING
+
+    def _calls_left(self, answer: CallAnswer | None) -> int:
+        """How often the call may be made again, to a component that answers but has not obeyed."""
+        if answer is None or self._hasty:
+            return 0
+        return self._left - 1 if self._left > 1 else int(self._works_on(answer))
+
+    def _has_obeyed(self, answer: CallAnswer) -> bool:
+        """Whether a component's state shows that it has obeyed the call of this configurator."""
+        message = self._message
+        if answer.epoch != message.epoch:
+            return False
+        mine = answer.task == message.task and answer.supervisor == message.supervisor
+        if self._call is Call.RELEASE:
+            return not mine and not answer.stopping
+        if self._call is Call.APPLY and answer.patience:
+            return False  # it acts, but follows what it followed before
+        return mine and answer.active == (self._call is Call.APPLY)
+
+    def _works_on(self, answer: CallAnswer) -> bool:
+        """Whether a component that has not obeyed may do so yet: its code starts, or has not come to rest.
+
+        Code that takes longer than it may is a failure, of which the component speaks itself.
+        """
+        found = self._calling.ecology.discovery.found.get(answer.component)
+        deadline = found.advertisement.profile.deadline if found is not None else None
+        came = answer.epoch == self._message.epoch and answer.task == self._message.task
+        elapsed = self._calling.bus.now() - self._first
+        return (came or answer.stopping) and elapsed < max(STARTING, deadline or 0.0) + CALL
 
 
 def _configurator(answer: CallAnswer) -> str:
