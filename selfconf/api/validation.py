@@ -108,12 +108,6 @@ def check(paths: Iterable[str], ontologies: Iterable[str] = (), each: CheckEach 
     return report(sorted(concerned), (*result.diagnostics, *found))
 
 
-def check_text(text: tuple[bytes, str, str | None]) -> Report:
-    """The problems of one text with its name and base."""
-    octets, name, base = text
-    return _validated([SourceText(name, octets) if base is None else SourceText(name, octets, base)], (), map)
-
-
 def _validated(sources: Iterable[SourceText], ontologies: Iterable[str], each: CheckEach) -> Report:
     shapes = [_load(path) for path in library.shapes()]
     known = [*map(_load, library.ontologies()), *_ontologies(ontologies)]

@@ -52,12 +52,12 @@ def ask_holders(
     bus.ask(keys.configurator_call("*", "status"), b"", STATUS, answered)
 
 
-def holders_in(replies: Replies, keys: Keys, own: str = "") -> Mapping[IRI, Holder]:
+def holders_in(replies: Replies, keys: Keys) -> Mapping[IRI, Holder]:
     """The holder of each component by the answers of configurators; an answer that is none is passed over."""
-    return _first_holders(_holdings(replies, keys, own))
+    return _first_holders(_holdings(replies, keys))
 
 
-def _holdings(replies: Replies, keys: Keys, own: str) -> list[Holding]:
+def _holdings(replies: Replies, keys: Keys, own: str = "") -> list[Holding]:
     found: list[Holding] = []
     for sample in replies.samples:
         try:

@@ -28,9 +28,9 @@ def one_line(text: str, most: int = LONGEST_REMARK) -> str:
     return shown if _is_harmless(shown) else _STEERING_OR_BREAKING.sub(_spelt_out, shown)
 
 
-def sayable(said: object, most: int = LONGEST_REMARK) -> str:
+def sayable(said: object) -> str:
     """What a program says as a text that can travel: cut to a length, and with what is no character replaced."""
-    return str(said)[:most].encode(errors="replace").decode()
+    return str(said)[:LONGEST_REMARK].encode(errors="replace").decode()
 
 
 def is_one_line(text: str) -> bool:

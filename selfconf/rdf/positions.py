@@ -95,18 +95,6 @@ class Positions:
         match = _TOKEN.match(self.text, begin + place.column - 1, end)
         return match.end() - match.start() if match else 1
 
-    def of_subject(self, triple: RdflibTriple) -> TextPosition | None:
-        """Where the subject of a triple stands: of a node in brackets the bracket, of a cell its member."""
-        return self.place(self.triples[triple].subject) if triple in self.triples else None
-
-    def of_predicate(self, triple: RdflibTriple) -> TextPosition | None:
-        """Where the predicate of a triple stands; for the triples of a list, where their object does."""
-        return self.place(self.triples[triple].predicate) if triple in self.triples else None
-
-    def of_object(self, triple: RdflibTriple) -> TextPosition | None:
-        """Where the object of a triple stands; the end of a list stands at its last member."""
-        return self.place(self.triples[triple].object) if triple in self.triples else None
-
     def of_node(self, node: Node) -> TextPosition | None:
         """Where a node is first the subject of a statement, or else where it is first spoken of."""
         offset = self.offset(node)

@@ -134,26 +134,26 @@ NOT_PROVED = {
 """What is said of a reason that is not proved to be a smallest one."""
 
 
-def refusal_text(refusal: Refusal, name: Name, most: int = MOST_LINES) -> str:
+def refusal_text(refusal: Refusal, name: Name) -> str:
     """A refusal on one screen, the most likely cause first, each line with the place that it speaks of."""
     lines = [f"no configuration for {name(refusal.template)}"]
     if not refusal.reasons:
         lines.append("  no time was left to find out why; allow more")
-    lines += [_placed(f"  because {reason}", reason) for reason in refusal.reasons[:most]]
-    if len(refusal.reasons) > most:
-        lines.append(f"  and {len(refusal.reasons) - most} more reasons")
+    lines += [_placed(f"  because {reason}", reason) for reason in refusal.reasons[:MOST_LINES]]
+    if len(refusal.reasons) > MOST_LINES:
+        lines.append(f"  and {len(refusal.reasons) - MOST_LINES} more reasons")
     if refusal.reasons and refusal.minimality in NOT_PROVED:
         lines.append(f"  {NOT_PROVED[refusal.minimality]}")
     if refusal.near_misses:
         lines.append("near misses")
-        lines += [_placed(f"  {_near_miss(miss, name)}", miss) for miss in refusal.near_misses[:most]]
-        if len(refusal.near_misses) > most:
-            lines.append(f"  and {len(refusal.near_misses) - most} more")
-    lines += [f"held by another task: {name(one)}: {holder_text(holder)}" for one, holder in refusal.held[:most]]
-    if len(refusal.held) > most:
-        lines.append(f"  and {len(refusal.held) - most} more that are held")
+        lines += [_placed(f"  {_near_miss(miss, name)}", miss) for miss in refusal.near_misses[:MOST_LINES]]
+        if len(refusal.near_misses) > MOST_LINES:
+            lines.append(f"  and {len(refusal.near_misses) - MOST_LINES} more")
+    lines += [f"held by another task: {name(one)}: {holder_text(holder)}" for one, holder in refusal.held[:MOST_LINES]]
+    if len(refusal.held) > MOST_LINES:
+        lines.append(f"  and {len(refusal.held) - MOST_LINES} more that are held")
     lines += _repairs(refusal)
-    return "\n".join((*lines, *_missing(refusal.missing_sites, most)))
+    return "\n".join((*lines, *_missing(refusal.missing_sites)))
 
 
 def _repairs(refusal: Refusal) -> Iterator[str]:
@@ -167,10 +167,10 @@ def _repairs(refusal: Refusal) -> Iterator[str]:
         yield f"the search for {'other ' * bool(refusal.repairs)}repairs stopped before all was tried"
 
 
-def _missing(sites: Sequence[str], most: int) -> list[str]:
+def _missing(sites: Sequence[str]) -> list[str]:
     """The sites that may have what is lacking."""
-    more = [f"and {len(sites) - most} other sites did not either"] if len(sites) > most else []
-    return [*(f"the site {site} lives and did not answer in full" for site in sites[:most]), *more]
+    more = [f"and {len(sites) - MOST_LINES} other sites did not either"] if len(sites) > MOST_LINES else []
+    return [*(f"the site {site} lives and did not answer in full" for site in sites[:MOST_LINES]), *more]
 
 
 def holder_text(holder: Holder) -> str:

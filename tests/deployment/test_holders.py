@@ -49,13 +49,27 @@ def test_a_holder_is_known_with_what_it_wants_of_the_component() -> None:
     assert (found[LAMP].wants, found[CAMERA].wants) == (wants, Wants())
 
 
-def test_the_own_status_and_what_is_none_are_passed_over() -> None:
+def test_what_is_no_status_is_passed_over() -> None:
     samples = (
-        said("me", LAMP),
         Sample(KEYS.configurator_call("b", "status"), b"hello"),
         said("c", LAMP, key=KEYS.configurator_call("d", "status")),
     )
-    assert holders_in(Replies(samples), KEYS, "me") == {}
+    assert holders_in(Replies(samples), KEYS) == {}
+
+
+def test_what_the_configurator_that_asks_holds_itself_is_passed_over() -> None:
+    network, heard = Network(), list[Mapping[IRI, Holder]]()
+    node = network.node()
+
+    def answer(request: Request) -> None:
+        for name, component in (("me", LAMP), ("b", CAMERA)):
+            request.reply(KEYS.configurator_call(name, "status"), said(name, component).payload)
+        request.finish()
+
+    node.serve(KEYS.configurator_call("*"), answer)
+    ask_holders(network.node(), KEYS, "me", heard.append)
+    network.run(lambda: bool(heard), 10.0)
+    assert heard == [{CAMERA: Holder("b~1", 0, 0.0, "b")}]
 
 
 def test_a_configurator_that_does_not_answer_is_waited_for_a_moment_only() -> None:

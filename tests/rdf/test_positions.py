@@ -144,10 +144,11 @@ def test_the_graph_is_the_one_that_rdflib_reads(path: Path) -> None:
     assert isomorphic(parse_with_positions(text, path.name)[0], Graph().parse(data=text, format="turtle"))
 
 
-def where(text: str, value: URIRef | Literal) -> tuple[TextPosition | None, TextPosition | None, TextPosition | None]:
+def where(text: str, value: URIRef | Literal) -> tuple[TextPosition, ...]:
+    """The places of the subject, the predicate and the object of the one triple with a value."""
     graph, positions = parse_with_positions(HEAD + text, "a.ttl")
     (triple,) = graph.triples((None, None, value))
-    return positions.of_subject(triple), positions.of_predicate(triple), positions.of_object(triple)
+    return tuple(map(positions.place, positions.triples[triple]))
 
 
 def test_columns_count_characters_and_not_bytes() -> None:

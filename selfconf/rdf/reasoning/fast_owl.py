@@ -5,8 +5,8 @@ version 0.4 lacks *scm-int* and *scm-uni* (a class lies below what it is an inte
 union of), which are applied here beforehand, since they need nothing but the lists. It also lacks those that compare
 restrictions (*scm-svf*, *scm-avf*, *scm-hv*), and does not count a term among the terms that are the same as a class or
 property (*eq-rep* together with *scm-cls*, *scm-op*, *scm-dp*). So an ontology that uses
-anything but `SAME`, on which a test holds the two together, is left to owlrl: restrictions, `owl:sameAs` and what may
-entail it, and statements about the words of OWL themselves.
+other words of OWL, RDFS and RDF than those below, by which both reasoners infer the same hierarchy, is left to owlrl:
+restrictions, `owl:sameAs` and what may entail it, and statements about the words of OWL themselves.
 """
 
 from __future__ import annotations
@@ -38,8 +38,6 @@ OWL_KINDS = frozenset(
         OWL.Thing, RDF.List, RDFS.Literal, RDFS.Resource,
     )
 )  # fmt: skip
-SAME = OWL_AXIOMS | OWL_ANNOTATIONS | OWL_KINDS
-"""The words of OWL, RDFS and RDF by which both reasoners infer the same hierarchy."""
 
 
 def suits(triples: Sequence[Triple]) -> bool:
