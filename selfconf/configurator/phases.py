@@ -35,17 +35,26 @@ def discover(state: State) -> Reaction:
     return asking, (Discover(),)
 
 
-def compose(state: State, despite: bool = False, avoided: Avoided = NOTHING) -> Reaction:
-    """Search for a configuration: act 3. With `despite` it says what would do, if others held nothing."""
+def compose(state: State, avoided: Avoided = NOTHING) -> Reaction:
+    """Search for a configuration: act 3."""
+    return _compose(replace(state, ignores_holders=False), avoided)
+
+
+def compose_ignoring_holders(state: State) -> Reaction:
+    """Search for what there would be if the other tasks let go of what they hold: it is named in a refusal."""
+    return _compose(replace(state, ignores_holders=True), NOTHING)
+
+
+def _compose(state: State, avoided: Avoided) -> Reaction:
     running = state.target if state.policy is Policy.REPAIR else None
-    searching = replace(state, phase=Phase.COMPOSING, pending=frozenset(), despite=despite)
+    searching = replace(state, phase=Phase.COMPOSING, pending=frozenset())
     return begin_search(searching, running, avoided)
 
 
 def begin_search(state: State, running: Configuration | None, avoided: Avoided) -> Reaction:
     """Search near what runs, if anything, without what is lost, held by others or `avoided`; older searches end."""
     attempt = state.attempt + 1
-    without = state.lost.keys() if state.despite else state.lost.keys() | state.taken.keys() | avoided.keys()
+    without = state.lost.keys() if state.ignores_holders else state.lost.keys() | state.taken.keys() | avoided.keys()
     return replace(state, attempt=attempt, avoided=avoided), (Compose(attempt, frozenset(without), running),)
 
 

@@ -64,7 +64,7 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
         return _improved(state, event)
     if state.phase is not Phase.COMPOSING:
         return state, ()
-    if state.despite:
+    if state.ignores_holders:
         return phases.refuse(_coveted(state, event))
     if isinstance(event.outcome, Configuration):
         if state.contested(event.outcome):
@@ -78,7 +78,7 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
     if state.asks_again:
         return phases.discover(replace(state, put_off=state.put_off + 1))
     refused = replace(state, refusal=event.outcome)
-    return phases.compose(refused, despite=True) if state.taken else phases.refuse(refused)
+    return phases.compose_ignoring_holders(refused) if state.taken else phases.refuse(refused)
 
 
 def _coveted(state: State, event: Composed) -> State:

@@ -131,7 +131,7 @@ class State:
     """The components that have said that they are free since the ecology was last asked: they know it first."""
     queued: frozenset[IRI] = frozenset()
     """The components that remember that this task waits for them."""
-    despite: bool = False
+    ignores_holders: bool = False
     """Whether the search that is going on is for what there would be if the others let go of what they hold."""
     afterwards: Phase = Phase.STOPPED
     """What comes when everything has been released: COMPOSING, REFUSED or STOPPED."""

@@ -66,8 +66,8 @@ class TaskSearch:
         """
         self._outdated()  # the answer of an earlier search is not looked at any more
         found, began = self._advertised(), time.monotonic()
-        despite = self._state().despite
-        known = None if despite else self._contingencies.answer(found, effect.lost, effect.running)
+        ignores_holders = self._state().ignores_holders
+        known = None if ignores_holders else self._contingencies.answer(found, effect.lost, effect.running)
         if known is not None:
             composed = Composed(effect.attempt, known.configuration)
             self._composed(composed, time.monotonic() - began, known.not_judged)
@@ -76,7 +76,7 @@ class TaskSearch:
         if looks_again and better is not None and (better.found, better.lost) == (found, effect.lost):
             self._composed(Composed(effect.attempt, better.outcome), time.monotonic() - began, better.not_judged)
             return
-        taken, refused = self._state().taken.keys(), self._state().refusal if despite else None
+        taken, refused = self._state().taken.keys(), self._state().refusal if ignores_holders else None
 
         def work() -> None:
             began = time.monotonic()
@@ -131,7 +131,7 @@ class TaskSearch:
             outcome = replace(outcome, missing_sites=self._ecology.silent_sites(self._ecology.discovery))
             composed = replace(composed, outcome=outcome)
         current = composed.attempt == self._state().attempt
-        counts = current and not self._state().despite and self._state().phase is Phase.COMPOSING
+        counts = current and not self._state().ignores_holders and self._state().phase is Phase.COMPOSING
         if isinstance(outcome, Configuration):
             goes_on = bool(self._state().contested(outcome))
         else:

@@ -218,8 +218,8 @@ class Ledger:
             case Decline(component):
                 assert component not in state.held
             case Compose(_, lost, _):
-                despite = frozenset() if state.despite else frozenset(state.taken)
-                assert lost == frozenset(state.lost) | despite
+                taken = frozenset() if state.ignores_holders else frozenset(state.taken)
+                assert lost == frozenset(state.lost) | taken
             case Running(configuration):
                 assert configuration == state.target
                 assert state.phase is Phase.RUNNING
