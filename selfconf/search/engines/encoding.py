@@ -11,7 +11,8 @@ plays, one for all needs that the same options support: what clause learning the
 issue, and not about candidates one by one.
 
 *Groups.* Where options exclude each other (`exclusion`), one bound for each group says so, in place of the needs from
-which that follows; and what counting the groups has proved is added.
+which that follows; and what counting the groups has proved is added. With patience, counting may be left, to be gone on
+with (`Encoding.count`) when the clauses turn out to be hard without.
 
 *Order.* Where only the least solution is asked for, or any, interchangeable roles are played in order (`symmetry`).
 
@@ -54,7 +55,12 @@ class Encoding:
     """The clauses and bounds of a reduced problem; literals are numbered from one."""
 
     def __init__(
-        self, reduced: ReducedProblem, guarded: bool = False, distinct: bool = True, ordered: bool = False
+        self,
+        reduced: ReducedProblem,
+        guarded: bool = False,
+        distinct: bool = True,
+        ordered: bool = False,
+        patience: int | None = None,
     ) -> None:
         self.reduced = reduced
         self.top = 0
@@ -71,7 +77,7 @@ class Encoding:
             self._literals(role, len(options)) for role, options in enumerate(reduced.options)
         )
         """For each role, the literals of its options."""
-        groups = ExclusiveGroups() if guarded else exclusive_groups(reduced, distinct)
+        groups = self._exclusive = ExclusiveGroups() if guarded else exclusive_groups(reduced, distinct, patience)
         self._roles()
         if guarded and distinct:
             self._distinct()
@@ -215,12 +221,17 @@ class Encoding:
         width = max((mask if mask >= 0 else ~mask).bit_length() for _, mask in constrained)
         values = [(1 << k, self.literal()) for k in range(width)]
         self._at_most([value for _, value in values], 1)
+        said: dict[int, list[list[int]]] = {}
+        """What is said of each mask, but for the literal that it is about."""
         for literal, mask in constrained:
-            if mask >= 0:
-                self.statements.append([*force, -literal, *[value for bit, value in values if mask & bit]])
-                continue
-            # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
-            self.statements += [[*force, -literal, -value] for bit, value in values if not mask & bit]
+            if mask not in said:
+                # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
+                said[mask] = (
+                    [[*force, *[value for bit, value in values if mask & bit]]]
+                    if mask >= 0
+                    else [[*force, -value] for bit, value in values if not mask & bit]
+                )
+            self.statements += [[-literal, *rest] for rest in said[mask]]
 
     def _ascending(self, first: Sequence[int], second: Sequence[int]) -> None:
         """Let the option of one role come before that of another one; one of each plays."""
@@ -231,14 +242,27 @@ class Encoding:
             self.statements.append([-reached, earlier] if before is None else [-reached, earlier, before])
             before = reached
 
+    def count(self) -> list[list[int]]:
+        """Add what follows from counting groups that have not been counted yet, and return it."""
+        before, after = len(self.statements), self._exclusive.all_counted()
+        if after is not self._exclusive:
+            self._exclusive = after
+            self._counted(after)
+        return [statement for statement in self.statements[before:] if isinstance(statement, list)]
+
     def _groups(self, known: ExclusiveGroups) -> None:
-        if known.impossible:
-            self.statements += [[self.literal()], [-self.top]]
         options = [literal for literals in self.plays for literal in literals]
         for group in known.groups:
             if len(group) == 2:
                 self.statements.append([-options[number] for number in group])
             else:
                 self._at_most([options[number] for number in group], 1)
+        self._counted(known)
+
+    def _counted(self, known: ExclusiveGroups) -> None:
+        """Write what follows from counting groups."""
+        if known.impossible:
+            self.statements += [[self.literal()], [-self.top]]
+        options = [literal for literals in self.plays for literal in literals]
         self.statements += [[options[number] for number in some] for some in known.played]
         self.statements += [[-options[number]] for number in known.excluded]

@@ -59,17 +59,24 @@ class ExclusiveGroups:
     """Options that play in no solution."""
     crowded: frozenset[int] = frozenset()
     """Roles that have fewer groups than slots, if there are any: then there is no solution."""
+    uncounted: _Counting | None = None
+    """What has not been counted yet, if counting was left."""
 
     @property
     def impossible(self) -> bool:
         """Whether there is no solution, by counting."""
         return bool(self.crowded)
 
+    def all_counted(self) -> ExclusiveGroups:
+        """Return the same groups, and what follows from them once all that was left is counted."""
+        return self if self.uncounted is None else self.uncounted.counted(self.groups)
 
-def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> ExclusiveGroups:
+
+def exclusive_groups(reduced: ReducedProblem, distinct: bool = True, patience: int | None = None) -> ExclusiveGroups:
     """Return the groups of a reduced problem, and what counting them proves.
 
-    If components need not be distinct, one component in two roles is no conflict.
+    If components need not be distinct, one component in two roles is no conflict. With patience, counting is left after
+    so many groups from which nothing followed, if nothing has followed from any; `all_counted` then goes on.
     """
     needs = _fed_by_one(reduced)
     names = [option.component for options in reduced.options for option in options if option.component]
@@ -83,15 +90,7 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True) -> Exclusiv
     if shared:
         graph.add_components()
     groups = list(graph.groups())
-    found = _Counting(graph, groups)
-    found.run()
-    return ExclusiveGroups(
-        groups,
-        frozenset(graph.stated),
-        [list(_bits(group)) for group in found.played],
-        frozenset(_bits(found.excluded)),
-        found.crowded,
-    )
+    return _Counting(graph, groups).counted(groups, patience)
 
 
 def _groups_of_components(reduced: ReducedProblem) -> ExclusiveGroups:
@@ -305,6 +304,11 @@ class _Counting:
         """By how much all groups that have more than one slot between them have more."""
         self.left = SHARES_PER_OPTION * len(graph.options)
         """How many groups may still be put together."""
+        # Of no more groups than slots, one at least has a share of one slot or more.
+        self.starts = [number for number, weight in enumerate(self.weights) if weight >= ENOUGH]
+        """From which groups counting has still to begin, the first one last."""
+        self.starts.sort(key=lambda number: (len(self.roles[number]), -number))
+        self._known: set[int] = set()
         self.played: list[int] = []
         self.excluded = 0
         self.crowded: frozenset[int] = frozenset()
@@ -312,23 +316,33 @@ class _Counting:
     def _roles(self, mask: int) -> Iterator[int]:
         return (self.graph.role[number] for number in _bits(mask))
 
-    def run(self) -> None:
+    def counted(self, groups: Sequence[Sequence[int]], patience: int | None = None) -> ExclusiveGroups:
+        """Count, and return the groups with what follows from them by now."""
+        self._run(patience)
+        return ExclusiveGroups(
+            groups,
+            frozenset(self.graph.stated),
+            [list(_bits(group)) for group in self.played],
+            frozenset(_bits(self.excluded)),
+            self.crowded,
+            self if self.starts and self.left > 0 and not self.crowded else None,
+        )
+
+    def _run(self, patience: int | None) -> None:
         """Count from one group after the other, the largest first, but for those that were put together before.
 
         These are played for sure by then; or they were left with others that go with them, and mostly would be again.
         """
-        # Of no more groups than slots, one at least has a share of one slot or more.
-        order = [number for number, weight in enumerate(self.weights) if weight >= ENOUGH]
-        order.sort(key=lambda number: -len(self.roles[number]))
-        known: set[int] = set()
-        for start in order:
-            if self.crowded or self.left <= 0:
-                return
-            if start not in known:
-                shares: dict[int, int] = {}
-                if self._cover(start, shares):
-                    self._count(shares)
-                known |= shares.keys()
+        while self.starts and not self.crowded and self.left > 0 and patience != 0:
+            start = self.starts.pop()
+            if start in self._known:
+                continue
+            shares: dict[int, int] = {}
+            if self._cover(start, shares):
+                self._count(shares)
+            self._known |= shares.keys()
+            if patience is not None:
+                patience = None if self.played or self.excluded else patience - 1
 
     def _cover(self, start: int, shares: dict[int, int]) -> bool:
         """Put together groups, by number, with disjoint shares of them, until these cover all options of their roles.

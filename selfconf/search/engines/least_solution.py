@@ -35,6 +35,8 @@ BRIEF_COUNTING = 250
 """Conflicts and questions before it gets them as clauses, where some are beyond `FEW_TO_COUNT`."""
 BRIEF_COUNTED = 500
 """Conflicts and questions after that before it has company."""
+COUNTED_IN_VAIN = 4
+"""Counting groups from so many of them without a result, it is left until the first solver gets company."""
 NEARLY = 2
 """Where one in this number of all slots is settled by then, the first solver has as many again."""
 ALONE = 10_000
@@ -110,7 +112,7 @@ class _Descent:
 
     def run(self) -> list[Option] | Undecided | None:
         """Return the solution, None if there is none, or Undecided when the budget ends."""
-        encoding = Encoding(self.reduced, ordered=True)
+        encoding = Encoding(self.reduced, ordered=True, patience=COUNTED_IN_VAIN)
         self.plays = encoding.plays
         with ExitStack() as stack:
             first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
@@ -124,6 +126,8 @@ class _Descent:
             if not self.finished and len(self.settled) * NEARLY >= len(self.slots):
                 self.advance(first, BRIEF)  # to prepare company takes as long as hundreds of conflicts
             if not self.finished:
+                for clause in encoding.count():
+                    first.clauses.add(clause)
                 self._search_together(first, encoding, stack)
         if self.possible is False:
             return None

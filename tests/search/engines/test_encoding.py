@@ -7,9 +7,10 @@ from itertools import product
 
 import pytest
 
+from benchmarks.search.further_families import pigeonholes
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import Constraint, Distinct, Fed, Played, reduced
+from selfconf.search.reduction import Constraint, Distinct, Fed, Played, pruned, reduced
 from tests.search.oracle import World
 from tests.search.worlds import component, problem
 
@@ -127,3 +128,12 @@ def test_each_new_literal_is_one_higher_than_all_before() -> None:
     encoding = Encoding(reduced(SEEING))
     before = encoding.top
     assert [encoding.literal(), encoding.literal(), encoding.top] == [before + 1, before + 2, before + 2]
+
+
+def test_what_was_not_counted_at_first_can_be_added() -> None:
+    given = pruned(reduced(pigeonholes(16, 16, 0, 0.5)))
+    whole, part = Encoding(given), Encoding(given, patience=0)
+    added = part.count()
+    assert added
+    assert sorted(part.clauses()) == sorted(whole.clauses())
+    assert part.count() == whole.count() == []

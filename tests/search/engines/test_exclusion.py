@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.search.families import distinct
-from benchmarks.search.further_families import colouring, latin, pigeonholes, queens, tour
+from benchmarks.search.further_families import colouring, frequencies, latin, pigeonholes, queens, tour
 from selfconf.search.budget import Budget
 from selfconf.search.engines import exclusion
 from selfconf.search.engines.exclusion import exclusive_groups
@@ -89,3 +89,28 @@ def test_groups_take_the_place_of_the_needs_that_they_state() -> None:
     given_ = pruned(reduced(colouring(12, 3, 4.0, 1)))
     used = {need for options in given_.options for option in options for need in option.kind.needs}
     assert exclusive_groups(given_).stated == used
+
+
+def test_counting_that_is_left_for_want_of_results_is_gone_on_with(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = pruned(reduced(frequencies(30, 8, 0.4, 3)))
+    begun: list[int] = []
+    cover = exclusion._Counting._cover
+
+    def watched(counting: exclusion._Counting, start: int, shares: dict[int, int]) -> bool:
+        begun.append(start)
+        return cover(counting, start, shares)
+
+    monkeypatch.setattr(exclusion._Counting, "_cover", watched)
+    whole = exclusive_groups(problem)
+    every = list(begun)
+    begun.clear()
+    left = exclusive_groups(problem, patience=2)
+    assert begun == every[:2]
+    assert left.all_counted() == whole
+    assert begun == every
+    assert whole.all_counted() is whole
+
+
+def test_patience_does_not_end_where_counting_has_results() -> None:
+    problem = pruned(reduced(latin(12, 0.42, 5)))
+    assert exclusive_groups(problem, patience=3) == exclusive_groups(problem)
