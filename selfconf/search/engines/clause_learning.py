@@ -155,9 +155,9 @@ class ClauseSolver:
             self._model = self._solver.get_model()
         return found
 
-    def refutes(self, literal: int) -> bool:
-        """Return whether propagation shows that a literal cannot hold; False if the solver would have to search."""
-        return self._propagates and not self._solver.propagate([literal])[0]
+    def refutes(self, *literals: int) -> bool:
+        """Return whether propagation shows that literals cannot hold; False if the solver would have to search."""
+        return self._propagates and not self._solver.propagate(literals)[0]
 
     def interrupt(self) -> None:
         """End the call that goes on in another thread, or else the next one, as if its conflicts were used up."""

@@ -1,8 +1,9 @@
 """The least solution by clause learning, with engines that take turns, or work beside each other.
 
 *Least.* Slot by slot, option by option: given what is settled and a model, ask for one in which an earlier option is in
-the slot, the earliest first, until there is none. What is settled is added as a unit, so that everything learned stays
-true, and a solver goes from one question to the next with it.
+the slot, the earliest first, until there is none; where answers come easily, about several slots at once (`turn`). What
+is settled is added as a unit, so that everything learned stays true, and a solver goes from one question to the next
+with it.
 
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
@@ -27,6 +28,7 @@ from selfconf.search.engines.clause_learning import FEW_TO_COUNT, SECOND_SOLVER,
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival, processors
+from selfconf.search.engines.turn import Turn
 from selfconf.search.reduction import Option, ReducedProblem
 
 BRIEF = 1_000
@@ -64,24 +66,12 @@ def least_of_clauses(clauses: ClauseSolver, budget: Budget) -> list[Option] | Un
     """
     descent = _Descent(clauses.reduced, budget, clauses.plays)
     descent.possible = True
-    turn = _Turn(clauses, modelled=True)
+    turn = Turn(clauses, modelled=True)
     while not descent.finished:
         descent.advance(turn, None)
         if budget.steps == 0 and not descent.finished:
             return Undecided(0)
     return descent.chosen()
-
-
-class _Turn:
-    """A solver, and how far it knows what is settled."""
-
-    def __init__(self, clauses: ClauseSolver, modelled: bool = False) -> None:
-        self.clauses, self.modelled = clauses, modelled
-        """`modelled`: whether the last model has all that is settled."""
-        self.fixed = 0
-        """How many slots are settled in its clauses."""
-        self.rejected = 0
-        """Up to which option of the next slot none is possible, by its clauses."""
 
 
 class _Descent:
@@ -115,7 +105,7 @@ class _Descent:
         encoding = Encoding(self.reduced, ordered=True, patience=COUNTED_IN_VAIN)
         self.plays = encoding.plays
         with ExitStack() as stack:
-            first = _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
+            first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
             if any(FEW_TO_COUNT < bound.most <= len(bound.literals) // 2 for bound in encoding.bounds):
                 self.advance(first, BRIEF_COUNTING)
                 if not self.finished:
@@ -133,7 +123,7 @@ class _Descent:
             return None
         return self.chosen() if self.finished else Undecided(0)
 
-    def _search_together(self, first: _Turn, encoding: Encoding, stack: ExitStack) -> None:
+    def _search_together(self, first: Turn, encoding: Encoding, stack: ExitStack) -> None:
         """Let all solvers work, beside each other or in turns."""
         in_order: OrderedDecisions | None = None
         if OrderedDecisions.available(encoding):
@@ -143,17 +133,17 @@ class _Descent:
         else:
             self._take_turns(first, encoding, in_order, stack)
 
-    def _counting(self, first: _Turn, encoding: Encoding, stack: ExitStack) -> _Turn:
+    def _counting(self, first: Turn, encoding: Encoding, stack: ExitStack) -> Turn:
         """Return the first solver, with numbers beyond one as clauses where there are any.
 
         So they are something to learn about; until then that would have been a detour.
         """
         if first.clauses.counters or all(bound.most <= 1 for bound in encoding.bounds):
             return first
-        return _Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
+        return Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
 
     def _work_beside(
-        self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
+        self, first: Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
     ) -> None:
         """Let all solvers work, each beside the others, but two at a time for long where there are two processors."""
         if in_order is not None:
@@ -174,15 +164,13 @@ class _Descent:
             crowding.begin(first.clauses.interrupt)
         self.advance(first, None)
 
-    def _take_turns(
-        self, first: _Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
-    ) -> None:
+    def _take_turns(self, first: Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack) -> None:
         """Let one solver after the other work, each time for longer, until one has the answer or the budget ends."""
         first = self._counting(first, encoding, stack)
         self.advance(first, ALONE)
         if self.finished or self.budget.steps == 0:
             return
-        turns = [_Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER))), first]
+        turns = [Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, solver=SECOND_SOLVER))), first]
         conflicts = ALONE
         while not self.finished and self.budget.steps != 0:
             if in_order is not None:
@@ -198,7 +186,7 @@ class _Descent:
         """Return the options that are settled."""
         return [self.reduced.options[role][number] for role, number in zip(self.slots, self.settled, strict=True)]
 
-    def advance(self, turn: _Turn, conflicts: int | None) -> None:
+    def advance(self, turn: Turn, conflicts: int | None) -> None:
         """Let a solver work for a number of conflicts, or to the end."""
         left = conflicts
         while not self.finished and (left is None or left > 0) and self.budget.steps != 0:
@@ -220,7 +208,7 @@ class _Descent:
             for number in numbers[len(self.settled) :]:
                 self._settle(number)
 
-    def _inform(self, turn: _Turn) -> None:
+    def _inform(self, turn: Turn) -> None:
         """Add what is settled to the clauses of a solver."""
         clauses = turn.clauses
         for slot in range(turn.fixed, len(self.settled)):
@@ -245,7 +233,7 @@ class _Descent:
         """Return the first option that a slot may have: slots of one role take options in ascending order."""
         return self.settled[slot - 1] + 1 if slot and self.slots[slot] == self.slots[slot - 1] else 0
 
-    def _ask(self, turn: _Turn, conflicts: int | None) -> int:
+    def _ask(self, turn: Turn, conflicts: int | None) -> int:
         """Ask a solver the next question, and draw the consequences; return how many were answered."""
         clauses = turn.clauses
         if not turn.modelled:
@@ -262,14 +250,21 @@ class _Descent:
             return refuted
         if self.budget.steps == 0:
             return refuted
-        found = clauses.ask((literals[turn.rejected],), self.budget, conflicts)
+        numbers, ahead = turn.ahead(self.slots, self.plays, self.budget)
+        before = clauses.conflicts
+        roles = self.slots[turn.fixed : turn.fixed + len(numbers)]
+        assumed = [self.plays[role][number] for role, number in zip(roles, numbers, strict=True)]
+        found = clauses.ask(assumed, self.budget, conflicts)
+        turn.answered(len(numbers), found, clauses.conflicts - before)
         if found is True:
-            self._settle_along(clauses, turn.rejected)
-        elif found is False:
+            for number in numbers[:-1]:
+                self._settle(number)
+            self._settle_along(clauses, numbers[-1])
+        elif found is False and len(numbers) == 1:
             self.least_left = turn.rejected + 1
-        return refuted + 1
+        return refuted + ahead + 1
 
-    def _reject(self, turn: _Turn, literals: Sequence[int], most: int | None) -> int:
+    def _reject(self, turn: Turn, literals: Sequence[int], most: int | None) -> int:
         """Pass over options of the next slot that propagation alone refutes, each for a step; return how many.
 
         Where roles are bound to each other, most questions are of this sort, and to ask the solver takes longer than it
