@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from selfconf import files
-from selfconf.api.composites import Composites
 from selfconf.api.reading import described_in
 from selfconf.bus.memory import Faults, Network
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Bus
+from selfconf.composites import Composites
 from selfconf.composition.composer import Composer
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner

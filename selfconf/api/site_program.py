@@ -40,8 +40,8 @@ from selfconf.site import Shelf, Site, forget_oldest
 from selfconf.termination import Termination
 
 if TYPE_CHECKING:
-    from selfconf.api.composites import Composites
     from selfconf.api.secured_site import SecuredSite
+    from selfconf.composites import Composites
     from selfconf.deployment import RunRequest
 
 log = logging.getLogger(__name__)
@@ -111,7 +111,7 @@ def serve(
         keys_of, believed = (None, None) if secured is None else (secured.keys_of, secured.believed)
 
         def composites_of_site() -> Composites:
-            from selfconf.api.composites import Composites  # loads all that configures their insides and runs them
+            from selfconf.composites import Composites  # loads all that configures their insides and runs them
 
             return Composites(
                 bus,

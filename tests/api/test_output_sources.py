@@ -10,7 +10,7 @@ from selfconf.protocol.keys import Keys
 from selfconf.sdk import Component
 from selfconf.testing import Faults, MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME
-from tests.api.composite_house import PREFIXES, SERVED, SERVICE, House
+from tests.composites.composite_house import PREFIXES, SERVED, SERVICE, House
 
 
 def followed(house: House) -> tuple[list[str], Undo]:

@@ -23,9 +23,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 from unittest import mock
 
-from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults
 from selfconf.bus.memory_bus import MemoryBus
+from selfconf.composites import InsideOfComposite
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
 from selfconf.deployment.retries import LONGEST_PAUSE

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from selfconf.api.composites import InsideOfComposite
 from selfconf.bus.memory import Faults
+from selfconf.composites import InsideOfComposite
 from selfconf.configurator import losing
 from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import ReleaseFrom
@@ -183,7 +183,7 @@ MUTATIONS = {
         ecology=COMPOSED,
     ),
     "a composite tries first": Mutation(
-        {"selfconf.api.composites.InsideOfComposite._report": fails_at_once},
+        {"selfconf.composites.inside_of_composite.InsideOfComposite._report": fails_at_once},
         (Action(2.0, "crash", "camera-1"),),
         ecology=COMPOSED,
     ),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from operator import attrgetter
 
-from selfconf.api.composites import InsideOfComposite
+from selfconf.composites import InsideOfComposite
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.model.configuration import Configuration

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import files
-from selfconf.api.composites import LOOK_AT_REFUSED, NEXT_LIFE, OTHER_LIFE
+from selfconf.composites.living_composites import LOOK_AT_REFUSED, NEXT_LIFE, OTHER_LIFE
 from selfconf.configurator import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.deployment.retries import TRY_AGAIN

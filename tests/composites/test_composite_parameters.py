@@ -9,7 +9,7 @@ from selfconf.model.run_event import ComponentLost
 from selfconf.model.term import IRI
 from selfconf.sdk import Component, Signal
 from selfconf.testing.memory_ecology import REPORT_LAG
-from tests.api.composite_house import (
+from tests.composites.composite_house import (
     CAMERA,
     PREFIXES,
     House,

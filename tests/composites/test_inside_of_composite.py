@@ -12,7 +12,7 @@ from selfconf.model.run_event import ComponentActivated, ComponentLost, InputCon
 from selfconf.model.term import IRI
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG
-from tests.api.composite_house import (
+from tests.composites.composite_house import (
     CAMERA,
     NAVIGATOR,
     PORTS,

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import files
-from selfconf.api.inside_prospect import InsideProspect
+from selfconf.composites.inside_prospect import InsideProspect
 from selfconf.composition import Composer
 from selfconf.configurator import Loss, State
 from selfconf.deployment import RunRequest

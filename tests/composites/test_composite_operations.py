@@ -8,7 +8,7 @@ from selfconf.api.task import template
 from selfconf.model.term import IRI
 from selfconf.sdk import Component, Signal
 from selfconf.testing import MemoryEcology
-from tests.api.composite_house import (
+from tests.composites.composite_house import (
     PREFIXES,
     lost,
 )
