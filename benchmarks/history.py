@@ -38,7 +38,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Notice, Status
-from selfconf.rdf.provenance import configuration_triples
+from selfconf.rdf.provenance import Deployment, deployment_triples
 from selfconf.rdf.turtle import to_turtle
 
 ADS = Path(__file__).resolve().parent.parent / "examples" / "clock"
@@ -81,18 +81,15 @@ class Restless:
         playing = IRI(f"https://example.org/my-home#clock-{self._epoch}")
         configuration = Configuration(TEMPLATE, (Assignment(ROLE, (playing,)),))
         before = Configuration(TEMPLATE, (Assignment(ROLE, (IRI(f"{playing}-before"),)),))
-        triples = list(
-            configuration_triples(
-                configuration,
-                self._name,
-                self._task,
-                epoch=self._epoch,
-                generated=time.time(),
-                revises=(IRI(f"urn:selfconf:configuration:{self._epoch - 1}"), before),
-                configurator=NAME,
-                failures=[(IRI(f"{playing}-before"), "fail", "out of view", time.time())],
-            )
+        deployment = Deployment(
+            self._epoch,
+            time.time(),
+            NAME,
+            ("restless", 0),
+            revises=(IRI(f"urn:selfconf:configuration:{self._epoch - 1}"), before),
+            failures=((IRI(f"{playing}-before"), "fail", "out of view", time.time()),),
         )
+        triples = list(deployment_triples(configuration, self._name, self._task, deployment))
         self.sizes[self._name], self._turtle = len(triples), to_turtle(triples)
 
     def _deploy(self) -> None:

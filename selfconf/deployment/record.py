@@ -12,7 +12,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import LARGEST, encode
 from selfconf.protocol.keys import Keys, call_of
 from selfconf.protocol.messages import Status
-from selfconf.rdf.provenance import configuration_iri, configuration_triples
+from selfconf.rdf.provenance import Deployment, configuration_iri, deployment_triples
 from selfconf.rdf.turtle import to_turtle
 
 
@@ -87,20 +87,17 @@ class DeploymentRecord:
         assert self._deployed is not None
         name, configuration, epoch, generated = self._deployed
         identity = self._identity()
-        triples = configuration_triples(
-            configuration,
-            name,
-            self._request.task,
-            epoch=epoch,
-            generated=generated,
-            revises=self._revises,
-            configurator=self._name,
-            failures=self._failures.values(),
-            passed_over=self._request.passed_over(configuration),
-            outside=None if self._request.outside is None else self._request.outside.composite,
-            running_as=(identity.name, identity.priority),
+        deployment = Deployment(
+            epoch,
+            generated,
+            self._name,
+            (identity.name, identity.priority),
+            self._revises,
+            tuple(self._failures.values()),
+            self._request.passed_over(configuration),
+            None if self._request.outside is None else self._request.outside.composite,
         )
-        return to_turtle(triples)
+        return to_turtle(deployment_triples(configuration, name, self._request.task, deployment))
 
     def _tell_task(self, request: Request) -> None:
         """Reply the task as sites keep it, where it is known and not too large."""

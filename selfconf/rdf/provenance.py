@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from datetime import datetime, timezone
-from types import MappingProxyType
+from itertools import count
 
-from selfconf.model.configuration import Configuration
+from selfconf.model.configuration import Assignment, Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.template import Task
 from selfconf.model.term import IRI, STRING, BlankNode, Literal
 from selfconf.rdf.turtle import Triple
@@ -27,98 +28,44 @@ def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
     return IRI.unchecked(f"urn:selfconf:configuration:{digest}")
 
 
-# complexity: one line for each thing that is stated, in the order in which it is read
-def configuration_triples(
-    configuration: Configuration,
-    name: IRI,
-    task: Task,
-    *,
-    epoch: int | None = None,
-    generated: float | None = None,
-    revises: tuple[IRI, Configuration] | None = None,
-    configurator: str | None = None,
-    failures: Iterable[tuple[IRI, str, str, float]] = (),
-    passed_over: Mapping[IRI, Iterable[IRI]] = MappingProxyType({}),
-    outside: IRI | None = None,
-    running_as: tuple[str, int] | None = None,
-) -> Iterator[Triple]:
-    """A configuration as the ontology describes it: what it is, which task it answers, and how it came about.
+@immutable
+class Deployment:
+    """What is known of a configuration as it runs: since when, as which task, by which configurator, after what."""
 
-    `revises` is the one before it with its name, `failures` are (component, cause, detail, seconds), `passed_over` are
-    by role the candidates that came before the chosen ones. `outside` is the composite that it is the inside of,
-    `running_as` the name and the priority of the task where it runs.
-    """
-    yield name, TYPE, SC.Configuration
-    yield name, TYPE, PROV.Entity
-    yield name, SC.template, configuration.template
-    if outside is not None:
-        yield name, SC.insideOf, outside
-    counter = 0
+    epoch: int
+    generated: float
+    """When it was complete, in seconds of the Unix epoch."""
+    configurator: str
+    running_as: tuple[str, int]
+    """The name and the priority of the task where it runs."""
+    revises: tuple[IRI, Configuration] | None = None
+    """The configuration before it, with its name."""
+    failures: tuple[tuple[IRI, str, str, float], ...] = ()
+    """The components that were lost before: each with the cause, the detail, and when, in seconds of the Unix epoch."""
+    passed_over: Mapping[IRI, Sequence[IRI]] = field(default_factory=dict)
+    """By role, the candidates that came before the chosen ones."""
+    outside: IRI | None = None
+    """The composite that it is the inside of."""
 
-    def blank() -> BlankNode:
-        nonlocal counter
-        counter += 1
-        return BlankNode(f"_:n{counter}")
 
-    asked = blank() if task.iri is None else task.iri
-    yield name, SC.task, asked
-    yield asked, TYPE, SC.Task
-    yield asked, SC.template, task.template.iri
-    if running_as is not None:
-        yield asked, SC.name, Literal(running_as[0])
-        yield asked, SC.priority, Literal(str(running_as[1]), XSD.integer)
-    for parameter in task.template.parameters:
-        if parameter.name in configuration.bindings:
-            node = blank()
-            yield asked, SC.binding, node
-            yield node, TYPE, SC.Binding
-            yield node, SC.parameter, parameter.iri
-            yield node, SC.name, Literal(parameter.name)  # the template, which says so, is not served with it
-            yield node, SC.value, configuration.bindings[parameter.name]
-    before = {} if revises is None else {a.role: a.components for a in revises[1].assignments}
-    for assignment in configuration.assignments:
-        gone = [c for c in before.get(assignment.role, ()) if c not in assignment.components]
-        come = [c for c in assignment.components if c not in before.get(assignment.role, ())]
-        replaced = dict(zip(come, gone, strict=False))
-        for component in assignment.components:
-            node = blank()
-            yield name, SC.assignment, node
-            yield node, TYPE, SC.Assignment
-            yield node, SC.role, assignment.role
-            yield node, SC.component, component
-            if component in replaced:
-                yield node, SC.replaces, replaced[component]
-            for other in passed_over.get(assignment.role, ()):
-                yield node, SC.passedOver, other
-    for component in configuration.recruits:
-        yield name, SC.recruited, component
-    for connection in configuration.connections:
-        node = blank()
-        yield name, SC.connection, node
-        yield node, TYPE, SC.Connection
-        yield node, SC["from"], connection.source
-        yield node, SC.output, Literal(connection.output, STRING)
-        yield node, SC.to, connection.sink
-        yield node, SC.input, Literal(connection.input, STRING)
-    for setting in configuration.settings:
-        node = blank()
-        yield name, SC.setting, node
-        yield node, TYPE, SC.Setting
-        yield node, SC.component, setting.component
-        yield node, SC.name, Literal(setting.name)
-        yield node, SC.value, setting.value
-    if epoch is not None:
-        yield name, SC.epoch, Literal(str(epoch), XSD.integer)
-    if generated is not None:
-        yield name, PROV.generatedAtTime, moment(generated)
-    if configurator is not None:
-        agent = IRI.unchecked(f"urn:selfconf:configurator:{configurator}")
-        yield name, PROV.wasAttributedTo, agent
-        yield agent, TYPE, PROV.SoftwareAgent
-    if revises is not None:
-        yield name, PROV.wasRevisionOf, revises[0]
-    for component, cause, detail, seconds in failures:
-        node = blank()
+def configuration_triples(configuration: Configuration, name: IRI, task: Task) -> Iterator[Triple]:
+    """A configuration as the ontology describes it: what it is, and which task it answers."""
+    return _stated(configuration, name, task, None, _blank_nodes())
+
+
+def deployment_triples(configuration: Configuration, name: IRI, task: Task, deployment: Deployment) -> Iterator[Triple]:
+    """A configuration that runs, as the ontology describes it: what it is, which task it answers, how it came about."""
+    nodes = _blank_nodes()
+    yield from _stated(configuration, name, task, deployment, nodes)
+    yield name, SC.epoch, Literal(str(deployment.epoch), XSD.integer)
+    yield name, PROV.generatedAtTime, moment(deployment.generated)
+    agent = IRI.unchecked(f"urn:selfconf:configurator:{deployment.configurator}")
+    yield name, PROV.wasAttributedTo, agent
+    yield agent, TYPE, PROV.SoftwareAgent
+    if deployment.revises is not None:
+        yield name, PROV.wasRevisionOf, deployment.revises[0]
+    for component, cause, detail, seconds in deployment.failures:
+        node = next(nodes)
         yield name, PROV.wasInfluencedBy, node
         yield node, TYPE, SC.Failure
         yield node, SC.component, component
@@ -126,3 +73,77 @@ def configuration_triples(
         if detail:
             yield node, SC.detail, Literal(detail)
         yield node, PROV.atTime, moment(seconds)
+
+
+def _blank_nodes() -> Iterator[BlankNode]:
+    return (BlankNode(f"_:n{number}") for number in count(1))
+
+
+def _stated(
+    configuration: Configuration, name: IRI, task: Task, deployment: Deployment | None, nodes: Iterator[BlankNode]
+) -> Iterator[Triple]:
+    """What a configuration states, in the order in which it is read, each fact of its deployment at its place."""
+    yield name, TYPE, SC.Configuration
+    yield name, TYPE, PROV.Entity
+    yield name, SC.template, configuration.template
+    if deployment is not None and deployment.outside is not None:
+        yield name, SC.insideOf, deployment.outside
+    asked = next(nodes) if task.iri is None else task.iri
+    yield name, SC.task, asked
+    yield asked, TYPE, SC.Task
+    yield asked, SC.template, task.template.iri
+    if deployment is not None:
+        yield asked, SC.name, Literal(deployment.running_as[0])
+        yield asked, SC.priority, Literal(str(deployment.running_as[1]), XSD.integer)
+    for parameter in task.template.parameters:
+        if parameter.name in configuration.bindings:
+            node = next(nodes)
+            yield asked, SC.binding, node
+            yield node, TYPE, SC.Binding
+            yield node, SC.parameter, parameter.iri
+            yield node, SC.name, Literal(parameter.name)  # the template, which says so, is not served with it
+            yield node, SC.value, configuration.bindings[parameter.name]
+    for assignment in configuration.assignments:
+        replaced = {} if deployment is None else _replaced(assignment, deployment.revises)
+        passed_over = () if deployment is None else deployment.passed_over.get(assignment.role, ())
+        for component in assignment.components:
+            node = next(nodes)
+            yield name, SC.assignment, node
+            yield node, TYPE, SC.Assignment
+            yield node, SC.role, assignment.role
+            yield node, SC.component, component
+            if component in replaced:
+                yield node, SC.replaces, replaced[component]
+            for other in passed_over:
+                yield node, SC.passedOver, other
+    for component in configuration.recruits:
+        yield name, SC.recruited, component
+    yield from _wiring(configuration, name, nodes)
+
+
+def _replaced(assignment: Assignment, revises: tuple[IRI, Configuration] | None) -> dict[IRI, IRI]:
+    """Which component of the configuration before each one of an assignment takes the place of."""
+    before = {} if revises is None else {one.role: one.components for one in revises[1].assignments}
+    played = before.get(assignment.role, ())
+    gone = [component for component in played if component not in assignment.components]
+    come = [component for component in assignment.components if component not in played]
+    return dict(zip(come, gone, strict=False))
+
+
+def _wiring(configuration: Configuration, name: IRI, nodes: Iterator[BlankNode]) -> Iterator[Triple]:
+    """The connections and the settings of a configuration."""
+    for connection in configuration.connections:
+        node = next(nodes)
+        yield name, SC.connection, node
+        yield node, TYPE, SC.Connection
+        yield node, SC["from"], connection.source
+        yield node, SC.output, Literal(connection.output, STRING)
+        yield node, SC.to, connection.sink
+        yield node, SC.input, Literal(connection.input, STRING)
+    for setting in configuration.settings:
+        node = next(nodes)
+        yield name, SC.setting, node
+        yield node, TYPE, SC.Setting
+        yield node, SC.component, setting.component
+        yield node, SC.name, Literal(setting.name)
+        yield node, SC.value, setting.value

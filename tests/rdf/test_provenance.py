@@ -59,7 +59,8 @@ def test_a_configuration_says_which_task_it_answers_with_which_values() -> None:
 
 
 def test_a_configuration_that_runs_says_as_which_task() -> None:
-    text = to_turtle(write.configuration_triples(CONFIGURATION, NAME, TASK, running_as=("clocktask", -3)))
+    deployment = write.Deployment(1, 0.0, "c1", ("clocktask", -3))
+    text = to_turtle(write.deployment_triples(CONFIGURATION, NAME, TASK, deployment))
     document = turtle.parse(text, "configuration")
     task = document.value(NAME, SC.task)
     assert task is not None
@@ -68,22 +69,21 @@ def test_a_configuration_that_runs_says_as_which_task() -> None:
 
 
 def test_a_deployed_configuration_says_when_by_whom_and_after_which_failures() -> None:
-    text = to_turtle(
-        write.configuration_triples(
-            CONFIGURATION,
-            NAME,
-            TASK,
-            epoch=7,
-            generated=0.0,
-            revises=(BEFORE, replace(CONFIGURATION, assignments=(Assignment(iri("r"), (iri("a"), iri("x"))),))),
-            configurator="c1",
-            failures=[(iri("x"), "fail", "lost her", 1.5), (iri("y"), "crash", "", 2.0)],
-            passed_over={iri("s"): [iri("z")]},
-        )
+    deployment = write.Deployment(
+        7,
+        0.0,
+        "c1",
+        ("fetch", 0),
+        revises=(BEFORE, replace(CONFIGURATION, assignments=(Assignment(iri("r"), (iri("a"), iri("x"))),))),
+        failures=((iri("x"), "fail", "lost her", 1.5), (iri("y"), "crash", "", 2.0)),
+        passed_over={iri("s"): [iri("z")]},
+        outside=iri("composite"),
     )
+    text = to_turtle(write.deployment_triples(CONFIGURATION, NAME, TASK, deployment))
     document = turtle.parse(text, "configuration")
     assert document.value(NAME, SC.epoch) == Literal("7", XSD.integer)
     assert document.value(NAME, PROV.wasRevisionOf) == BEFORE
+    assert document.value(NAME, SC.insideOf) == iri("composite")
     nodes = document.values(NAME, SC.assignment)
     replaced = {document.value(node, SC.component): document.value(node, SC.replaces) for node in nodes}
     assert replaced == {iri("a"): None, iri("b"): iri("x"), iri("c"): None}
