@@ -190,7 +190,20 @@ class LivingTasks:
             claimed = None if name in taken else claim(self._keys.ecology, name, self._endpoints)
             if claimed is not None:
                 return claimed
-        raise NetworkError(f"a task {wanted!r} lives already; give another name, or `selfconf stop {wanted}`")
+        raise _taken(wanted)
+
+    def check_alone(self, task: str, beginning: float) -> None:
+        """Raise NetworkError if a task has the name of this one that has begun in the same moment, on another host.
+
+        Of two that see each other before they run, the one that goes on is the same for both.
+        """
+        from selfconf.configurator import Phase  # here: a program that only looks on runs nothing
+
+        replies = self._bus.ask(self._keys.configurator_call("*", "status"))
+        for other in _statuses(replies, self._keys)[0]:
+            before = other.phase != Phase.IDLE.value or (other.beginning, other.task) < (beginning, task)
+            if other.outside is None and other.name == task_name(task) and other.task != task and before:
+                raise _taken(other.name)
 
     def detach(self, record: TaskRecord) -> str:
         """Hand a task to the sites; returns its name. Raises NetworkError if none keeps it, or if its name is taken."""
@@ -201,6 +214,10 @@ class LivingTasks:
                 with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
                     self._end_record(record)
                 raise
+            for other in self.kept(claimed.name):  # which may have been handed over in the same moment, on another host
+                if other.task != record.task and (other.beginning, other.task) < (record.beginning, record.task):
+                    self._end_record(record)
+                    raise _taken(claimed.name)
             return claimed.name
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
@@ -314,6 +331,10 @@ class LivingTasks:
             if names and self._bus.now() > deadline:
                 raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")
             self._bus.pause(0.02)
+
+
+def _taken(name: str) -> NetworkError:
+    return NetworkError(f"a task {name!r} lives already; give another name, or `selfconf stop {name}`")
 
 
 def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from types import TracebackType
@@ -131,24 +132,29 @@ class Run:
             raise ProgrammerError(f"the run of {self.task_name} was entered already; ask the ecology for another run")
         bus = member(self._ecology, self._endpoints, self._credentials)
         try:
-            claimed = self._claimed_name(bus)
+            with ExitStack() as undone:
+                tasks = self._tasks(bus)
+                # A name that no other task of the ecology has: `stop` goes by it.
+                claimed = undone.enter_context(tasks.claim(self.wanted_name, numbered=not self._named))
+                request = replace(self._request, name=claimed.name)
+                runner = TaskRunner(bus, self._ecology, request, configurator_name(self._credentials))
+                if self._named:
+                    tasks.check_alone(runner.identity.task, runner.identity.beginning)
+                undone.pop_all()
         except BaseException:
             bus.close()
             raise
         self.task_name = claimed.name
-        request = replace(self._request, name=claimed.name)
-        runner = TaskRunner(bus, self._ecology, request, configurator_name(self._credentials))
         self._begun = _Begun(bus, claimed, runner)
         bus.run_aside()
         bus.wake_up(runner.start)
         bus.wake_up(self._check)
         return self
 
-    def _claimed_name(self, bus: ZenohBus) -> ClaimedName:
-        """A name that no other task of the ecology has: `stop` goes by it. Raises NetworkError for a given one."""
+    def _tasks(self, bus: ZenohBus) -> LivingTasks:
+        """The other tasks of the ecology."""
         asking = SynchronousBus(bus, ROLL_CALL if self._named else TASKS_CALL)
-        tasks = LivingTasks(asking, Keys(self._ecology), self._endpoints)
-        return tasks.claim(self.wanted_name, numbered=not self._named)
+        return LivingTasks(asking, Keys(self._ecology), self._endpoints)
 
     def _in_ecology(self) -> _Begun:
         """The run's part in the ecology. Raises ProgrammerError for a run that was not entered."""

@@ -43,12 +43,15 @@ class Tasks:
         answers: bool = True,
         speaks_of: str = "",
         outside: IRI | None = None,
+        phase: str = "running",
+        beginning: float = 0.0,
     ) -> MemoryBus:
         """A configurator that runs a task, perhaps the inside of a composite, until it is stopped."""
         node = self.network.node()
         node.announce(KEYS.configurator_life(name, "1"))
         speaker = speaks_of or name
-        status = Status(speaker, "running", TEMPLATE, 3, 1.5, components=components, task=task, outside=outside)
+        status = Status(speaker, phase, TEMPLATE, 3, 1.5, components=components, task=task, outside=outside)
+        status = replace(status, beginning=beginning)
 
         def answer(request: Request) -> None:
             if answers:
@@ -404,6 +407,41 @@ def test_tasks_that_begin_before_they_see_each_other_have_names_of_their_own(tas
         assert [claim.name for claim in claims] == ["patrol", "patrol-2", "patrol-3"]
     with tasks.asked.claim("patrol") as claimed:
         assert claimed.name == "patrol"
+
+
+def test_of_tasks_that_begin_with_one_name_on_several_hosts_the_first_goes_on(tasks: Tasks) -> None:
+    """They claim the name before they see each other, and look once more before they run."""
+    tasks.configurator("c1", "patrol~1", phase="idle", beginning=5.0)
+    tasks.configurator("c2", "watch~2", beginning=7.0)
+    tasks.configurator("c3", "inside~3", outside=DRIVE)
+    for task, beginning in (("patrol~1", 5.0), ("patrol~4", 4.0), ("patrol~0", 5.0), ("inside~4", 9.0)):
+        tasks.asked.check_alone(task, beginning)
+    for task, beginning in (("patrol~4", 6.0), ("patrol~4", 5.0), ("watch~4", 4.0)):
+        with pytest.raises(NetworkError, match="lives already"):
+            tasks.asked.check_alone(task, beginning)
+
+
+@pytest.mark.parametrize("beginning", [4.0, 6.0])
+def test_of_tasks_that_are_handed_over_with_one_name_on_several_hosts_the_first_is_kept(
+    tasks: Tasks, beginning: float
+) -> None:
+    """They claim the name before the sites keep any of them."""
+    tasks.site()
+    other, node = replace(PATROL, task="patrol~9", beginning=beginning), tasks.network.node()
+
+    def tell(request: Request) -> None:
+        for record in (other, *tasks.kept) if tasks.kept else ():
+            request.reply(KEYS.kept_tasks(), encode(record))
+        request.finish()
+
+    node.serve(KEYS.kept_tasks(), tell)
+    if beginning > PATROL.beginning:
+        assert tasks.asked.detach(PATROL) == "patrol"
+        assert tasks.kept == [PATROL]
+    else:
+        with pytest.raises(NetworkError, match="a task 'patrol' lives already"):
+            tasks.asked.detach(PATROL)
+        assert tasks.kept == [PATROL, replace(PATROL, revision=2, ended=True)]
 
 
 def test_a_task_that_no_site_can_keep_is_refused_and_called_off(tasks: Tasks) -> None:
