@@ -10,9 +10,9 @@ from pathlib import Path
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, seconds_limit, steps_limit
 from selfconf.api.collector import collector_at_rest, collector_looking_at_new
 from selfconf.api.ecology import Ecology
-from selfconf.api.ontologies import hierarchy_of
+from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.places import Places, with_lines
-from selfconf.api.reading import described_in
+from selfconf.api.reading import Text, described_in
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained, insides
 from selfconf.errors import ProgrammerError
@@ -56,7 +56,8 @@ class Method:
 
     strategy: Strategy = Strategy.FIRST
     reasoning: Reasoning = Reasoning.SYNTACTIC
-    ontologies: tuple[Path, ...] = ()
+    ontologies: tuple[Text, ...] = ()
+    """What is in the ontologies: the files may change or go, and standard input can be read once."""
     steps: int | None = None
     seconds: float | None = None
 
@@ -71,11 +72,11 @@ class Method:
     ) -> Method:
         """A method by the words of the command line. Raises ProgrammerError for what is none.
 
-        The limits, if there are any, are numbers above zero.
+        The limits, if there are any, are numbers above zero. Raises AuthorError for ontologies that are not there.
         """
         chosen, mode = option(Strategy, "strategy", strategy), option(Reasoning, "reasoning", reasoning)
-        paths = tuple(map(Path, listed_paths(ontologies)))
-        return cls(chosen, mode, paths, steps_limit(steps), seconds_limit(seconds))
+        limits = steps_limit(steps), seconds_limit(seconds)
+        return cls(chosen, mode, ontology_texts(map(Path, listed_paths(ontologies))), *limits)
 
     def composer(self, task: TaskSpecification) -> Composer:
         """The composer of a task, which has to be complete."""

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import secrets
-import tempfile
 import time
 from collections.abc import Callable, Mapping
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
-from selfconf import files
 from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.arguments import checked_priority, checked_upgrade, option
 from selfconf.api.refusal_among import outcome_among, searched_ecology
@@ -59,35 +57,25 @@ def task_record(
         source=document.source,
         wanted=str(task.document.task.iri or task.iri),
         bindings=dict(task.bindings),
-        ontologies=tuple(text for path in method.ontologies for text in _texts(path)),
+        ontologies=tuple(turtle.in_turtle(*text) for text in method.ontologies),
         options=options,
     )
-
-
-def _texts(path: Path) -> list[str]:
-    found = sorted(path.rglob("*.ttl")) if path.is_dir() else [path]
-    return [files.octets(file).decode() for file in found]
 
 
 def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Composer]:
     """The task of a record, how it is to be composed, and what composes it. Raises SelfconfError for what is none."""
     options = record.options
-    with tempfile.TemporaryDirectory(prefix="selfconf-task-") as folder:
-        paths = []
-        for number, text in enumerate(record.ontologies):
-            path = Path(folder) / f"{number}.ttl"
-            path.write_text(text, encoding="utf-8")
-            paths.append(path)
-        method = Method.of(
-            options.get("strategy") or "first",
-            options.get("reasoning") or "syntactic",
-            paths,
-            options.get("steps"),
-            options.get("seconds"),
-        )
-        document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI.unchecked(record.wanted))
-        task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
-        return task, method, method.composer(task)
+    method = Method.of(
+        options.get("strategy") or "first",
+        options.get("reasoning") or "syntactic",
+        steps=options.get("steps"),
+        seconds=options.get("seconds"),
+    )
+    texts = enumerate(record.ontologies)
+    method = replace(method, ontologies=tuple((text.encode(), f"ontology-{n}.ttl", None) for n, text in texts))
+    document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI.unchecked(record.wanted))
+    task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
+    return task, method, method.composer(task)
 
 
 def _upgrade(options: Mapping[str, Any]) -> float | None:

@@ -49,6 +49,11 @@ class SiteProcess:
         if STDIN in self.paths:
             ads = setting("ads")
             raise AuthorError(f"a site watches the files of its advertisements, so give files to {ads}, not -")
+        if STDIN in map(Path, ontologies):
+            ontology = setting("ontology")
+            raise AuthorError(
+                f"each component that a site starts reads its ontologies, so give files to {ontology}, not -"
+            )
         for path in self.paths:
             files.existing(path)
         ecology, self._connect = rendezvous.asked_for(ecology, connect)

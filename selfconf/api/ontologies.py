@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -23,16 +23,18 @@ _RELEVANT = {Reasoning.SYNTACTIC: (), Reasoning.SUBCLASS: READ, Reasoning.OWL_RL
 """The predicates of which a mode looks at the statements; None for all."""
 
 
-def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Path] = ()) -> Hierarchy:
-    """The hierarchy that a reasoning mode lets the roles see; a folder stands for all ontologies below it.
+def ontology_texts(paths: Iterable[Path]) -> tuple[Text, ...]:
+    """What is in the ontologies that paths stand for. Raises AuthorError for what is not there or is no text."""
+    return tuple(map(file_text, files.ontology_files(paths)))
 
-    Raises AuthorError for what is not there or cannot be read, also in the mode `syntactic`, which uses none of it.
+
+def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Text] = ()) -> Hierarchy:
+    """The hierarchy that a reasoning mode lets the roles see, by the ontologies of selfconf and by others.
+
+    Raises TurtleError for one that cannot be read, also in the mode `syntactic`, which uses none of it.
     """
-    own = files.ontology_files(ontologies)
-    if reasoning is Reasoning.SYNTACTIC:
-        # Standard input, which can be read once, is left to the mode that an explanation may look at afterwards.
-        return _of_texts(reasoning, tuple(file_text(path) for path in own if path != files.STDIN))
-    return _of_texts(reasoning, tuple(map(file_text, (*library.ontologies(), *own))))
+    shipped = () if reasoning is Reasoning.SYNTACTIC else ontology_texts(library.ontologies())
+    return _of_texts(reasoning, (*shipped, *ontologies))
 
 
 # A caller that asks again and again under one large ontology waits for it once.

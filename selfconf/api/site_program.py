@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from selfconf import files, rendezvous
 from selfconf.api.arguments import option
 from selfconf.api.joining import Joining
-from selfconf.api.ontologies import hierarchy_of
+from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import described_in
 from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.api.work_queue import WorkQueue
@@ -78,7 +78,7 @@ def serve(
     insides of its composites see them. Raises AuthorError and NetworkError.
     """
     _check_readable(paths, ontologies)
-    hierarchy = hierarchy_of(option(Reasoning, "reasoning", reasoning), ontologies)
+    hierarchy = hierarchy_of(option(Reasoning, "reasoning", reasoning), ontology_texts(ontologies))
     ecology, connect = rendezvous.asked_for(ecology, connect)
     if ecology is None:
         which = f"{setting('ecology', 'NAME')}, or set {rendezvous.ECOLOGY_VARIABLE}"

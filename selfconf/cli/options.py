@@ -178,13 +178,18 @@ def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
     """How the arguments ask a task to be composed."""
     from selfconf.api.answer import Method
 
+    complain_of_strategy(given, task)
+    steps, seconds = getattr(given, "steps", None), getattr(given, "seconds", None)
+    return Method.of(given.strategy, given.reasoning, given.ontology, steps, seconds)
+
+
+def complain_of_strategy(given: argparse.Namespace, task: TaskSpecification) -> None:
+    """Say on stderr where the strategy has nothing to go by."""
     if given.strategy == "best" and not task.document.task.template.cost:
         complain(
             f"the template {task.iri!r} states no sc:cost: every configuration costs the same, "
             "and best is the one that first finds"
         )
-    steps, seconds = getattr(given, "steps", None), getattr(given, "seconds", None)
-    return Method.of(given.strategy, given.reasoning, given.ontology, steps, seconds)
 
 
 def given_ecology(given: argparse.Namespace) -> Ecology:

@@ -21,6 +21,7 @@ from selfconf.cli.options import (
     add_format_argument,
     add_task_arguments,
     complain_of_left_out,
+    complain_of_strategy,
     joined,
     method_of,
     one_ecology,
@@ -198,7 +199,7 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
             yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
             return
         site = stack.enter_context(
-            SiteProcess(paths, given.ecology, given.connect, given.keys, method.reasoning.value, method.ontologies)
+            SiteProcess(paths, given.ecology, given.connect, given.keys, method.reasoning.value, given.ontology)
         )
         described = partial(_described, given.ads or ())
         running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)
@@ -213,16 +214,17 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
         )
     from selfconf.model.run_event import TaskDetached
 
-    method, upgrade = method_of(given, task), _upgrade(given)
+    upgrade = _upgrade(given)
+    complain_of_strategy(given, task)
     with joined(given) as ecology:
         name = ecology.detach(
             task,
             policy=given.policy,
             strategy=given.strategy,
             reasoning=given.reasoning,
-            ontologies=method.ontologies,
-            steps=method.steps,
-            seconds=method.seconds,
+            ontologies=given.ontology,
+            steps=given.steps,
+            seconds=given.seconds,
             name=given.name or "",
             priority=given.priority,
             upgrade=upgrade,

@@ -404,7 +404,7 @@ class TaskRecord:
     """The IRI of the template or task, in case the document holds several."""
     bindings: Mapping[str, Term] = field(default_factory=dict)
     ontologies: tuple[str, ...] = ()
-    """Turtle documents of further ontologies."""
+    """Turtle documents of further ontologies, in which no IRI is relative to where they come from."""
     options: Mapping[str, Any] = field(default_factory=dict)
     """`policy`, `strategy`, `reasoning`, `steps`, `seconds`, `upgrade`, as the command `run` has them."""
     epoch: int = 0

@@ -11,7 +11,7 @@ from selfconf import files, library
 from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
 from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
-from selfconf.api.ontologies import hierarchy_of
+from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.refusal_among import outcome_among, searched_ecology
 from selfconf.api.task import TaskSpecification, completed
@@ -192,7 +192,7 @@ class MemoryEcology:
             ECOLOGY_NAME,
             lambda one: self._documents[one.component],
             self.complaints.append,
-            hierarchy=hierarchy_of(Method.of(reasoning=reasoning).reasoning, self._ontologies),
+            hierarchy=hierarchy_of(Method.of(reasoning=reasoning).reasoning, ontology_texts(self._ontologies)),
             unable=lambda why: self._site.tell_unable(why),
         )
         self._site = Site(node, ECOLOGY_NAME, "site", self._shelf, changed=self._composites.refresh)

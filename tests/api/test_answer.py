@@ -398,9 +398,12 @@ def test_a_refusal_that_subclasses_would_mend_says_so_unless_they_are_seen_alrea
     assert navigation(special, reasoning="subclass")
 
 
-def test_a_method_is_named_by_the_words_of_the_command_line() -> None:
-    method = Method.of("best", "owl-rl", ["a.ttl"], 7, 0.5)
-    assert method == Method(Strategy.BEST, Reasoning.OWL_RL, (Path("a.ttl"),), 7, 0.5)
+def test_a_method_is_named_by_the_words_of_the_command_line(tmp_path: Path) -> None:
+    path = tmp_path / "a.ttl"
+    path.write_text("<urn:a> <urn:b> <urn:c> .")
+    method = Method.of("best", "owl-rl", [path], 7, 0.5)
+    text = path.read_bytes(), str(path), path.resolve().as_uri()
+    assert method == Method(Strategy.BEST, Reasoning.OWL_RL, (text,), 7, 0.5)
     for words in (("worst",), ("first", "magic")):
         with pytest.raises((ValueError, SelfconfError), match=words[-1]):
             Method.of(*words)

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import Any
 
+import pyoxigraph as ox
 import pytest
 
 import selfconf as sc
 from selfconf.api.answer import Method
 from selfconf.api.detached import request_of, task_record
+from selfconf.api.explaining import explained_refusal
+from selfconf.api.role_fits import role_fits
 from selfconf.configurator.state import Policy
 from selfconf.errors import AuthorError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
+from selfconf.rdf.vocabulary import RDFS
+from tests.lab import PREFIXES
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -54,6 +60,56 @@ def test_a_site_explains_a_refusal_as_the_library_does() -> None:
     assert (found[0].near_misses, found[0].repairs, found[0].hint) == (wanted.near_misses, wanted.repairs, wanted.hint)
     assert found[0].repairs
     assert not plain.repairs
+
+
+HALL_LAMP = PREFIXES + ":lamp a sc:Component, <#HallLamp> ."
+LIT = PREFIXES + ":lit a sc:Template ; sc:roles ( :light ) .\n:light a sc:Role ; sh:class <{}#Lamp> ."
+
+
+def ontology(folder: Path, form: ox.RdfFormat) -> Path:
+    """What a lamp in the hall is, by relative IRIs, in a file of a format."""
+    path = folder / f"lamps.{form.file_extension}"
+    words = f"@base <{path.as_uri()}> .\n<#HallLamp> <{RDFS.subClassOf}> <#Lamp> ."
+    triples = [quad.triple for quad in ox.parse(words.encode(), format=ox.RdfFormat.TURTLE)]
+    text = (ox.serialize(triples, format=form) or b"").decode()
+    path.write_text(text.replace(path.as_uri(), ""))
+    assert "lamps" not in path.read_text()
+    return path
+
+
+@pytest.mark.parametrize("form", [ox.RdfFormat.TURTLE, ox.RdfFormat.RDF_XML, ox.RdfFormat.JSON_LD], ids=str)
+@pytest.mark.parametrize("reasoning", ["syntactic", "subclass"])
+def test_a_site_explains_the_refusal_of_a_task_with_an_ontology(
+    tmp_path: Path, form: ox.RdfFormat, reasoning: str
+) -> None:
+    path, later, found = ontology(tmp_path, form), list[Callable[[], None]](), list[sc.Refusal]()
+    task = sc.template(LIT.format(path.as_uri()))
+    lamp = sc.read(HALL_LAMP.replace("<#", f"<{path.as_uri()}#"))
+    method = Method.of(reasoning=reasoning, ontologies=tmp_path)
+    record = decode(encode(task_record(task.complete(), method, Policy.REPAIR)), TaskRecord)
+    path.unlink()
+    request = request_of(record, lambda work: lambda: None, at_leisure=later.append)
+    assert isinstance(request.compose(lamp.advertisements(), frozenset(), None), Configuration) == (
+        reasoning == "subclass"
+    )
+    ecology = {} if reasoning == "subclass" else lamp.advertisements()
+    refused = request.compose(ecology, frozenset(), None)
+    assert isinstance(refused, sc.Refusal)
+    request.explain(refused, found.append)
+    later[0]()
+    hint = None if reasoning == "subclass" else "with reasoning='subclass' there is a configuration"
+    assert found[0].hint == hint
+    told = explained_refusal(record, ecology, ())
+    assert (hint in str(told["repairs"])) if hint else (told["repairs"] != [])
+    for advertisement in lamp.advertisements().values():
+        assert [fit.near for fit in role_fits(record, advertisement)] == [True]
+
+
+def test_an_ontology_on_standard_input_is_kept_with_its_task(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"<urn:HallLamp> <urn:x> <urn:Lamp> .")))
+    task = sc.template(LIT.format("urn:"))
+    kept = task_record(task.complete(), Method.of(ontologies="-"), Policy.REPAIR)
+    assert [text.partition(" . ")[2] for text in kept.ontologies] == ["<urn:HallLamp> <urn:x> <urn:Lamp> ."]
 
 
 def test_a_refusal_is_explained_by_the_ecology_in_which_it_was_found() -> None:

@@ -41,9 +41,11 @@ def test_sites_are_those_of_an_ecology_with_a_name() -> None:
         sites(42)  # type: ignore[arg-type]  # that is what is tested
 
 
-def test_a_site_watches_files_and_nothing_else() -> None:
+def test_a_site_watches_files_and_nothing_else(tmp_path: Path) -> None:
     with pytest.raises(AuthorError, match="not -"):
         SiteProcess(["-"])
+    with pytest.raises(AuthorError, match="give files to ontologies, not -"):
+        SiteProcess([tmp_path], ontologies=[Path("-")])
     with pytest.raises(AuthorError, match="no file or folder"):
         SiteProcess(["no-such-folder"])
 

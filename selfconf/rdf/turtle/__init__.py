@@ -4,7 +4,8 @@
 `ListFault` is what can be wrong with a list in it.
 `term`, `resource` and `named` pass between Oxigraph's terms, Turtle's names and the model's terms; `SKOLEM` marks the
 IRIs that stand for labelled blank nodes. `ntriples` and `to_turtle` write, and `pretty_turtle` writes for people;
-`ox_term` makes a term of Oxigraph. `not_turtle` words a syntax error. `read_ontology` reads any format of RDF;
+`ox_term` makes a term of Oxigraph. `not_turtle` words a syntax error. `read_ontology` reads any format of RDF,
+and `in_turtle` makes Turtle of it that can be read elsewhere;
 `format_of` and `other_format` tell which one a file is in (`RdfFormat`), and `conversion` is the command that makes
 Turtle of it. `first_not_utf_8` finds the place where a text is not UTF-8, and `check_utf_8` refuses it.
 `check_turtle_1_1` refuses what only Turtle 1.2 has.
@@ -23,7 +24,7 @@ from selfconf.rdf.turtle.document import (
     term,
 )
 from selfconf.rdf.turtle.encoding import check_utf_8, first_not_utf_8
-from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, other_format, read_ontology
+from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, in_turtle, other_format, read_ontology
 from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, to_turtle
 from selfconf.rdf.turtle.versions import check_turtle_1_1
 
@@ -39,6 +40,7 @@ __all__ = [
     "conversion",
     "first_not_utf_8",
     "format_of",
+    "in_turtle",
     "named",
     "not_turtle",
     "ntriples",

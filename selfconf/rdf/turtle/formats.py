@@ -21,6 +21,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle.document import Document, document_of
 from selfconf.rdf.turtle.encoding import check_utf_8
+from selfconf.rdf.turtle.serialization import to_turtle
 from selfconf.rdf.turtle.versions import check_turtle_1_1
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -115,6 +116,17 @@ def read_ontology(
         raise TurtleError(f"not {found.name}: {message}", file=source, line=line, column=error.offset) from None
     except MemoryError:
         raise TurtleError("a literal in it is larger than can be read", file=source) from None
+
+
+def in_turtle(octets: bytes, source: str, base: str | None = None) -> str:
+    """An ontology as Turtle that says the same under any name and in any place. Raises TurtleError as its reader does.
+
+    What is Turtle already is not read.
+    """
+    if format_of(source, octets) is not _TURTLE:
+        return to_turtle(read_ontology(octets, source, base).triples())
+    text = octets.removeprefix(_BYTE_ORDER_MARK).decode()
+    return text if base is None else f"@base <{base}> . {text}"
 
 
 class _Lines:

@@ -21,6 +21,7 @@ from selfconf.rdf.turtle.formats import (
     RdfFormat,
     conversion,
     format_of,
+    in_turtle,
     read_ontology,
 )
 from selfconf.rdf.validation import SourceText, validate_texts
@@ -54,6 +55,17 @@ def test_an_ontology_is_read_in_any_format(found: RdfFormat, named: bool) -> Non
     lamp = IRI("https://example.org/home#Lamp")
     assert set(document.values(lamp, RDFS.label)) == set(expected.values(lamp, RDFS.label))
     assert set(read_ontology(written(found), name, None, [RDFS.label]).statements) == {lamp}
+
+
+@pytest.mark.parametrize("found", FORMATS, ids=lambda found: found.name)
+def test_an_ontology_in_turtle_says_what_it_said(found: RdfFormat) -> None:
+    name = f"lamps.{found.endings[0]}"
+    text = in_turtle(written(found), name, "file:///lamps")
+    expected = read_ontology(written(found), name, "file:///lamps")
+    assert len(list(turtle.parse(text, "").triples())) == len(list(expected.triples()))
+    assert list(turtle.parse(in_turtle(b"<#a> <p> <> .", "a.ttl", "file:///a.ttl"), "").triples()) == [
+        (IRI("file:///a.ttl#a"), IRI("file:///p"), IRI("file:///a.ttl"))
+    ]
 
 
 def test_the_triples_of_every_graph_of_an_ontology_count() -> None:
