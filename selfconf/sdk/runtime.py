@@ -8,9 +8,7 @@ outputs, inputs, operations, supervision and blindness have modules of their own
 
 from __future__ import annotations
 
-import itertools
 import logging
-import math
 import os
 import secrets
 import socket
@@ -18,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
-from selfconf.errors import PeerError, ProgrammerError
+from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
@@ -43,6 +41,7 @@ from selfconf.protocol.messages import (
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.component_timers import ComponentTimers
 from selfconf.sdk.input_subscription import InputEvents
 from selfconf.sdk.inputs import InputFollower, Inputs
 from selfconf.sdk.operations import Operations
@@ -98,8 +97,7 @@ class ComponentRuntime:
         self._superseded = superseded
         thread = code_thread or CodeThread(inline=True)
         self.code = ComponentCode(bus, thread, profile, component, self.fail, lambda port: self.inputs.say_again(port))
-        self._timers: dict[int, Undo] = {}
-        self._timer_numbers = itertools.count()
+        self._timers = ComponentTimers(bus, self.code)
         self._closed = False
         self._failure = ""
         """Why the component has failed the last time."""
@@ -184,38 +182,8 @@ class ComponentRuntime:
         self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
-        """Call `action` at that interval until the component stops or fails; a call that is late is not made up for.
-
-        Raises ProgrammerError for an interval that is none.
-        """
-        if not 0.0 < seconds < math.inf:
-            raise ProgrammerError(f"`every` takes an interval of more than zero seconds, not {seconds!r}")
-        number, stint = next(self._timer_numbers), self.code.stint
-        due = False
-
-        def tick() -> None:
-            nonlocal due
-            if not self.active or stint != self.code.stint:
-                self._timers.pop(number, None)
-                return
-            self._timers[number] = self.bus.later(seconds, tick)
-            if not due:
-                due = True
-                self.code.tick(run)
-
-        def run() -> None:
-            nonlocal due
-            due = False
-            action()
-
-        def begin() -> None:
-            if stint == self.code.stint:
-                self._timers[number] = self.bus.later(seconds, tick)
-
-        if self.code.on_bus_thread:
-            begin()
-        else:
-            self.bus.wake_up(begin)
+        """Call `action` at that interval until the component stops or fails; see `ComponentTimers`."""
+        self._timers.every(seconds, action)
 
     def _failed(self) -> None:
         """What `fail` leaves for the bus's thread."""
@@ -474,9 +442,7 @@ class ComponentRuntime:
 
     def _stop(self) -> None:
         """Be off: no timers, no inputs, and the component's code at rest."""
-        for undo in self._timers.values():
-            undo()
-        self._timers.clear()
+        self._timers.end()
         self.inputs.end()
         self.operations.end()
         self.code.stop(self.at_rest)

@@ -45,9 +45,9 @@ def test_a_timer_that_has_ticked_for_a_long_time_is_kept_once() -> None:
     stage, ticks = ticking()
     stage.let_pass(100.05)
     assert len(ticks) == 1000
-    assert len(stage.runtime._timers) == 1
+    assert len(stage.runtime._timers.running) == 1
     stage.call(release(2, US))
-    assert not stage.runtime._timers
+    assert not stage.runtime._timers.running
 
 
 @pytest.mark.parametrize("seconds", [0, -1.0, math.nan, math.inf])
@@ -63,4 +63,4 @@ def test_a_timer_of_a_component_that_is_not_active_is_not_kept() -> None:
     for _ in range(100):
         stage.component.every(0.1, print)
     stage.let_pass(0.2)
-    assert not stage.runtime._timers
+    assert not stage.runtime._timers.running
