@@ -129,7 +129,7 @@ class Calling:
                 self._report(ParametersSet(component, detail))
             self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
-            self.lives.obeyed(component, answer.life)
+            self.lives.obeyed(component, answer.life, message.epoch != self.state().epoch)
         if answer.verdict is Verdict.DONE and call is Call.APPLY:
             self._acts(component, answer)
         holder = None

@@ -76,9 +76,13 @@ class HeldLives:
         """Note that what may be left of a component acts for no task any more."""
         self._gone.add(component)
 
-    def obeyed(self, component: IRI, life: str) -> None:
-        """Note that a life of a component has obeyed a call of this task."""
-        self._held[component] = life
+    def obeyed(self, component: IRI, life: str, late: bool = False) -> None:
+        """Note that a life of a component has obeyed a call of this task.
+
+        One that is heard of `late`, as the call was of an older epoch, is not held in the place of another that lives.
+        """
+        if not (late and component in self._held and self.lives_on(component)):
+            self._held[component] = life
         self.caught_up(component, life)
 
     def has_obeyed(self, component: IRI, life: str) -> bool:

@@ -97,3 +97,17 @@ def test_a_component_that_was_frozen_is_released_whatever_another_life_of_it_has
     assert runtime.active
     lab.network.resume(frozen)
     assert lab.until(lambda: not runtime.active, 0.5)
+
+
+def test_a_late_answer_of_a_life_that_has_ended_is_not_taken_for_the_life_that_is_held(lab: Lab) -> None:
+    """Else the component would be asked to act in the life that has ended, for which the configurator waits no more."""
+    agent, tracker = lab.agent(), iri("person-tracker")
+    assert lab.running(agent)
+    lives = agent._lives
+    held = lives.life(tracker)
+    lives.obeyed(tracker, "an earlier one", late=True)
+    assert lives.life(tracker) == held
+    lab.crash("tracker")
+    assert lab.until(lambda: not lives.lives_on(tracker), 1.0)
+    lives.obeyed(tracker, "a later one", late=True)
+    assert lives.life(tracker) == "a later one"
