@@ -6,7 +6,8 @@ import argparse
 import importlib.util
 from pathlib import Path
 
-from selfconf.cli.options import add_keys_argument, domain
+from selfconf.cli.options import domain
+from selfconf.cli.site_options import add_site_arguments
 from selfconf.cli.terminal import complaining_aside
 from selfconf.errors import InstallationError
 
@@ -16,6 +17,7 @@ ROS2_EXAMPLE = """  selfconf bridge ros2 --connect tcp/127.0.0.1:7447 --domain 0
   selfconf bridge ros2 --definitions /opt/ros/jazzy/share --definitions ~/ws/install/lab_msgs/share --ecology home"""
 EXAMPLE = f"{WOT_EXAMPLE}\n{ROS2_EXAMPLE}"
 MOST_HERTZ = 100.0
+LISTENING = "where to listen, as for `selfconf site`"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a host to which a description may lead that was fetched from another one; repeatable",
     )
-    _add_site_arguments(wot)
+    add_site_arguments(wot, LISTENING, "--sites")
     ros2 = worlds.add_parser(
         "ros2",
         help="nodes of ROS 2 over rmw_zenoh: jazzy, kilted and lyrical",
@@ -85,29 +87,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         " known then, so that services and actions of these types can be called; repeatable (default:"
         " $SELFCONF_ROS_DEFINITIONS, separated by colons, which components read too)",
     )
-    _add_site_arguments(ros2)
-
-
-def _add_site_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--ecology", metavar="NAME", help="the ecology that this site is part of (default: $SELFCONF_ECOLOGY)"
-    )
-    parser.add_argument("--name", metavar="SITE", help="the name of the site; by default one of its own")
-    parser.add_argument("--listen", metavar="ENDPOINT", help="where to listen, as for `selfconf site`")
-    parser.add_argument(
-        "--sites",
-        metavar="ENDPOINT",
-        action="append",
-        default=[],
-        help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
-        " are found by themselves",
-    )
-    add_keys_argument(parser)
-    parser.add_argument(
-        "--insecure",
-        action="store_true",
-        help="listen beyond this host without keys: any program that reaches it may do everything",
-    )
+    add_site_arguments(ros2, LISTENING, "--sites")
 
 
 def run(given: argparse.Namespace) -> int:

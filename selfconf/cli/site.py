@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from selfconf.cli.options import add_keys_argument, add_ontology_argument, add_reasoning_argument
+from selfconf.cli.options import add_ontology_argument, add_reasoning_argument
+from selfconf.cli.site_options import add_site_arguments
 from selfconf.cli.terminal import complaining_aside
 
 EXAMPLE = """  selfconf site examples/peis-home --ecology home
@@ -22,30 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="advertisements: files, or folders with *.ttl below them (default: the `ads` of selfconf.toml); or"
         " `restart COMPONENT`: have the site that has started a component end it and start it again",
     )
-    parser.add_argument(
-        "--ecology", metavar="NAME", help="the ecology that this site is part of (default: $SELFCONF_ECOLOGY)"
+    listen = (
+        "where to listen; port 0 is any free one (default: on 127.0.0.1, at a port that goes with the name of the"
+        " ecology, so that a site that is started again is found by its former clients; if it is taken, at any)"
     )
-    parser.add_argument("--name", metavar="SITE", help="the name of the site; by default one of its own")
-    parser.add_argument(
-        "--listen",
-        metavar="ENDPOINT",
-        help="where to listen; port 0 is any free one (default: on 127.0.0.1, at a port that goes with the name of the"
-        " ecology, so that a site that is started again is found by its former clients; if it is taken, at any)",
-    )
-    parser.add_argument(
-        "--connect",
-        metavar="ENDPOINT",
-        action="append",
-        default=[],
-        help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
-        " are found by themselves",
-    )
-    add_keys_argument(parser)
-    parser.add_argument(
-        "--insecure",
-        action="store_true",
-        help="listen beyond this host without keys: any program that reaches it may do everything",
-    )
+    add_site_arguments(parser, listen, "--connect")
     parser.add_argument(
         "--state",
         metavar="DIR",

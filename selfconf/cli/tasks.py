@@ -6,6 +6,7 @@ import argparse
 import json
 import time
 
+from selfconf.cli.exit_codes import code_of_tasks
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 
 EXAMPLE = """  selfconf tasks --format json"""
@@ -18,16 +19,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 once every configurator has answered, also if there is no task.
-
-    2 if one lives or holds components and does not answer, or if a run of this machine is suspended.
-    """
+    """What `code_of_tasks` says: 0 also if there is no task."""
     from selfconf.render import table
 
     with joined(given) as ecology:
         found = ecology.all_tasks()
         complain_of(ecology)
-        code = 2 if ecology.silent or ecology.suspended else 0
+        code = code_of_tasks(ecology)
     if given.format == "json":
         print(json.dumps([task.body() for task in found], indent=2))
     elif found:
