@@ -63,6 +63,14 @@ class BindingError(AuthorError):
     """A value cannot stand for a parameter: unknown name, wrong kind of term, bound twice, or not bound at all."""
 
 
+class NamespaceError(AuthorError):
+    """A text cannot be what IRIs begin with."""
+
+    def __init__(self, namespace: str) -> None:
+        super().__init__(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with #, / or :")
+        self.namespace = namespace
+
+
 class QueryError(AuthorError):
     """A SPARQL query cannot be read or is not allowed here."""
 

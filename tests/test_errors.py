@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import errors
-from selfconf.errors import AuthorError, SelfconfError, TemplateError, TurtleError, reason
+from selfconf.errors import AuthorError, NamespaceError, SelfconfError, TemplateError, TurtleError, reason
 
 
 def test_an_error_of_an_author_begins_with_its_place() -> None:
@@ -33,6 +33,14 @@ def test_an_error_in_a_template_keeps_the_way_to_the_value_at_fault() -> None:
     error = TemplateError("two defaults", subject="urn:p", steps=(("urn:default", 1),))
     assert (error.subject, error.steps) == ("urn:p", (("urn:default", 1),))
     assert str(error) == "two defaults"
+
+
+def test_what_cannot_be_a_namespace_is_said_with_what_can() -> None:
+    error = NamespaceError("home")
+    assert (error.namespace, str(error)) == (
+        "home",
+        "'home' cannot be a namespace; it is an absolute IRI that ends with #, / or :",
+    )
 
 
 def test_every_error_of_the_module_is_caught_as_one_of_selfconf() -> None:

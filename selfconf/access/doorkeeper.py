@@ -26,6 +26,7 @@ from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.bus.refusals import RefusalLog
 from selfconf.errors import NetworkError, PeerError, SelfconfError
 from selfconf.model.term import IRI
+from selfconf.model.wording import client_text
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import Keys, site_of
 from selfconf.protocol.messages import Introduction, Known, Page, RefusedAttempt
@@ -365,8 +366,7 @@ class Doorkeeper:
         self._tellings = [at for at in self._tellings if now - at < 60.0]
         if len(self._tellings) < MOST_TOLD:
             self._tellings.append(now)
-            who = principal or "a client without a trusted certificate"
-            self._complain(f"refused: {who}: {attempt}{f' on {key}' if key else ''}")
+            self._complain(f"refused: {client_text(principal)}: {attempt}{f' on {key}' if key else ''}")
 
     def _tell(self, request: Request) -> None:
         """Who may do what, and what was refused: a reply for each."""

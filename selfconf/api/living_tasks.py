@@ -17,6 +17,7 @@ from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
+from selfconf.render import disobedience
 from selfconf.rendezvous import ClaimedName, LocalTask, claim, suspended_tasks
 
 COMING_TO_REST = 5.0
@@ -273,7 +274,7 @@ class LivingTasks:
         asked = {(component, status.task) for status in ended for component in (*status.components, *status.owed)}
         return sorted(
             {
-                f"{component.short} was turned off and has not obeyed: {why}; it is out of control until it is gone"
+                f"{disobedience(component.short, why)}; it is out of control until it is gone"
                 for (component, _), why in self._after_some_time(asked).items()
             }
         )

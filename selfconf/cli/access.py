@@ -11,6 +11,7 @@ from selfconf.cli.options import add_ecology_arguments, joined
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
+from selfconf.model.wording import client_text
 
 if TYPE_CHECKING:
     from selfconf.api.living import LivingEcology
@@ -117,7 +118,7 @@ def _tell(site: SiteAccess) -> None:
         print(f"  {one.principal or 'everybody'}{whose}: {one.sentence}")
     print(f"  refused: {'nothing' if not site.refused else ''}")
     for refused in site.refused:
-        who = refused.principal or "a client without a trusted certificate"
         at = datetime.fromtimestamp(refused.latest, timezone.utc)
         where = f" on {refused.key}" if refused.key else ""
-        print(f"    {who}: {refused.attempt}{where}, {refused.number} times, latest {at:%Y-%m-%d %H:%M:%S} UTC")
+        what = f"{client_text(refused.principal)}: {refused.attempt}{where}"
+        print(f"    {what}, {refused.number} times, latest {at:%Y-%m-%d %H:%M:%S} UTC")

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from selfconf.cli.scaffolds import SCAFFOLDS
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, NamespaceError
 
 EXAMPLE = """  selfconf new component kitchen-thermometer
   selfconf new template watch-the-temperature
@@ -51,7 +51,7 @@ def scaffold(kind: str, name: str, folder: Path, namespace: str | None = None) -
         )
     namespace = namespace or (f"https://example.org/{name}#" if kind == "ontology" else _HOME)
     if not _NAMESPACE.fullmatch(namespace):
-        raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with #, / or :")
+        raise NamespaceError(namespace)
     words = " ".join(re.split("[-_]", name))
     fillings = {
         "name": name,

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from selfconf.cli.exit_codes import code_of_tasks
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 from selfconf.cli.terminal import STATE_COLOURS, complain, paint
 from selfconf.model.term import IRI
@@ -29,16 +30,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0 once every configurator has answered, also if nothing is deployed.
-
-    2 if one lives or holds components and does not answer, or if a run of this machine is suspended.
-    """
+    """What `code_of_tasks` says: 0 also if nothing is deployed."""
     with joined(given) as ecology:
         found = ecology.tasks
         complain_of(ecology)
         deployed = _deployed(ecology) if found else {}
         disobedient = ecology.out_of_control() if given.format != "json" else {}
-        code = 2 if ecology.silent or ecology.suspended else 0
+        code = code_of_tasks(ecology)
     if given.format == "json":
         bodies = [_body(status, deployed.get(status.configurator, {})) for status in found]
         print(json.dumps(bodies, indent=2, ensure_ascii=False))
@@ -94,7 +92,7 @@ def _holders(inside: Status, found: Sequence[Status]) -> list[Status]:
 
 def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> Iterator[str]:
     """A task for people: its configurator, what is deployed, and what is wrong."""
-    from selfconf.render import duration
+    from selfconf.render import disobedience_text, duration
 
     phase = paint(status.phase, STATE_COLOURS.get(status.phase, ""))
     lasts = duration(time.time() - status.since)
@@ -108,8 +106,7 @@ def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> 
         yield f"  lost: {names(IRI.unchecked(lost))} ({cause})"
     for slow, count in status.dropped.items():
         yield f"  too slow: {names(IRI.unchecked(slow))} has passed over {count} signals"
-    for component in status.owed:
-        yield f"  out of control: {names(component)} was turned off and has not obeyed"
+    yield from (f"  {line}" for line in disobedience_text(dict.fromkeys(status.owed, ""), names))
 
 
 def _held(status: Status, names: Names) -> Iterator[str]:

@@ -11,7 +11,7 @@ from dataclasses import field
 from pathlib import Path
 
 from selfconf import files
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, NamespaceError
 from selfconf.importing.folder import FileState, write_folder
 from selfconf.importing.imported import ImportedDocument, Omission, Renaming
 from selfconf.importing.ledger import ImportLedger
@@ -79,7 +79,7 @@ def import_documents(
     folder cannot be written to, or the namespace cannot be one; what cannot be read is in the report.
     """
     if namespace is not None and (absolute(namespace) is None or namespace[-1] not in "#/:"):
-        raise AuthorError(f"{namespace!r} cannot be a namespace; it is an absolute IRI that ends with #, / or :")
+        raise NamespaceError(namespace)
     unreadable: list[AuthorError] = []
     ledger = ImportLedger(namespace or f"urn:selfconf:{form}:", unreadable.append)
     documents = {f"{ledger.names.file(document.name)}.ttl": document for document in read(ledger)}

@@ -33,6 +33,11 @@ def sayable(said: object) -> str:
     return str(said)[:LONGEST_REMARK].encode(errors="replace").decode()
 
 
+def client_text(principal: str) -> str:
+    """Which client was refused something: by the common name of its certificate, where it has shown a trusted one."""
+    return principal or "a client without a trusted certificate"
+
+
 def is_one_line(text: str) -> bool:
     """Whether a text can stand in a line as it is: it steers no terminal, and ends no line."""
     return _is_harmless(text) or _STEERING_OR_BREAKING.search(text) is None

@@ -1,7 +1,7 @@
 """Values for their readers: as text, as JSON, as HTML and as Mermaid. Nothing here decides anything.
 
 Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`, `count`;
-`disobedience_text` names components that are out of control;
+`disobedience_text` names components that are out of control, and `disobedience` says that of one;
 `Names` shortens IRIs by prefixes, `short` without, `ecology_names` makes
 them for an ecology; `duration` is how long something has lasted. JSON: the functions that end in `_body`. Diagrams:
 `mermaid`, and `diagram` for notebooks, whose tables and texts are `html_table`, `html_text`, `html_sections`.
@@ -30,6 +30,7 @@ from selfconf.render.text import (
     configuration_text,
     consequences_text,
     cost_text,
+    disobedience,
     disobedience_text,
     holder_text,
     refusal_text,
@@ -49,6 +50,7 @@ __all__ = [
     "cost_text",
     "count",
     "diagram",
+    "disobedience",
     "disobedience_text",
     "duration",
     "ecology_names",

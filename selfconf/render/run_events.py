@@ -23,7 +23,7 @@ from selfconf.model.wording import MANY, one_line
 from selfconf.render.bodies import configuration_body, refusal_body, undecided_body
 from selfconf.render.names import short
 from selfconf.render.tables import count
-from selfconf.render.text import Name, refusal_text
+from selfconf.render.text import Name, disobedience_text, refusal_text
 
 SENTENCES: Mapping[str, str] = {
     "query": "act 1  asking the ecology what it has",
@@ -94,7 +94,7 @@ def details(event: RunEvent, name: Name, told: Collection[IRI] = ()) -> Iterator
 
 def owed_sentences(owed: Iterable[IRI], name: Name) -> Iterator[str]:
     """Which components do not obey, a line each."""
-    return (f"  out of control: {name(one)} was turned off and has not obeyed" for one in owed)
+    return (f"  {line}" for line in disobedience_text(dict.fromkeys(owed, ""), name))
 
 
 def lost_sentences(losses: Mapping[IRI, str], name: Name, told: Collection[IRI] = ()) -> Iterator[str]:

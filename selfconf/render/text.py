@@ -26,9 +26,14 @@ MOST_LINES = 8
 """How many reasons, and how many near misses, a screen has room for."""
 
 
+def disobedience(component: str, why: str = "") -> str:
+    """That a component was turned off and does not come to rest, with how it is where that is known."""
+    return f"{component} was turned off and has not obeyed{f': {why}' if why else ''}"
+
+
 def disobedience_text(disobedient: Mapping[IRI, str], name: Name) -> list[str]:
-    """A line for each component that was turned off and does not come to rest, with how it is."""
-    return [f"out of control: {name(one)} was turned off and has not obeyed: {why}" for one, why in disobedient.items()]
+    """A line for each component that was turned off and does not come to rest, with how it is where that is known."""
+    return [f"out of control: {disobedience(name(one), why)}" for one, why in disobedient.items()]
 
 
 def configuration_text(configuration: Configuration, name: Name) -> str:

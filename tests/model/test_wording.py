@@ -5,7 +5,17 @@ from __future__ import annotations
 import pytest
 
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
-from selfconf.model.wording import LONGEST_REMARK, MANY, in_full, in_words, is_one_line, listed, one_line, plain
+from selfconf.model.wording import (
+    LONGEST_REMARK,
+    MANY,
+    client_text,
+    in_full,
+    in_words,
+    is_one_line,
+    listed,
+    one_line,
+    plain,
+)
 
 HALL, CELLAR = (IRI(f"https://example.org/{name}") for name in ("hall", "cellar"))
 FIVE = Literal("5", IRI(XSD_NAMESPACE + "integer"))
@@ -40,3 +50,8 @@ def test_values_are_sorted_and_told_from_others_that_look_alike() -> None:
     assert in_words([]) == "nothing"
     assert in_full([HALL, FIVE]) == "5 or <https://example.org/hall>"
     assert in_full([]) == "nothing"
+
+
+def test_a_client_is_named_by_its_certificate_where_it_has_shown_one() -> None:
+    assert client_text("read.alice") == "read.alice"
+    assert client_text("") == "a client without a trusted certificate"

@@ -18,6 +18,7 @@ from selfconf.render import (
     configuration_text,
     consequences_text,
     cost_text,
+    disobedience_text,
     refusal_text,
     short,
     undecided_text,
@@ -164,3 +165,10 @@ def test_a_refusal_says_that_the_search_for_repairs_stopped() -> None:
     assert "the search for other repairs stopped before all was tried" in refusal_text(stopped, NAMES).splitlines()
     bare = Refusal(TEMPLATE, REASONS, repairs_stopped=True)
     assert refusal_text(bare, NAMES).splitlines()[-1] == "the search for repairs stopped before all was tried"
+
+
+def test_a_component_that_does_not_obey_is_named_with_how_it_is_where_that_is_known() -> None:
+    assert disobedience_text({LAMP: "", SCREEN: "it hangs"}, NAMES) == [
+        "out of control: :lamp was turned off and has not obeyed",
+        "out of control: :screen was turned off and has not obeyed: it hangs",
+    ]
