@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 from selfconf.bus.port import Undo
-from selfconf.configurator import Appeared, Event, Improvable, Loss, Phase, State
+from selfconf.configurator import Appeared, Improvable, Loss, Phase
 from selfconf.deployment.components import HeldLives
-from selfconf.discovery import EcologyView
+from selfconf.deployment.task_context import TaskContext
 from selfconf.model.term import IRI
 
 TRY_AGAIN = 5.0
@@ -25,15 +24,13 @@ class Retries:
 
     def __init__(
         self,
-        ecology: EcologyView,
+        task: TaskContext,
         lives: HeldLives,
-        state: Callable[[], State],
-        step: Callable[[Event], None],
         upgrade: float | None,
     ) -> None:
         """`upgrade`: after how many seconds what has appeared may be rather had; None: what runs is kept."""
-        self._bus, self._ecology, self._lives = ecology.bus, ecology, lives
-        self._state, self._step, self._upgrade = state, step, upgrade
+        self._bus, self._ecology, self._lives = task.ecology.bus, task.ecology, lives
+        self._state, self._step, self._upgrade = task.state, task.step, upgrade
         self._look_again: Undo = lambda: None
         self._pause = TRY_AGAIN
         self._chance_at: float | None = None

@@ -52,6 +52,7 @@ from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import Retries
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
+from selfconf.deployment.task_context import TaskContext
 from selfconf.deployment.task_discovery import TaskDiscovery
 from selfconf.deployment.task_search import TaskSearch
 from selfconf.discovery import EcologyView
@@ -117,35 +118,14 @@ class TaskRunner:
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._lives = HeldLives(self.ecology)
-        self._waking = Waking(self.ecology, self._lives, self._step, self._report)
+        context = TaskContext(self.ecology, lambda: self.state, self._step, self._report)
+        self._waking = Waking(context, self._lives)
         self._ends = PortEnds(self.ecology, request.outside)
-        self._calls = Calls(
-            self.ecology,
-            self.identity,
-            self.supervisor,
-            self._lives,
-            self._waking,
-            self._ends,
-            self._current_state,
-            self._step,
-            self._report,
-        )
-        self._liveness = Liveness(
-            self.ecology, self._current_state, self._step, self._report, self._calls, self._waking
-        )
-        self._discovery = TaskDiscovery(
-            self.ecology,
-            self.name,
-            self._liveness,
-            self._current_state,
-            self._step,
-            self._report,
-            request.without_configurator,
-        )
-        self._search = TaskSearch(
-            self.ecology, request, self._liveness, self._current_state, self._step, self._report, self._give_up
-        )
-        self._retries = Retries(self.ecology, self._lives, self._current_state, self._step, request.upgrade)
+        self._calls = Calls(context, self.identity, self.supervisor, self._lives, self._waking, self._ends)
+        self._liveness = Liveness(context, self._calls, self._waking)
+        self._discovery = TaskDiscovery(context, self.name, self._liveness, request.without_configurator)
+        self._search = TaskSearch(context, request, self._liveness, self._give_up)
+        self._retries = Retries(context, self._lives, request.upgrade)
         self._record = DeploymentRecord(
             bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
         )
@@ -159,7 +139,7 @@ class TaskRunner:
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
-        self._messages = ComponentMessages(self.ecology, task, self._lives, self._ends, self._current_state, self._step)
+        self._messages = ComponentMessages(context, task, self._lives, self._ends)
         self._subscriptions = [
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
             bus.subscribe(self.keys.reopens(), lambda _: self._liveness.reopens(), Urgency.EVENT),
@@ -265,9 +245,6 @@ class TaskRunner:
             if self.trouble is None:
                 self.trouble = ProgrammerError(f"{type(effect).__name__} broke: {type(error).__name__}: {error}")
                 self._events.append(Stopped())
-
-    def _current_state(self) -> State:
-        return self.state
 
     def _pulse(self) -> None:
         """Notice that this program was suspended: whatever has not been answered meanwhile says nothing."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
-from selfconf.configurator import Discovered, Event, State
+from selfconf.configurator import Discovered
 from selfconf.deployment.components import Liveness
 from selfconf.deployment.holders import WithoutConfigurator, ask_holders
-from selfconf.deployment.run_request import EventListener
-from selfconf.discovery import Discovery, EcologyView
+from selfconf.deployment.task_context import TaskContext
+from selfconf.discovery import Discovery
 from selfconf.model.holder import Holder
 from selfconf.model.run_event import AnswerRejected, AnyRunEvent, EcologyAsked, EcologyDiscovered
 from selfconf.model.term import IRI
@@ -19,18 +19,15 @@ class TaskDiscovery:
 
     def __init__(
         self,
-        ecology: EcologyView,
+        task: TaskContext,
         name: str,
         liveness: Liveness,
-        state: Callable[[], State],
-        step: Callable[[Event], None],
-        report: EventListener,
         without_configurator: WithoutConfigurator = lambda known: (),
     ) -> None:
         """`name` is that of the configurator; `without_configurator` that of the `RunRequest`."""
-        self._bus, self._ecology, self._name, self._liveness = ecology.bus, ecology, name, liveness
+        self._bus, self._ecology, self._name, self._liveness = task.ecology.bus, task.ecology, name, liveness
         self._without_configurator = without_configurator
-        self._state, self._step, self._report = state, step, report
+        self._state, self._step, self._report = task.state, task.step, task.report
         self._asked = 0
         """How often the ecology was asked."""
         self._told: tuple[AnyRunEvent, ...] = ()

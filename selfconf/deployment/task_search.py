@@ -9,11 +9,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from selfconf.bus.port import Undo
-from selfconf.configurator import Compose, Composed, Event, Phase, Policy, State
+from selfconf.configurator import Compose, Composed, Phase, Policy
 from selfconf.deployment.components import Liveness
 from selfconf.deployment.contingencies import Contingencies
-from selfconf.deployment.run_request import EventListener, RunRequest
-from selfconf.discovery import EcologyView
+from selfconf.deployment.run_request import RunRequest
+from selfconf.deployment.task_context import TaskContext
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.obstacle import NotJudged
@@ -39,18 +39,15 @@ class TaskSearch:
 
     def __init__(
         self,
-        ecology: EcologyView,
+        task: TaskContext,
         request: RunRequest,
         liveness: Liveness,
-        state: Callable[[], State],
-        step: Callable[[Event], None],
-        report: EventListener,
         give_up: Callable[[SelfconfError], None],
     ) -> None:
         """`give_up` ends the task where it cannot be searched for."""
-        self._bus, self._ecology, self._request, self._liveness = ecology.bus, ecology, request, liveness
-        self._state, self._step, self._report, self._give_up = state, step, report, give_up
-        self._contingencies = Contingencies(ecology.bus, request, self._advertised, lambda: self._runs)
+        self._bus, self._ecology, self._request, self._liveness = task.ecology.bus, task.ecology, request, liveness
+        self._state, self._step, self._report, self._give_up = task.state, task.step, task.report, give_up
+        self._contingencies = Contingencies(task.ecology.bus, request, self._advertised, lambda: self._runs)
         self._better: _Better | None = None
         """What was answered last when the task ran and looked for something better."""
         self._left_out: set[IRI] = set()

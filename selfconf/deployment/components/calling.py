@@ -12,10 +12,10 @@ from collections.abc import Callable
 from typing import TypedDict
 
 from selfconf.bus.port import Replies
-from selfconf.configurator import Answered, Appeared, Call, Event, State
+from selfconf.configurator import Answered, Appeared, Call
 from selfconf.deployment.components.held_lives import HeldLives
-from selfconf.deployment.run_request import EventListener, TaskIdentity
-from selfconf.discovery import EcologyView
+from selfconf.deployment.run_request import TaskIdentity
+from selfconf.deployment.task_context import TaskContext
 from selfconf.errors import PeerError
 from selfconf.model.holder import Holder
 from selfconf.model.run_event import (
@@ -64,18 +64,16 @@ class Calling:
 
     def __init__(
         self,
-        ecology: EcologyView,
+        task: TaskContext,
         identity: TaskIdentity,
         supervisor: str,
         lives: HeldLives,
-        state: Callable[[], State],
-        step: Callable[[Event], None],
-        report: EventListener,
         acts: Callable[[IRI, CallAnswer], None],
     ) -> None:
         """`acts` is called when a component has answered that it acts as it was applied to."""
-        self.bus, self.ecology, self.keys, self.identity = ecology.bus, ecology, ecology.keys, identity
-        self.supervisor, self.state, self.step, self._report = supervisor, state, step, report
+        self.bus, self.ecology, self.keys = task.ecology.bus, task.ecology, task.ecology.keys
+        self.identity, self.supervisor = identity, supervisor
+        self.state, self.step, self._report = task.state, task.step, task.report
         self.lives, self._acts = lives, acts
 
     def ask(

@@ -18,13 +18,11 @@ from selfconf.configurator import (
     AwaitRelease,
     Call,
     Decline,
-    Event,
     Failed,
     QueueFor,
     ReleaseFrom,
     ReserveOf,
     Rewired,
-    State,
     WaitedLong,
     callers,
     parameter_values,
@@ -34,8 +32,8 @@ from selfconf.deployment.components.calling import CALL, Calling
 from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.deployment.components.waking import Waking
-from selfconf.deployment.run_request import EventListener, Standby, TaskIdentity
-from selfconf.discovery import EcologyView
+from selfconf.deployment.run_request import Standby, TaskIdentity
+from selfconf.deployment.task_context import TaskContext
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.run_event import (
     ActivationSent,
@@ -77,20 +75,18 @@ class Calls:
 
     def __init__(
         self,
-        ecology: EcologyView,
+        task: TaskContext,
         identity: TaskIdentity,
         supervisor: str,
         lives: HeldLives,
         waking: Waking,
         ends: PortEnds,
-        state: Callable[[], State],
-        step: Callable[[Event], None],
-        report: EventListener,
     ) -> None:
-        self.bus, self.ecology, self.keys = ecology.bus, ecology, ecology.keys
-        self.supervisor, self._state, self._step, self._report = supervisor, state, step, report
+        self.bus, self.ecology, self.keys = task.ecology.bus, task.ecology, task.ecology.keys
+        self.supervisor = supervisor
+        self._state, self._step, self._report = task.state, task.step, task.report
         self._lives, self._waking, self._ends = lives, waking, ends
-        self._calling = Calling(ecology, identity, supervisor, lives, state, step, report, self._acts)
+        self._calling = Calling(task, identity, supervisor, lives, self._acts)
         self.look = self._calling.look
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""

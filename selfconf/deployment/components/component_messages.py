@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
 
 from selfconf.bus.port import Sample, Urgency
-from selfconf.configurator import Event, Failed, Freed, Rewired, State, WaitedLong
+from selfconf.configurator import Failed, Freed, Rewired, WaitedLong
 from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.components.port_ends import PortEnds
-from selfconf.discovery import EcologyView
+from selfconf.deployment.task_context import TaskContext
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
@@ -24,17 +23,16 @@ class ComponentMessages:
 
     def __init__(
         self,
-        ecology: EcologyView,
-        task: str,
+        task: TaskContext,
+        identity: str,
         lives: HeldLives,
         ends: PortEnds,
-        state: Callable[[], State],
-        step: Callable[[Event], None],
     ) -> None:
-        self._keys, self._task = ecology.keys, task
-        self._lives, self._ends, self._state, self._step = lives, ends, state, step
+        """`identity` is that of the task."""
+        self._keys, self._task = task.ecology.keys, identity
+        self._lives, self._ends, self._state, self._step = lives, ends, task.state, task.step
         self._watched: set[IRI] = set()
-        bus = ecology.bus
+        bus = task.ecology.bus
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
         self._subscriptions = [
             bus.subscribe(self._keys.any_fail(), self._received_fail, Urgency.EVENT),

@@ -13,11 +13,11 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from selfconf.bus.port import Undo
-from selfconf.configurator import Appeared, Event, Failed, Phase, Reconnected, State
+from selfconf.configurator import Appeared, Failed, Phase, Reconnected
 from selfconf.deployment.components.calls import Calls
 from selfconf.deployment.components.waking import Waking
-from selfconf.deployment.run_request import EventListener
-from selfconf.discovery import Discovery, EcologyView
+from selfconf.deployment.task_context import TaskContext
+from selfconf.discovery import Discovery
 from selfconf.model.run_event import EcologyReachable, EcologyUnreachable
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
@@ -56,15 +56,12 @@ class Liveness:
 
     def __init__(
         self,
-        ecology: EcologyView,
-        state: Callable[[], State],
-        step: Callable[[Event], None],
-        report: EventListener,
+        task: TaskContext,
         calls: Calls,
         waking: Waking,
     ) -> None:
-        self.bus, self.ecology = ecology.bus, ecology
-        self._state, self._step, self._report, self._calls, self._waking = state, step, report, calls, waking
+        self.bus, self.ecology, self._calls, self._waking = task.ecology.bus, task.ecology, calls, waking
+        self._state, self._step, self._report = task.state, task.step, task.report
         self._sites: set[str] = set()
         """The liveliness keys of the sites that answered last, or are news: one that was started again has another."""
         self._shown_sites: set[str] = set()

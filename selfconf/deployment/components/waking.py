@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 from selfconf.bus.port import Replies, Undo
-from selfconf.configurator import Answered, Call, Event, WakeUp
+from selfconf.configurator import Answered, Call, WakeUp
 from selfconf.deployment.components.held_lives import HeldLives
-from selfconf.deployment.run_request import EventListener
-from selfconf.discovery import EcologyView, FoundAdvertisement
+from selfconf.deployment.task_context import TaskContext
+from selfconf.discovery import FoundAdvertisement
 from selfconf.model.run_event import ComponentUnreachable, ComponentWoken
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
@@ -40,13 +39,11 @@ class Waking:
 
     def __init__(
         self,
-        ecology: EcologyView,
+        task: TaskContext,
         lives: HeldLives,
-        step: Callable[[Event], None],
-        report: EventListener,
     ) -> None:
-        self._bus, self._ecology, self._lives = ecology.bus, ecology, lives
-        self._step, self._report = step, report
+        self._bus, self._ecology, self._lives = task.ecology.bus, task.ecology, lives
+        self._step, self._report = task.step, task.report
         self._waiting: dict[IRI, _Start] = {}
         """Those that are being started."""
 

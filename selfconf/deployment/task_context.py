@@ -1,0 +1,23 @@
+"""What every part of the configurator of a running task is given: the ecology, the machine, the listener."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from selfconf.configurator import Event, State
+from selfconf.deployment.run_request import EventListener
+from selfconf.discovery import EcologyView
+from selfconf.model.immutable import immutable
+
+
+@immutable
+class TaskContext:
+    """One running task, as the parts of its configurator see it."""
+
+    ecology: EcologyView
+    state: Callable[[], State]
+    """Returns the state of the machine as it is now."""
+    step: Callable[[Event], None]
+    """Feeds the machine with an event, and carries out what it wants done."""
+    report: EventListener
+    """Hears what happens, when there is nothing more urgent to do."""

@@ -1,0 +1,14 @@
+"""What the parts of a running task's configurator are given."""
+
+from __future__ import annotations
+
+from selfconf.configurator import Phase
+from tests.lab import Lab
+
+
+def test_every_part_sees_the_state_as_it_is_now_and_not_as_it_was_when_the_task_began(lab: Lab) -> None:
+    agent = lab.agent()
+    assert agent._liveness._state().phase is not Phase.RUNNING
+    assert lab.running(agent)
+    for part in (agent._liveness, agent._calls, agent._search, agent._retries, agent._discovery):
+        assert part._state() is agent.state
