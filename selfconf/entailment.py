@@ -14,12 +14,12 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
 from selfconf.errors import AuthorError
+from selfconf.model.seconds import LIMIT_IN_WORDS, is_limit
 from selfconf.model.setting_names import setting
 from selfconf.model.term import BlankNode, Term
 from selfconf.rdf import reasoning, turtle
@@ -75,14 +75,14 @@ def _relabelled(triples: Iterable[Triple]) -> Iterator[Triple]:
 
 
 def _limit() -> float:
-    """The seconds that a closure may take. Raises AuthorError for a setting that is no number above zero."""
+    """The seconds that a closure may take. Raises AuthorError for a setting that is no limit."""
     given = os.environ.get("SELFCONF_OWL_RL_SECONDS", str(LIMIT))
     try:
         seconds = float(given)
     except ValueError:
         seconds = 0.0
-    if not 0 < seconds < threading.TIMEOUT_MAX:
-        raise AuthorError(f"SELFCONF_OWL_RL_SECONDS is a number of seconds above zero, not {given!r}")
+    if not is_limit(seconds):
+        raise AuthorError(f"SELFCONF_OWL_RL_SECONDS is {LIMIT_IN_WORDS}, not {given!r}")
     return seconds
 
 

@@ -9,7 +9,6 @@ A file may name advertisements, and so commands that `selfconf run` starts. In a
 
 from __future__ import annotations
 
-import math
 import os
 import re
 import sys
@@ -22,6 +21,7 @@ from urllib.parse import urlsplit
 from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.immutable import immutable
+from selfconf.model.seconds import LIMIT_IN_WORDS, is_limit
 from selfconf.protocol.endpoints import is_zenoh_endpoint
 from selfconf.protocol.keys import checked_name
 
@@ -92,8 +92,7 @@ def _is_whole(value: object) -> str:
 
 
 def _is_seconds(value: object) -> str:
-    number = value if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
-    return "" if 0 < number <= 1e6 else "takes a number of seconds above zero"
+    return "" if is_limit(value) else f"takes {LIMIT_IN_WORDS}"
 
 
 def _is_one_of(choices: tuple[str, ...]) -> Callable[[object], str]:

@@ -73,5 +73,7 @@ def test_a_closure_that_cannot_be_kept_leaves_no_half_of_it_behind(
 @pytest.mark.parametrize("given", ["abc", "0", "-1", "nan", "inf", ""])
 def test_a_limit_that_is_no_time_is_a_sentence(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", given)
-    with pytest.raises(AuthorError, match=f"SECONDS is a number of seconds above zero, not '{given}'"):
+    with pytest.raises(
+        AuthorError, match=f"SECONDS is a number of seconds above zero and at most 1,000,000, not '{given}'"
+    ):
         closed()

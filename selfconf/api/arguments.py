@@ -8,9 +8,10 @@ from enum import Enum
 from math import isfinite
 from numbers import Integral, Real
 from pathlib import Path
-from typing import TypeAlias, TypeGuard, TypeVar
+from typing import TypeAlias, TypeVar
 
 from selfconf.errors import AuthorError, ProgrammerError
+from selfconf.model.seconds import DELAY_IN_WORDS, LONGEST_SECONDS, is_delay, is_limit
 from selfconf.model.template import MOST_PRIORITY
 
 Paths: TypeAlias = str | Path | Iterable[str | Path]
@@ -83,10 +84,6 @@ def checked_priority(priority: int) -> int:
     return int(priority)
 
 
-LONGEST_SECONDS = 1e6
-"""Seconds that an alarm can be set to everywhere."""
-
-
 def steps_limit(steps: int | None) -> int | None:
     """The steps that a search may take, or None. Raises ProgrammerError for what is no number of steps."""
     if steps is None:
@@ -94,11 +91,6 @@ def steps_limit(steps: int | None) -> int | None:
     if isinstance(steps, bool) or not isinstance(steps, Integral) or steps < 1:
         raise ProgrammerError(f"steps are a whole number above zero, or None for no limit, not {steps!r}")
     return int(steps)
-
-
-def _is_limit(seconds: float | None) -> TypeGuard[float]:
-    """Whether it is a number of seconds that something may take."""
-    return not isinstance(seconds, bool) and isinstance(seconds, Real) and 0 < seconds <= LONGEST_SECONDS
 
 
 def rows_limit(rows: int) -> int:
@@ -110,7 +102,7 @@ def rows_limit(rows: int) -> int:
 
 def answer_seconds(seconds: float) -> float:
     """The seconds that an answer may take. Raises ProgrammerError for what is no time, and for None."""
-    if not _is_limit(seconds):
+    if not is_limit(seconds):
         raise ProgrammerError(f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, not {seconds!r}")
     return float(seconds)
 
@@ -126,7 +118,7 @@ def seconds_limit(seconds: float | None) -> float | None:
     """The seconds that a search may take, or None. Raises ProgrammerError for what is no time."""
     if seconds is None:
         return None
-    if not _is_limit(seconds):
+    if not is_limit(seconds):
         raise ProgrammerError(
             f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, or None for no limit, not {seconds!r}"
         )
@@ -137,17 +129,14 @@ def checked_upgrade(seconds: float | None) -> float | None:
     """After how many seconds a better component is changed to, or None. Raises ProgrammerError for what is no time."""
     if seconds is None:
         return None
-    if isinstance(seconds, bool) or not isinstance(seconds, Real) or not 0 <= seconds <= LONGEST_SECONDS:
-        raise ProgrammerError(
-            f"an upgrade comes after a number of seconds from 0 to {LONGEST_SECONDS:,.0f}, or never by None, "
-            f"not after {seconds!r}"
-        )
+    if not is_delay(seconds):
+        raise ProgrammerError(f"an upgrade comes after {DELAY_IN_WORDS}, or never by None, not after {seconds!r}")
     return float(seconds)
 
 
 def passing_seconds(seconds: float) -> float:
     """The simulated seconds that are to pass. Raises ProgrammerError for what is no time."""
-    if isinstance(seconds, bool) or not isinstance(seconds, Real) or not 0 <= seconds <= LONGEST_SECONDS:
+    if not is_delay(seconds):
         raise ProgrammerError(f"simulated seconds are a number from 0 to {LONGEST_SECONDS:,.0f}, not {seconds!r}")
     return float(seconds)
 

@@ -19,6 +19,7 @@ from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome, Refusal
+from selfconf.model.seconds import DELAY_IN_WORDS, is_delay
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, safe_name, task_identity
 from selfconf.protocol.messages import TaskRecord
@@ -81,8 +82,8 @@ def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Compos
 def _upgrade(options: Mapping[str, Any]) -> float | None:
     """The seconds before a change for the better, if there is to be one. Raises PeerError for what is no time."""
     value = options.get("upgrade")
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int | float) or not value >= 0):
-        raise PeerError(f"the option 'upgrade' is no number of seconds: {value!r}")
+    if value is not None and not is_delay(value):
+        raise PeerError(f"the option 'upgrade' is {DELAY_IN_WORDS}, not {value!r}")
     return value
 
 

@@ -9,10 +9,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.api.arguments import LONGEST_SECONDS
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, BindingError
 from selfconf.files import STDIN
+from selfconf.model.seconds import DELAY_IN_WORDS, LIMIT_IN_WORDS, is_delay, is_limit
 from selfconf.project import REASONING, STRATEGIES
 
 if TYPE_CHECKING:
@@ -135,20 +135,41 @@ def add_keys_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def _steps(text: str) -> int:
+    return _counted(text, "steps")
+
+
+def rows_option(text: str) -> int:
+    """A number of rows above zero, as an option takes it."""
+    return _counted(text, "rows")
+
+
+def _counted(text: str, what: str) -> int:
     if not text.isdecimal() or not int(text):
-        raise argparse.ArgumentTypeError(f"{text!r} is no number of steps; it takes a whole number above zero")
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of {what}; it takes a whole number above zero")
     return int(text)
 
 
 def seconds_option(text: str) -> float:
-    """A number of seconds above zero, as an option takes it."""
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = math.nan
-    if not 0 < seconds <= LONGEST_SECONDS:
-        raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes a number of seconds above zero")
+    """A number of seconds that something may take, as an option takes it."""
+    seconds = _number(text)
+    if not is_limit(seconds):
+        raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes {LIMIT_IN_WORDS}")
     return seconds
+
+
+def delay_option(text: str) -> float:
+    """A number of seconds after which something is done, as an option takes it: zero is at once."""
+    seconds = _number(text)
+    if not is_delay(seconds):
+        raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes {DELAY_IN_WORDS}")
+    return seconds
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def task_of(given: argparse.Namespace) -> TaskSpecification:

@@ -16,6 +16,8 @@ from selfconf.cli.options import (
     complain_of,
     given_ecology,
     one_stdin,
+    rows_option,
+    seconds_option,
 )
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
@@ -50,12 +52,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seconds",
         dest="answer_seconds",  # the key `seconds` of a project file limits searches
         metavar="S",
-        type=float,
+        type=seconds_option,
         default=SECONDS,
         help="how long the answer may take (default: %(default)g)",
     )
     parser.add_argument(
-        "--rows", metavar="N", type=int, default=ROWS, help="how many rows are shown at most (default: %(default)s)"
+        "--rows",
+        metavar="N",
+        type=rows_option,
+        default=ROWS,
+        help="how many rows are shown at most (default: %(default)s)",
     )
     add_ecology_arguments(parser)
 
@@ -68,8 +74,6 @@ def run(given: argparse.Namespace) -> int:
 
     one_stdin(Path(given.sparql), *(given.ads or ()), *given.ontology)
     text = _text(given.sparql)
-    if given.rows < 1 or given.answer_seconds <= 0:
-        raise AuthorError("--rows and --seconds take numbers greater than 0")
     if given.endpoint is not None and given.ontology:
         raise AuthorError("an endpoint holds what it holds; --ontology is for files and the living ecology")
     question = Question(text, given.format, given.rows, seconds=given.answer_seconds)

@@ -22,10 +22,10 @@ from selfconf.cli.options import (
     add_task_arguments,
     complain_of_left_out,
     complain_of_strategy,
+    delay_option,
     joined,
     method_of,
     one_ecology,
-    seconds_option,
     task_of,
 )
 from selfconf.cli.run_lines import TextLines
@@ -79,7 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--settle",
         metavar="SECONDS",
-        type=seconds_option,
+        type=delay_option,
         help=f"with --upgrade, for how long they have to be there first (default: {SETTLE})",
     )
     parser.add_argument(

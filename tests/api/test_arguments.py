@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from selfconf.api.arguments import (
-    LONGEST_SECONDS,
     answer_seconds,
     checked_flag,
     checked_moment,
@@ -27,6 +26,7 @@ from selfconf.api.arguments import (
     steps_limit,
 )
 from selfconf.errors import AuthorError, ProgrammerError
+from selfconf.model.seconds import LONGEST_SECONDS
 
 
 class Colour(Enum):

@@ -153,6 +153,8 @@ def test_a_priority_that_no_component_would_take_and_an_upgrade_that_never_comes
         {"seconds": "soon"},
         {"seconds": -1},
         {"upgrade": {}},
+        {"upgrade": float("inf")},
+        {"upgrade": 2e6},
     ],
     ids=str,
 )

@@ -136,9 +136,20 @@ def test_a_byte_order_mark_before_a_query_is_no_part_of_it(tmp_path: Path, capsy
     assert run(capsys, "query", "-", "--ads", "-").is_one_sentence("- is standard input")
 
 
-@pytest.mark.parametrize("option", [["--rows", "0"], ["--seconds", "0"]])
-def test_a_limit_of_nothing_is_misuse(option: list[str], tmp_path: Path) -> None:
-    assert main(["query", "ASK {}", "--ads", str(tmp_path), *option]) == 2
+@pytest.mark.parametrize("rows", ["0", "-1", "1.5", "many"])
+def test_rows_that_are_no_whole_number_above_zero_are_one_sentence(
+    rows: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    outcome = run(capsys, "query", "ASK {}", "--ads", str(tmp_path), f"--rows={rows}")
+    assert outcome.is_one_sentence("--rows", repr(rows), "is no number of rows; it takes a whole number above zero")
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "inf", "nan", "2e6", "soon"])
+def test_a_limit_that_is_no_time_is_one_sentence(
+    seconds: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    outcome = run(capsys, "query", "ASK {}", "--ads", str(tmp_path), f"--seconds={seconds}")
+    assert outcome.is_one_sentence("--seconds", repr(seconds), "above zero and at most 1,000,000")
 
 
 def test_what_was_cut_is_said_on_stderr(capsys: pytest.CaptureFixture[str]) -> None:

@@ -78,12 +78,18 @@ def test_a_run_that_upgrades_changes_to_what_is_rather_had_and_back_when_that_is
     assert run.end(signal.SIGINT) == 0
 
 
+@pytest.mark.parametrize("seconds", ["-1", "inf", "2e6", "soon"])
+def test_a_time_for_upgrades_is_zero_or_more(seconds: str, capsys: pytest.CaptureFixture[str]) -> None:
+    outcome = command.run(capsys, "run", "navigate.ttl", "--upgrade", f"--settle={seconds}")
+    assert outcome.is_one_sentence("--settle", repr(seconds), "from 0 to 1,000,000")
+
+
 @pytest.mark.parametrize("detach", [(), ("--detach",)])
 def test_a_time_for_upgrades_takes_upgrades(
     home: Home, detach: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
     bound = ("--bind", "robot=:Astrid", "--bind", "goal=x")
-    outcome = command.run(capsys, "run", str(home.folder / "navigate.ttl"), *bound, "--settle", "2", *detach)
+    outcome = command.run(capsys, "run", str(home.folder / "navigate.ttl"), *bound, "--settle", "0", *detach)
     assert outcome.is_one_sentence("--settle says when", "--upgrade")
 
 
