@@ -244,6 +244,10 @@ class Ports(NamedTuple):
 
 NO_PORTS = Ports()
 NO_PREFERENCE = Decimal(0)
+CALLBACK_DEADLINE = 2.0
+"""Seconds that a callback of a component may take, unless its advertisement says otherwise."""
+START_DEADLINE = 8.0
+"""Seconds that `started` may take, unless the advertisement says otherwise."""
 
 
 @lru_cache(maxsize=10_000)
@@ -282,6 +286,16 @@ class Profile:
     inside: IRI | None = None
     """The template of the task that it is inside, if it is a composite."""
     place: Place | None = field(default=None, compare=False)
+
+    @property
+    def callback_deadline(self) -> float:
+        """How many seconds a callback of it may take, but for `started`."""
+        return CALLBACK_DEADLINE if self.deadline is None else self.deadline
+
+    @property
+    def start_deadline(self) -> float:
+        """How many seconds `started` may take."""
+        return START_DEADLINE if self.deadline is None else self.deadline
 
     @property
     def inputs(self) -> tuple[Input, ...]:

@@ -23,10 +23,6 @@ from selfconf.sdk.values import as_python
 
 log = logging.getLogger(__name__)
 
-DEADLINE = 2.0
-"""Seconds that a method of a component may take, unless its advertisement says otherwise."""
-STARTING_DEADLINE = 8.0
-"""Seconds that `started` may take, unless its advertisement says otherwise."""
 INCOMPLETE = ""
 """Stands among the inputs that are unfed for the configuration itself, while that has long lacked a part."""
 Done = Callable[["str | None"], None]
@@ -53,8 +49,8 @@ class ComponentCode:
         self._bus, self._thread, self._component, self._fail = bus, thread, component, fail
         self._parameters = {parameter.name for parameter in profile.parameters}
         self._name = profile.component.short
-        self._deadline = DEADLINE if profile.deadline is None else profile.deadline
-        self._start_deadline = STARTING_DEADLINE if profile.deadline is None else profile.deadline
+        self._deadline = profile.callback_deadline
+        self._start_deadline = profile.start_deadline
         self.stopping = False
         """Whether the code was asked to stop, and is not at rest yet."""
         self.turn = 0

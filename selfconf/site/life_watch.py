@@ -20,8 +20,6 @@ FROZEN = 3.0
 """Seconds that a process may be frozen while its component has no life."""
 WITHOUT_LIFE = 15.0
 """Seconds that a process may take until its component has a life, as long as a configurator waits for it."""
-LONGEST_CALLBACK = 8.0
-"""Seconds that a callback may take at most, that of the start, where the advertisement states no deadline."""
 BEYOND_DEADLINE = 2.0
 """Seconds beyond the deadline after which a component that does not answer counts as hung."""
 QUESTION_ACTIVE, QUESTION_IDLE = 1.0, 5.0
@@ -85,7 +83,7 @@ class LifeWatch:
         if self._unanswered_since is None:
             return None
         unanswered = self._bus.now() - self._unanswered_since
-        if unanswered <= (self._profile.deadline or LONGEST_CALLBACK) + BEYOND_DEADLINE:
+        if unanswered <= self._profile.start_deadline + BEYOND_DEADLINE:
             return None
         return f"has not answered for {unanswered:.0f} s: it hangs"
 

@@ -17,7 +17,6 @@ from selfconf.model.term import IRI, Literal
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Apply, CallAnswer, Cause, Release, Reserve, Stamp, Verdict, Wire
-from selfconf.sdk import component_code
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component, Refused, Signal
 from selfconf.sdk.runtime import YIELDING, ComponentRuntime
@@ -321,7 +320,7 @@ def test_a_failure_that_another_thread_raises_while_a_parameter_is_set_is_heard_
 def test_starting_may_take_longer_where_no_deadline_is_stated(
     living: LivingStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(component_code, "STARTING_DEADLINE", 0.7)
+    monkeypatch.setattr("selfconf.model.profile.START_DEADLINE", 0.7)
     lamp = hanging(living, "started", LAMP.replace("sc:deadline [ sc:value 0.3 ; sc:unit unit:SEC ] ;", ""))
     assert until(lambda: living.fails)
     moment, fail = living.fails[0]

@@ -7,13 +7,12 @@ import pytest
 from selfconf.bus.memory import Network
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Request
-from selfconf.model.profile import Profile
+from selfconf.model.profile import START_DEADLINE, Profile
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import CallAnswer, Verdict
 from selfconf.site.life_watch import (
     BEYOND_DEADLINE,
     FROZEN,
-    LONGEST_CALLBACK,
     QUESTION_ACTIVE,
     QUESTION_IDLE,
     WITHOUT_LIFE,
@@ -89,7 +88,7 @@ def test_a_component_that_does_not_answer_for_longer_than_a_callback_may_take_ha
     watch, actor = watched(network, deadline), Actor(network)
     passes(network, 10.0)
     actor.answers = False
-    longest = (deadline or LONGEST_CALLBACK) + BEYOND_DEADLINE
+    longest = (deadline or START_DEADLINE) + BEYOND_DEADLINE
     passes(network, longest - 0.5)
     assert watch.hanging() is None
     passes(network, 0.5 + 2 * QUESTION_ACTIVE)
@@ -100,7 +99,7 @@ def test_a_component_that_answers_again_in_time_does_not_hang(network: Network) 
     watch, actor = watched(network), Actor(network)
     for _ in range(5):
         actor.answers = False
-        passes(network, LONGEST_CALLBACK - 2.0)
+        passes(network, START_DEADLINE - 2.0)
         actor.answers = True
         passes(network, 3.0)
     assert watch.hanging() is None
@@ -109,7 +108,7 @@ def test_a_component_that_answers_again_in_time_does_not_hang(network: Network) 
 def test_what_another_life_answers_does_not_count(network: Network) -> None:
     watch, actor, _ = watched(network), Actor(network), Actor(network, "other")
     actor.answers = False
-    passes(network, LONGEST_CALLBACK + BEYOND_DEADLINE + 3.0)
+    passes(network, START_DEADLINE + BEYOND_DEADLINE + 3.0)
     assert "it hangs" in (watch.hanging() or "")
 
 
@@ -121,7 +120,7 @@ def test_a_program_that_names_its_life_itself_is_watched_as_well(network: Networ
     assert not watch.is_life("another")
     assert watch.hanging() is None
     actor.answers = False
-    passes(network, LONGEST_CALLBACK + BEYOND_DEADLINE + 3.0)
+    passes(network, START_DEADLINE + BEYOND_DEADLINE + 3.0)
     assert watch.hanging() is not None
 
 

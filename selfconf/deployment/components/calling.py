@@ -18,6 +18,7 @@ from selfconf.deployment.run_request import TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.errors import PeerError
 from selfconf.model.holder import Holder
+from selfconf.model.profile import START_DEADLINE
 from selfconf.model.run_event import (
     CallDeclined,
     ComponentActivated,
@@ -34,7 +35,7 @@ log = logging.getLogger(__name__)
 
 CALL = 2.0
 """Seconds that a component may take to answer a call before it is asked for its state."""
-STARTING = 8.0
+STARTING = START_DEADLINE
 """Seconds that a component that lives, but does not answer, may take to obey a call: it may be in `started`."""
 MOST_PATIENCE = 60.0
 """Seconds that a composite may ask for at most, until its inside runs."""
