@@ -10,6 +10,7 @@ import errno
 import os
 import stat
 import sys
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
@@ -28,7 +29,6 @@ MOST_READ = 1 << 30
 """The most bytes that are read of a file, or of standard input: 1 GiB. More of it cannot be meant."""
 _CHUNK = 1 << 20
 _NO_FILES = ((stat.S_ISFIFO, "a named pipe"), (stat.S_ISSOCK, "a socket"), (stat.S_ISCHR, "a device"))
-BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 TURTLE = (".ttl",)
 """The ending of the files that stand for a folder."""
 ONTOLOGY = (".ttl", ".rdf", ".owl", ".nt", ".nq", ".trig", ".jsonld")
@@ -248,7 +248,7 @@ def text(found: bytes, name: str) -> bytes:
         from selfconf.rdf.turtle import check_utf_8  # loads a parser
 
         check_utf_8(found, name)
-    return found.removeprefix(BYTE_ORDER_MARK)
+    return found.removeprefix(BOM_UTF8)
 
 
 def base(path: Path) -> str:

@@ -6,6 +6,7 @@ import io
 import os
 import socket
 import sys
+from codecs import BOM_UTF8
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -117,7 +118,7 @@ def test_a_file_means_one_thing_with_and_without_a_mark_and_by_any_path(
 ) -> None:
     (tmp_path / "deep").mkdir()
     path = tmp_path / "deep" / "lamp.ttl"
-    path.write_bytes(files.BYTE_ORDER_MARK + b"<lamp> a <https://w3id.org/selfconf#Component> , <urn:Lamp> .")
+    path.write_bytes(BOM_UTF8 + b"<lamp> a <https://w3id.org/selfconf#Component> , <urn:Lamp> .")
     (tmp_path / "link.ttl").symlink_to(path)
     monkeypatch.chdir(tmp_path)
     found = {files.advertisements(each)[0][0].component for each in (path, Path("deep/lamp.ttl"), Path("link.ttl"))}

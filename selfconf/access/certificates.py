@@ -16,6 +16,7 @@ from typing import Any
 from selfconf.access.principal import Principal
 from selfconf.errors import AuthorError, InstallationError, PeerError
 from selfconf.model.immutable import immutable
+from selfconf.model.wording import utc_text
 
 try:
     from cryptography import x509
@@ -174,9 +175,9 @@ class Certificate:
         if not any(self._signed_by(authority) for authority in authorities):
             return "was issued by another authority"
         if now < self.begins:
-            return f"is not valid before {_at(self.begins)}; is the clock of this host right?"
+            return f"is not valid before {utc_text(self.begins)}; is the clock of this host right?"
         if now > self.ends:
-            return f"has expired at {_at(self.ends)}; renew it with `selfconf keys renew`"
+            return f"has expired at {utc_text(self.ends)}; renew it with `selfconf keys renew`"
         try:
             _ = self.principals
         except PeerError as error:
@@ -295,7 +296,3 @@ def _host(host: str) -> x509.GeneralName:
 
 def _now() -> datetime:
     return datetime.now(timezone.utc)
-
-
-def _at(moment: datetime) -> str:
-    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"

@@ -18,6 +18,7 @@ from selfconf.access.principal import Principal
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
 from selfconf.errors import PeerError, SelfconfError
+from selfconf.model.wording import utc_text
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
@@ -88,21 +89,17 @@ class CertificateWatch:
             "its site renews it, while it has a certificate" if its_site else f"renew it: selfconf keys renew {folder}"
         )
         if ends < now:
-            return f"{self._whose} has expired at {_at(ends)}: it is not trusted any more; {renew}"
+            return f"{self._whose} has expired at {utc_text(ends)}: it is not trusted any more; {renew}"
         if ends - now < (ends - self._certificate.issued) / LAST_PART:
-            return f"{self._whose} expires at {_at(ends)}; {renew}"
+            return f"{self._whose} expires at {utc_text(ends)}; {renew}"
         return ""
 
     def _tell(self, sentence: str) -> None:
         """Say it once; when it is over, say that."""
         if sentence != self._said:
             self._said = sentence
-            self._complain(sentence or f"{self._whose} is good until {_at(self._certificate.ends)}")
+            self._complain(sentence or f"{self._whose} is good until {utc_text(self._certificate.ends)}")
 
     @property
     def _whose(self) -> str:
         return f"the certificate of {self._credentials.name}"
-
-
-def _at(moment: datetime) -> str:
-    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"

@@ -11,7 +11,7 @@ from selfconf.cli.options import add_ecology_arguments, joined
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
-from selfconf.model.wording import client_text
+from selfconf.model.wording import client_text, utc_text
 
 if TYPE_CHECKING:
     from selfconf.api.living import LivingEcology
@@ -121,4 +121,4 @@ def _tell(site: SiteAccess) -> None:
         at = datetime.fromtimestamp(refused.latest, timezone.utc)
         where = f" on {refused.key}" if refused.key else ""
         what = f"{client_text(refused.principal)}: {refused.attempt}{where}"
-        print(f"    {what}, {refused.number} times, latest {at:%Y-%m-%d %H:%M:%S} UTC")
+        print(f"    {what}, {refused.number} times, latest {utc_text(at)}")

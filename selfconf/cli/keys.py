@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_keys_argument
 from selfconf.errors import AuthorError
+from selfconf.model.wording import utc_text
 
 if TYPE_CHECKING:
     from selfconf.access import Certificate, KeysFolder
@@ -95,13 +95,14 @@ def _issue(given: argparse.Namespace) -> int:
     from selfconf.access import Principal
 
     certificate = _authority(given).issue(Principal.written(given.holder), given.out, given.host, given.days)
-    print(f"{given.out} speaks for {certificate.common_name}, until {_at(certificate.ends)}; give it to its holder")
+    until = utc_text(certificate.ends)
+    print(f"{given.out} speaks for {certificate.common_name}, until {until}; give it to its holder")
     return 0
 
 
 def _renew(given: argparse.Namespace) -> int:
     certificate = _authority(given).renew(given.folder, given.days)
-    print(f"{given.folder} speaks for {certificate.common_name}, until {_at(certificate.ends)}")
+    print(f"{given.folder} speaks for {certificate.common_name}, until {utc_text(certificate.ends)}")
     return 0
 
 
@@ -139,8 +140,8 @@ def _described(certificate: Certificate, folder: KeysFolder) -> dict[str, Any]:
     return {
         "name": certificate.common_name,
         "serial": f"{certificate.serial:x}",
-        "begins": _at(certificate.begins),
-        "ends": _at(certificate.ends),
+        "begins": utc_text(certificate.begins),
+        "ends": utc_text(certificate.ends),
         "hosts": list(certificate.hosts),
         "fault": "was revoked" if revoked else certificate.fault(folder.believed_authorities()),
     }
@@ -154,7 +155,3 @@ def _authority(given: argparse.Namespace) -> KeysFolder:
     if folder is None:
         raise AuthorError("which authority? give its folder: --keys DIR; `selfconf keys init DIR` makes one")
     return KeysFolder(folder)
-
-
-def _at(moment: datetime) -> str:
-    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"

@@ -7,24 +7,18 @@ made of a source is named after its path below the folder that was given, so tha
 from __future__ import annotations
 
 import re
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator, Sequence
 from http.client import HTTPException, HTTPResponse
 from pathlib import Path
 from time import monotonic
 from urllib.error import HTTPError
 from urllib.parse import urlsplit
-from urllib.request import (
-    HTTPDefaultErrorHandler,
-    HTTPErrorProcessor,
-    HTTPHandler,
-    HTTPSHandler,
-    OpenerDirector,
-    ProxyHandler,
-    Request,
-)
+from urllib.request import Request
 
 from selfconf import files
 from selfconf.errors import AuthorError
+from selfconf.http_opener import http_opener
 from selfconf.importing.turtle_text import MARK
 from selfconf.model.immutable import immutable
 from selfconf.rdf.turtle import check_utf_8
@@ -50,7 +44,7 @@ class SourceDocument:
     def text(self) -> str:
         """Its text, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
         check_utf_8(self.octets, self.shown)
-        return self.octets.removeprefix(files.BYTE_ORDER_MARK).decode()
+        return self.octets.removeprefix(BOM_UTF8).decode()
 
 
 def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadable) -> Iterator[SourceDocument]:
@@ -92,12 +86,9 @@ def _too_large(shown: str) -> AuthorError:
 
 def _fetched(url: str) -> SourceDocument:
     """What a URL answers. Raises AuthorError."""
-    opener = OpenerDirector()
-    for each in (ProxyHandler, HTTPHandler, HTTPSHandler, HTTPDefaultErrorHandler, HTTPErrorProcessor):
-        opener.add_handler(each())
     deadline = monotonic() + FETCH_SECONDS
     try:
-        with opener.open(Request(url, headers={"Accept": ACCEPTED}), timeout=FETCH_SECONDS) as reply:
+        with http_opener().open(Request(url, headers={"Accept": ACCEPTED}), timeout=FETCH_SECONDS) as reply:
             octets = _body(url, reply, deadline)
     except HTTPError as error:
         error.close()

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from selfconf.model.term import IRI, Literal, Term
+
+if TYPE_CHECKING:
+    from datetime import datetime
 
 MANY = 12
 """How many names are listed; the rest become a number."""
@@ -31,6 +35,11 @@ def one_line(text: str, most: int = LONGEST_REMARK) -> str:
 def sayable(said: object) -> str:
     """What a program says as a text that can travel: cut to a length, and with what is no character replaced."""
     return str(said)[:LONGEST_REMARK].encode(errors="replace").decode()
+
+
+def utc_text(moment: datetime) -> str:
+    """A moment in UTC, to the second."""
+    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"
 
 
 def client_text(principal: str) -> str:

@@ -11,19 +11,12 @@ from contextlib import contextmanager
 from http.client import HTTPException, HTTPResponse, InvalidURL
 from urllib.error import HTTPError
 from urllib.parse import urlsplit
-from urllib.request import (
-    HTTPDefaultErrorHandler,
-    HTTPErrorProcessor,
-    HTTPHandler,
-    HTTPSHandler,
-    OpenerDirector,
-    ProxyHandler,
-    Request,
-)
+from urllib.request import Request
 
 import pyoxigraph as ox
 
 from selfconf.errors import AuthorError, NetworkError, TurtleError
+from selfconf.http_opener import http_opener
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Place
@@ -86,14 +79,6 @@ def asked(
             raise NetworkError(f"the answer of {url} breaks off {reply.length} bytes before its end")
 
 
-def _opener() -> OpenerDirector:
-    """Opens http and https and nothing else, and takes a redirect for the answer that it is."""
-    opener = OpenerDirector()
-    for each in (ProxyHandler, HTTPHandler, HTTPSHandler, HTTPDefaultErrorHandler, HTTPErrorProcessor):
-        opener.add_handler(each())
-    return opener
-
-
 @contextmanager
 def _reply(url: str, query: str, form: str, patience: float) -> Iterator[HTTPResponse]:
     """The reply of an endpoint to a query sent by POST (SPARQL 1.1 Protocol, section 2.1.3)."""
@@ -109,7 +94,7 @@ def _opened(url: str, query: str, form: str, patience: float) -> HTTPResponse:
         if urlsplit(url).scheme not in ("http", "https"):
             raise AuthorError(f"{setting('endpoint')} takes an http or https URL, not {url!r}")
         request = Request(url, query.encode(), {"Content-Type": "application/sparql-query", "Accept": form})
-        reply: HTTPResponse = _opener().open(request, timeout=patience)
+        reply: HTTPResponse = http_opener().open(request, timeout=patience)
     except HTTPError as error:
         raise NetworkError(f"{url} answers {error.code}: {_detail(error)}") from None
     except InvalidURL as error:

@@ -36,6 +36,7 @@ from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
 from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
+from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
 from selfconf.rdf.rdflib_terms import rdflib_term
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
@@ -54,8 +55,8 @@ LEAST_SECONDS = 0.03
 """Processor time for one more try; clocks of processor time go by milliseconds."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 _ASKING = rdflib.URIRef("urn:selfconf:asking")
-_DEEPEST = 16
-"""How many shapes within shapes pySHACL follows: its 15, and the one that asks for them in a trial run."""
+_DEEPEST_TRIAL = DEEPEST_SHAPE + 1
+"""How many shapes within shapes pySHACL follows in a trial run, where one more asks for them."""
 _TARGETS = frozenset(
     (_SH.targetClass, _SH.targetNode, _SH.targetSubjectsOf, _SH.targetObjectsOf, _SH.target, _SH.targetWhere)
 )
@@ -132,7 +133,7 @@ class _Judge:
         dataset.default_union = True  # pySHACL looks at all of its graphs
         data = DataGraph.from_rdflib(dataset)
         loaded = load_from_source(aimed(shapes, (shape,), ()), multigraph=True)
-        validator = Validator(data, shacl_graph=loaded, options={"max_validation_depth": _DEEPEST})
+        validator = Validator(data, shacl_graph=loaded, options={"max_validation_depth": _DEEPEST_TRIAL})
         assert validator.shacl_graph.shapes  # looks at all of them: what is ill-formed shows
         self._graph, self._data, self._executor = subjects, data, validator.make_executor()
         self._shape = validator.shacl_graph.lookup_shape_from_node(rdflib.URIRef(shape))
@@ -243,7 +244,7 @@ def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
     index_constraints()
     with _silent():
         _, report, text = validate(
-            subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST
+            subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST_TRIAL
         )
     return report, text
 

@@ -175,6 +175,8 @@ class Field:
 _SHAPES = ("property", "node", "not", "qualifiedValueShape")
 _LISTS = ("and", "or", "xone", "in", "languageIn", "ignoredProperties", "alternativePath")
 _PATHS = ("path", "inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
+DEEPEST_SHAPE = 15
+"""How many shapes within shapes pySHACL follows, the outermost among them."""
 LISTS_OF_SHAPES = frozenset(SH[name] for name in ("and", "or", "xone"))
 """The predicates of SHACL Core whose values are lists of shapes."""
 SHAPE_VALUED = LISTS_OF_SHAPES | {SH[name] for name in _SHAPES}

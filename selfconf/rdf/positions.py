@@ -24,6 +24,7 @@ from rdflib.plugins.parsers.notation3 import BadSyntax, RDFSink, SinkParser
 from rdflib.term import Node
 
 from selfconf.rdf.rdflib_literals import literal
+from selfconf.rdf.subject_lines import with_plain_lines
 
 RdflibTriple = tuple[Node, Node, Node]
 
@@ -34,7 +35,6 @@ _NUMBER = re.compile(
 )
 _DOTTED_PREFIX = re.compile(r"\.[\w.\-\u00B7\u0300-\u036F\u203F\u2040]*[\w\-\u00B7\u0300-\u036F\u203F\u2040]:")
 """The rest of a prefixed name whose prefix begins like a keyword, up to the colon: of `a.b:c`, `.b:`."""
-_LONE_RETURN = re.compile(r"\r(?!\n)")
 _TOKEN = re.compile(
     r"""<[^>\n]*>|(?:"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*')(?:@[\w-]+|\^\^(?:<[^>]*>|[^\s;,.\])]+))?"""
     r"""|[^\s"'<>\[\](){};,]*[^\s"'<>\[\](){};,.]"""
@@ -140,7 +140,7 @@ class Positions:
 
 def parse_with_positions(text: str, file: str, base: str = "file:///") -> tuple[Graph, Positions]:
     """The triples of a Turtle text and their places; raises NotTurtle, or RecursionError for brackets too deep."""
-    text = _LONE_RETURN.sub("\n", text.removeprefix("\ufeff"))  # white space in Turtle, but not to rdflib
+    text = with_plain_lines(text)
     graph = Graph()
     positions = Positions(file, text)
     parser = _Parser(_Sink(graph, positions), base)

@@ -20,6 +20,11 @@ _LONE_RETURN = re.compile(r"\r(?!\n)")
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:[^\\]*")
 
 
+def with_plain_lines(text: str) -> str:
+    """A text of which the lines end with a line feed, without a byte order mark; the offsets go by it."""
+    return _LONE_RETURN.sub("\n", text.removeprefix("\ufeff"))  # white space in Turtle, but not to rdflib
+
+
 class _NotFollowedError(Exception):
     """A text has what is not followed: a relative IRI or an escape in a subject, or it is no Turtle."""
 
@@ -30,7 +35,7 @@ def subject_lines(text: str) -> dict[str, int]:
     It is not sure where a subject is named by a relative IRI or with an escape, or where the text is no Turtle; of what
     else is no Turtle nothing is noticed.
     """
-    text = _LONE_RETURN.sub("\n", text.removeprefix("\ufeff"))
+    text = with_plain_lines(text)
     statements = _Statements()
     try:
         for token in _TOKEN.finditer(text):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timezone
+
 import pytest
 
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
@@ -15,6 +17,7 @@ from selfconf.model.wording import (
     listed,
     one_line,
     plain,
+    utc_text,
 )
 
 HALL, CELLAR = (IRI(f"https://example.org/{name}") for name in ("hall", "cellar"))
@@ -55,3 +58,7 @@ def test_values_are_sorted_and_told_from_others_that_look_alike() -> None:
 def test_a_client_is_named_by_its_certificate_where_it_has_shown_one() -> None:
     assert client_text("read.alice") == "read.alice"
     assert client_text("") == "a client without a trusted certificate"
+
+
+def test_a_moment_is_said_in_utc_to_the_second() -> None:
+    assert utc_text(datetime(2026, 3, 4, 5, 6, 7, 8, timezone.utc)) == "2026-03-04 05:06:07 UTC"

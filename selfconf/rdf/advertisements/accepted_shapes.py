@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from selfconf.model.term import BlankNode, Literal, Term
-from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, PERMITTED_IN_SHAPES, SHAPE_VALUED
+from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, PERMITTED_IN_SHAPES, SHAPE_VALUED
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import FIRST, REST, SH
 
@@ -18,8 +18,6 @@ LARGEST_SHAPE = 200
 """How many statements a shape has at most."""
 LONGEST_LITERAL = 300
 """How many characters a literal in a shape has at most: numbers, patterns."""
-DEEPEST = 15
-"""How deep nodes are nested in a shape at most, as deep as pySHACL looks."""
 
 
 class ShapeNotAccepted(Exception):
@@ -51,7 +49,7 @@ def statements_of_shape(document: Document, shape: Term) -> Iterator[Triple]:
         if not said:
             raise ShapeNotAccepted("there are brackets in it that say nothing")
         number += len(said)
-        if number > LARGEST_SHAPE or depth > DEEPEST:
+        if number > LARGEST_SHAPE or depth > DEEPEST_SHAPE:
             raise ShapeNotAccepted(f"it has more than {LARGEST_SHAPE} statements, or nests too deeply")
         for predicate, value in said:
             _look_at(document, (node, predicate, value))

@@ -14,13 +14,11 @@ from typing import NamedTuple
 
 from selfconf.model.port_likeness import Types, WantedPorts
 from selfconf.model.term import IRI, BlankNode, Term
-from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_ANNOTATIONS, SHAPE_VALUED
+from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_ANNOTATIONS, SHAPE_VALUED
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import RDF, RDFS, SC, SH
 
 _PORTS = frozenset((SC.hasInput, SC.hasOutput))
-_DEEPEST = 16
-"""How many shapes within shapes are looked at."""
 _SAYS_NOTHING = SHAPE_ANNOTATIONS | {RDF.type, SH.severity}
 
 
@@ -90,7 +88,7 @@ def _about_ports(document: Document, shape: Term, depth: int = 0) -> bool:
     said = [(predicate, value) for predicate, value in document.about(shape) if predicate not in _SAYS_NOTHING]
     return bool(said) and all(
         predicate in SHAPE_VALUED
-        and depth < _DEEPEST
+        and depth <= DEEPEST_SHAPE
         and all(
             _about_ports(document, inner, depth + 1)
             for inner in (document.items(value) if predicate in LISTS_OF_SHAPES else [value])
@@ -110,7 +108,7 @@ def _path(document: Document, shape: Term) -> list[Term]:
 def _wants(document: Document, shape: Term, before: tuple[Term, ...], depth: int) -> Iterator[_Want]:
     """The types that a shape names, where the path that leads to them goes through the type of a port."""
     path = (*before, *_path(document, shape))
-    for predicate, value in document.about(shape) if depth < _DEEPEST else ():
+    for predicate, value in document.about(shape) if depth <= DEEPEST_SHAPE else ():
         yield from _said(document, predicate, value, path, depth)
 
 

@@ -15,7 +15,7 @@ def first_not_utf_8(octets: bytes) -> tuple[int, int, str] | None:
     try:
         octets.decode()
     except UnicodeDecodeError as error:
-        before = octets[: error.start].decode().removeprefix("\ufeff")
+        before = octets[: error.start].decode("utf-8-sig")
         said = f"this is not UTF-8: the byte 0x{octets[error.start]:02X} cannot stand here"
         return before.count("\n") + 1, len(before) - before.rfind("\n"), said
     return None

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 import shlex
+from codecs import BOM_UTF8
 from collections.abc import Iterable
 
 import pyoxigraph as ox
@@ -24,7 +25,6 @@ from selfconf.rdf.turtle.encoding import check_utf_8
 from selfconf.rdf.turtle.serialization import to_turtle
 from selfconf.rdf.turtle.versions import check_turtle_1_1
 
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _HEAD = 1 << 16
 """Bytes at the head of a file by which its format is recognised, where the ending of its name does not say it."""
 
@@ -90,7 +90,7 @@ def read_ontology(
 
     Raises TurtleError with the line, and the column where it is known, for what is not in the format that it seems.
     """
-    octets = octets.removeprefix(_BYTE_ORDER_MARK)
+    octets = octets.removeprefix(BOM_UTF8)
     check_utf_8(octets, source)
     found = format_of(source, octets)
     if found is RDF_XML and _NESTED_ENTITY.search(octets):
@@ -125,7 +125,7 @@ def in_turtle(octets: bytes, source: str, base: str | None = None) -> str:
     """
     if format_of(source, octets) is not _TURTLE:
         return to_turtle(read_ontology(octets, source, base).triples())
-    text = octets.removeprefix(_BYTE_ORDER_MARK).decode()
+    text = octets.removeprefix(BOM_UTF8).decode()
     return text if base is None else f"@base <{base}> . {text}"
 
 
@@ -152,5 +152,5 @@ def _ending(name: str) -> str:
 
 
 def _by_content(octets: bytes) -> RdfFormat:
-    head = octets[:_HEAD].removeprefix(_BYTE_ORDER_MARK).lstrip()
+    head = octets[:_HEAD].removeprefix(BOM_UTF8).lstrip()
     return next((found for pattern, found in _LOOKS if pattern.match(head)), _TURTLE)

@@ -12,6 +12,7 @@ ontology, or ships with selfconf.
 from __future__ import annotations
 
 import hashlib
+from codecs import BOM_UTF8
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -31,7 +32,6 @@ _NOTHING = "There is no component, template, task, configuration or ontology in 
 MOST_STATEMENTS = 250_000
 """Statements of a file that is checked for the place of each problem, which takes a thousand times as long as reading:
 a bound on the work that is known before, and is the same on every machine."""
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
 @immutable
@@ -44,7 +44,7 @@ class SourceText:
 
     def text(self) -> str:
         """The text without a byte order mark; raises UnicodeDecodeError if it is not UTF-8."""
-        return self.octets.removeprefix(_BYTE_ORDER_MARK).decode("utf-8")
+        return self.octets.removeprefix(BOM_UTF8).decode("utf-8")
 
 
 @immutable
@@ -74,8 +74,7 @@ class FileChecker:
         check = FileCheck(shapes_of(*(source.text() for source in self.shapes)), self.index)
         source = suspect.source
         beside = descriptions(
-            (other.octets.removeprefix(_BYTE_ORDER_MARK), other.name, other.base, things)
-            for other, things in suspect.beside
+            (other.octets.removeprefix(BOM_UTF8), other.name, other.base, things) for other, things in suspect.beside
         )
         return check.of(source.text(), source.name, source.base, suspect.elsewhere, beside)
 
@@ -155,7 +154,7 @@ def _loaded(source: SourceText) -> Prefiltered:
     """What an ontology declares, in whatever format it is, to be read only. Raises TurtleError."""
     for fault in _encoding(source):
         raise TurtleError(fault.message, file=source.name, line=fault.line, column=fault.column)
-    octets = source.octets.removeprefix(_BYTE_ORDER_MARK)
+    octets = source.octets.removeprefix(BOM_UTF8)
     found = prefilter(octets, source.base, turtle.format_of(source.name, octets).parser)
     if found.problems or found.too_large:
         turtle.read_ontology(octets, source.name, source.base)  # which raises, and words it
@@ -188,7 +187,7 @@ def _read(source: SourceText) -> tuple[list[Diagnostic], Prefiltered | None]:
     problems = list(_encoding(source))
     if problems:
         return problems, None
-    screened = prefilter(source.octets.removeprefix(_BYTE_ORDER_MARK), source.base)
+    screened = prefilter(source.octets.removeprefix(BOM_UTF8), source.base)
     problems = list(_syntax(source, screened))
     return problems, None if problems else screened
 
@@ -206,7 +205,7 @@ def _encoding(source: SourceText) -> Iterator[Diagnostic]:
         message, advice = f"T{said[1:]}.", "Save the file in the encoding UTF-8."
         yield TextPlaces(source.name, source.octets).on(line, column, "SC-S02", message, advice)
         return
-    before, nul, _ = source.octets.decode("utf-8").removeprefix("\ufeff").partition("\0")
+    before, nul, _ = source.octets.decode("utf-8-sig").partition("\0")
     if nul:
         message = "This is not Turtle: it holds a NUL, as binary files do."
         yield replace(TextPlaces(source.name, source.octets).at(len(before), "SC-S01", message), source="")

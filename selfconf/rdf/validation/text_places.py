@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from codecs import BOM_UTF8
 from collections.abc import Collection, Iterable
 from functools import cached_property
 
 from selfconf.model.codes import BY_CODE
 from selfconf.model.diagnostic import Diagnostic, excerpt, shortened
 
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _PASSED_OVER = (
     r'"""[^"\\]*(?:(?:\\.|"(?!""))[^"\\]*)*"""',
     r"'''[^'\\]*(?:(?:\\.|'(?!''))[^'\\]*)*'''",
@@ -33,7 +33,7 @@ class TextPlaces:
     """A text, as far as it is UTF-8, and the places of its lines."""
 
     def __init__(self, name: str, octets: bytes) -> None:
-        self.name, self.text = name, octets.removeprefix(_BYTE_ORDER_MARK).decode("utf-8", "replace")
+        self.name, self.text = name, octets.removeprefix(BOM_UTF8).decode("utf-8", "replace")
 
     def at(self, offset: int, code: str, message: str, hint: str | None = None) -> Diagnostic:
         """A diagnostic at an offset."""

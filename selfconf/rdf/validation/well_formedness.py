@@ -26,7 +26,7 @@ from rdflib.term import Node
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
-from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
+from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
@@ -43,8 +43,6 @@ _SAMPLES: dict[Node, Literal] = {
     XSD.date: Literal("2000-01-01", datatype=XSD.date),
     XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
 }
-DEEPEST_ROLE = 15
-"""How many shapes within shapes pySHACL follows, the role among them."""
 _INSTEAD_OF_CATEGORIES = r" pySHACL knows no categories of Unicode; a letter of any language is [^\W\d_]."
 _STAND_IN = URIRef("urn:x-selfconf:stand-in")
 
@@ -192,8 +190,8 @@ def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
 def _too_deep(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterator[Diagnostic]:
     """The roles that nest shapes deeper than pySHACL follows; in a trial only those would show that need no values."""
     for role in map(URIRef, roles):
-        if _height(shapes, role) > DEEPEST_ROLE:
-            message = f"The shape of this role nests shapes more than {DEEPEST_ROLE} deep."
+        if _height(shapes, role) > DEEPEST_SHAPE:
+            message = f"The shape of this role nests shapes more than {DEEPEST_SHAPE} deep."
             yield at(positions, positions.offset(role) or 0, "SC-T13", message)
 
 

@@ -6,9 +6,9 @@ import pytest
 from rdflib import SH, Graph
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
 from selfconf.rdf.positions import parse_with_positions
 from selfconf.rdf.validation.well_formedness import (
-    DEEPEST_ROLE,
     endless_lists,
     malformed_roles,
     shape_of_shapes,
@@ -88,7 +88,7 @@ def test_a_query_that_would_leave_this_machine_is_refused() -> None:
 def test_a_shape_that_nests_deeper_than_pyshacl_follows_is_told_also_where_only_values_lead_there(
     opened: str, closed: str, levels: int
 ) -> None:
-    most = (DEEPEST_ROLE - 1) // levels
+    most = (DEEPEST_SHAPE - 1) // levels
     for times, wrong in ((most, False), (most + 1, True)):
         found = malformed(f":r a sc:Role ; {opened * times}sh:class :A{closed * times} .")
         assert [each.message for each in found] == ["The shape of this role nests shapes more than 15 deep."] * wrong
