@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import signal
 import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -24,6 +26,8 @@ from tests.search.comparison import least_numbers, numbers
 from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, problems
 
+ROOT = Path(__file__).resolve().parents[3]
+
 
 @pytest.fixture
 def interruptible() -> Iterator[None]:
@@ -31,6 +35,16 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+def test_the_decision_for_python_sat_names_what_imports_it_and_how_long_a_call_is() -> None:
+    page = " ".join((ROOT / "docs" / "decisions" / "0004-python-sat.md").read_text().split())
+    sources = sorted((ROOT / "selfconf").rglob("*.py"))
+    importing = [path for path in sources if re.search(r"^ *(from|import) pysat\b", path.read_text(), re.MULTILINE)]
+    assert {path.parent for path in importing} == {Path(clause_learning.__file__).parent}
+    assert sorted({path.name for path in importing}) == sorted(set(re.findall(r"`(\w+\.py)`", page)))
+    for conflicts in (clause_learning.CONFLICTS_PER_CALL, clause_learning.LONGEST_CALL):
+        assert f"{conflicts:,}" in page
 
 
 def test_whether_the_solver_is_there_is_looked_up_once() -> None:
