@@ -13,15 +13,22 @@ import pytest
 
 from selfconf import entailment, library, partition, read, template
 from selfconf.api.validation import LARGEST_FILE
-from selfconf.discovery.inquiry import LARGEST_ADVERTISEMENT
+from selfconf.bus.port import LARGEST_REPLIES
+from selfconf.deployment import task_folder
+from selfconf.discovery import ecology_view, inquiry
 from selfconf.errors import AuthorError, QueryError
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Report
+from selfconf.model.wording import LONGEST_REMARK
+from selfconf.protocol import activation, codec
 from selfconf.query import process as asking
 from selfconf.query.endpoint import ENDPOINT_PATIENCE
 from selfconf.rdf import conformance as shacl
+from selfconf.rdf.advertisements import accepted_shapes
 from selfconf.rdf.advertisements import reader as advertisements
+from selfconf.rdf.eligibility import acceptance
 from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
 from selfconf.rdf.shacl import patterns
 from selfconf.rdf.sparql import read_only as queries
 from selfconf.rdf.sparql.dataset import Dataset
@@ -29,6 +36,7 @@ from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.validation import checking, file_check
 from selfconf.rdf.validation.checking import SourceText, validate_texts
+from selfconf.sdk import input_subscription, operations, payloads, runtime
 from tests.hostile_words import HONEST, KINDS, stranger
 from tests.hostile_words import TEMPLATE as TEMPLATE_FOR_STRANGERS
 
@@ -253,22 +261,49 @@ def test_a_query_that_would_hold_up_the_engine_is_not_handed_to_it(query: str) -
     assert [each.code for each in found] == ["SC-T13"]
 
 
+LIMITS = (
+    f"a file for `validate` | {LARGEST_FILE >> 20} MiB | SC-S05",
+    f"{checking.MOST_STATEMENTS:,} | SC-S05",
+    f"{file_check.FILE_SECONDS:g} s | SC-S05",
+    f"{DEEPEST_SHAPE} deep, as pySHACL follows them",
+    f"{accepted_shapes.LARGEST_SHAPE} statements, {DEEPEST_SHAPE} deep, literals of {accepted_shapes.LONGEST_LITERAL}",
+    f"judging all shapes that inputs accept, in processor time | {acceptance.SECONDS:g} s",
+    f"{queries.LONGEST_QUERY:,} characters, brackets {queries.DEEPEST_QUERY} deep",
+    f"{patterns.PATTERN_SECONDS:g} s, {patterns.LONGEST_TRY:g} s for one value | the component is left out",
+    f"{shacl.SHARE_SECONDS:g} s, or twice what the slowest takes that conforms | the component is left out",
+    f"{shacl.FAILURE_SECONDS:g} s for those left out, {shacl.SLOW_SECONDS:g} s for others",
+    f"{shacl.SHAPE_SECONDS:g} s | `configure` says which shape",
+    f"{entailment.LIMIT:g} s, `SELFCONF_OWL_RL_SECONDS`",
+    f"{asking.ANSWER_SECONDS:g} s, `--seconds`",
+    f"{asking.MOST_ROWS:,}, `--rows`",
+    f"{asking.MEMORY >> 30} GiB",
+    f"`configure` or `partition` | {ENDPOINT_PATIENCE:g} s",
+    f"what is sent along with a call, and what is answered | {operations.MOST_PAYLOAD >> 20} MiB",
+    f"calls that wait for a component | {operations.MOST_CALLS} |",
+    f"{inquiry.LARGEST_ADVERTISEMENT >> 20} MiB | it is left out",
+    f"what one site advertises | {codec.MOST_ADVERTISED:,} components, {inquiry.LARGEST_SITE >> 20} MiB",
+    f"complaints about the answer of one site | {inquiry.MOST_COMPLAINTS} |",
+    f"all answers to one question | {LARGEST_REPLIES >> 20} MiB",
+    f"{ecology_view.IN_A_ROW} in a row, then one every {ecology_view.BETWEEN_DISCOVERIES:g} s",
+    f"lives of one component that are followed | {ecology_view.MOST_LIVES}, the least ones",
+    f"a message of the control plane | {codec.LARGEST >> 20} MiB",
+    f"outputs that a call lets a component follow | {codec.MOST_WIRES:,} |",
+    f"calls that wait for the code of a component | {runtime.MOST_PENDING} |",
+    f"a signal of JSON | {payloads.LARGEST_JSON >> 20} MiB",
+    f"a signal whose number is {input_subscription.LATE:,} below",
+    f"tasks that a site keeps | {task_folder.MOST_RECORDS:,} |",
+    f"tasks that share a component, and tasks that wait for it | {activation.MOST_HOLDING} each",
+)
+"""What the page on limits says of the constants."""
+WITHOUT_A_CONSTANT = ("about a thousand deep", "the same limits")
+
+
 def test_the_page_on_limits_names_the_limits_there_are() -> None:
     page = (Path(__file__).parents[2] / "docs" / "untrusted.md").read_text()
-    for words in (
-        f"{LARGEST_FILE >> 20} MiB | SC-S05",
-        f"{checking.MOST_STATEMENTS:,} | SC-S05",
-        f"{file_check.FILE_SECONDS:g} s | SC-S05",
-        f"{queries.LONGEST_QUERY:,} characters, brackets {queries.DEEPEST_QUERY} deep",
-        f"{patterns.PATTERN_SECONDS:g} s, {patterns.LONGEST_TRY:g} s for one value | the component is left out",
-        f"{shacl.SHARE_SECONDS:g} s, or twice what the slowest takes that conforms | the component is left out",
-        f"{shacl.FAILURE_SECONDS:g} s for those left out, {shacl.SLOW_SECONDS:g} s for others",
-        f"{shacl.SHAPE_SECONDS:g} s | `configure` says which shape",
-        f"{entailment.LIMIT:g} s, `SELFCONF_OWL_RL_SECONDS`",
-        f"{asking.ANSWER_SECONDS:g} s, `--seconds`",
-        f"{asking.MOST_ROWS:,}, `--rows`",
-        f"{asking.MEMORY >> 30} GiB",
-        f"`configure` or `partition` | {ENDPOINT_PATIENCE:g} s",
-        f"{LARGEST_ADVERTISEMENT >> 20} MiB | it is left out",
-    ):
-        assert words in page
+    _, _, *rows = [line for line in page.splitlines() if line.startswith("|")]
+    for words in LIMITS:
+        assert any(words in row for row in rows), words
+    for row in rows:
+        assert any(words in row for words in (*LIMITS, *WITHOUT_A_CONSTANT)), row
+    assert activation.MOST_HOLDING == activation.MOST_WAITING
+    assert f"{LONGEST_REMARK:,} characters at most" in page
