@@ -4,41 +4,23 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from selfconf import files
-from selfconf.api.site_program import serve
+from selfconf.api.site_program import SiteOptions, serve
 from selfconf.bridging import Bridge, ForeignWorld
-from selfconf.model.immutable import immutable
 
 
-@immutable
-class BridgeSite:
-    """The site of a bridge: its ecology and name, where it listens and connects, its keys, as `serve` takes them."""
+def serve_bridge(world: ForeignWorld, site: SiteOptions, complain: Callable[[str], None]) -> None:
+    """Bridge a world to an ecology until SIGINT, SIGTERM or SIGHUP. Raises AuthorError and NetworkError.
 
-    ecology: str | None = None
-    name: str | None = None
-    listen: str | None = None
-    connect: Sequence[str] = ()
-    keys: Path | None = None
-    insecure: bool = False
-
-
-def serve_bridge(world: ForeignWorld, site: BridgeSite, complain: Callable[[str], None]) -> None:
-    """Bridge a world to an ecology until SIGINT, SIGTERM or SIGHUP. Raises AuthorError and NetworkError."""
+    `site` is what the site of the bridge begins with, but for what it serves.
+    """
     with tempfile.TemporaryDirectory(prefix="selfconf-bridge-") as folder:
         bridge = Bridge(Path(folder), complain)
-        serve(
-            [Path(folder)],
-            site.ecology,
-            site.name,
-            site.listen,
-            site.connect,
-            complain,
-            keys=site.keys,
-            insecure=site.insecure,
-            beside=lambda ecology, session: bridge.living(world, ecology, session),
-        )
+        options = replace(site, paths=(Path(folder),))
+        serve(options, complain, lambda ecology, session: bridge.living(world, ecology, session))
 
 
 def serve_things(
@@ -46,7 +28,7 @@ def serve_things(
     rate: float,
     credentials: Path | None,
     hosts: Sequence[str],
-    site: BridgeSite,
+    site: SiteOptions,
     complain: Callable[[str], None],
 ) -> None:
     """Bridge the things that some files, folders and URLs describe. Raises AuthorError and NetworkError.
@@ -76,7 +58,7 @@ def serve_things(
 
 
 def serve_nodes(
-    endpoint: str, domain: int, definitions: Sequence[Path], site: BridgeSite, complain: Callable[[str], None]
+    endpoint: str, domain: int, definitions: Sequence[Path], site: SiteOptions, complain: Callable[[str], None]
 ) -> None:
     """Bridge the nodes of a ROS 2 domain, whose router listens at an endpoint. Raises AuthorError and NetworkError.
 

@@ -29,6 +29,7 @@ from selfconf.deployment import Keeper, TaskFolder
 from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.hierarchy import Reasoning
+from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.protocol.endpoints import endpoint_host
@@ -52,100 +53,148 @@ WORK_CHECK = 1.0
 """How often, in seconds, a site looks whether it is to end; it hears at once, but for a signal at a bad moment."""
 
 
+@immutable
+class SiteOptions:
+    """What a site begins with; what is None has a default of its own."""
+
+    paths: tuple[Path, ...] = ()
+    """The files and folders with the advertisements that it serves."""
+    ecology: str | None = None
+    name: str | None = None
+    listen: str | None = None
+    """The endpoint at which it listens; by default where a site of the ecology usually does."""
+    connect: tuple[str, ...] = ()
+    """The endpoints of other sites."""
+    state: Path | None = None
+    """The folder with the tasks that it keeps, by default one of the runtime folder; so for the next."""
+    log: Path | None = None
+    """The folder for what the components print that it starts."""
+    keys: Path | None = None
+    """The folder with its keys: only holders of certificates of the same authority are let in."""
+    insecure: bool = False
+    """Whether it may listen beyond loopback without keys."""
+    ontologies: tuple[Path, ...] = ()
+    """Files and folders by which the components that it starts check what they emit."""
+    reasoning: str = Reasoning.SYNTACTIC.value
+    """The mode in which the insides of its composites see the ontologies."""
+
+
 def serve(
-    paths: Sequence[Path],
-    ecology: str | None,
-    name: str | None,
-    listen: str | None,
-    connect: Sequence[str],
+    options: SiteOptions,
     complain: Callable[[str], None],
-    state: Path | None = None,
-    log: Path | None = None,
-    keys: Path | None = None,
-    insecure: bool = False,
     beside: Beside = lambda ecology, session: nullcontext(),
-    ontologies: Sequence[Path] = (),
-    reasoning: str = Reasoning.SYNTACTIC.value,
 ) -> None:
     """Serve the advertisements in some files and folders to an ecology until SIGINT, SIGTERM or SIGHUP.
 
-    Without a name it gets one of its own; without an endpoint it listens where a site of the ecology usually does.
-    `complain` hears what is left out, and where it listens. In the folder `state` are the tasks that it keeps, in the
-    folder `log` what the components print that it starts; by default both are folders of the runtime folder. With the
-    folder `keys` only holders of certificates of its authority are let in; without it the site listens beyond loopback
-    only if it may be `insecure`. `beside` is what lives with the site, from when it listens to when it ends. By
-    `ontologies`, files and folders, the components that it starts check what they emit, and in the mode `reasoning` the
-    insides of its composites see them. Raises AuthorError and NetworkError.
+    `complain` hears what is left out, and where the site listens. `beside` is what lives with the site, from when it
+    listens to when it ends. Raises AuthorError and NetworkError.
     """
-    _check_readable(paths, ontologies)
-    hierarchy = hierarchy_of(option(Reasoning, "reasoning", reasoning), ontology_texts(ontologies))
-    ecology, connect = rendezvous.asked_for(ecology, connect)
-    if ecology is None:
-        which = f"{setting('ecology', 'NAME')}, or set {rendezvous.ECOLOGY_VARIABLE}"
-        raise AuthorError(f"a site is part of an ecology; give {which}")
-    checked_name(ecology, "an ecology")
-    secured, name = _named(rendezvous.keys_folder(keys), name)
-    beyond = secured is None and _beyond_loopback(listen)
-    if beyond and not insecure:
-        raise AuthorError(
-            f"{listen} can be reached from other hosts, and without keys by everybody there: give"
-            f" {setting('keys', 'DIR')} (see `selfconf keys --help`), or {setting('insecure')} if that is what you want"
-        )
-    shelf = Shelf(paths, complain)
-    # One site at a time looks which others there are and announces itself, or two would miss each other.
-    with rendezvous.turn():
-        security = None if secured is None else secured.first(ecology, name, shelf)
-        shown = None if security is None else security.credentials
-        joining = Joining(ecology, name, listen, connect, security)
-        bus = joining.bus
-        if secured is not None and not bus.endpoint:
-            secured.introduce(bus, ecology)  # the hub of another site has to know this one
-        _refuse_taken(name, ecology, joining)
-        life = f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}"
-        work = WorkQueue()
-        ended = Termination(bus, told=work.abandon)
-        records = TaskFolder((state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
-        environment = rendezvous.environment(ecology, " ".join(joining.endpoints), ontologies)
-        log_path = _log_path(log, ecology, name).absolute()
-        joining.log = str(log_path)
-        keys_of, believed = (None, None) if secured is None else (secured.keys_of, secured.believed)
+    program = _SiteProgram(options, complain)
+    with rendezvous.turn():  # one site at a time looks which others there are, or two would miss each other
+        program.open()
+    program.tell_what_is_served()
+    program.run(beside)
 
-        def composites_of_site() -> Composites:
-            from selfconf.composites import Composites  # loads all that configures their insides and runs them
 
-            return Composites(
-                bus,
-                ecology,
-                described_in,
-                complain,
-                work.work,
-                believed,
-                hierarchy,
-                lambda why: site.tell_unable(why),  # it is made below, and refreshes the composites
+class _SiteProgram:
+    """A site as a program: its bus, what it serves, the tasks that it keeps, and the work that takes long."""
+
+    def __init__(self, options: SiteOptions, complain: Callable[[str], None]) -> None:
+        """Raises AuthorError for options with which there can be no site."""
+        self._options, self._complain, ontologies = options, complain, options.ontologies
+        _check_readable(options.paths, ontologies)
+        self._hierarchy = hierarchy_of(option(Reasoning, "reasoning", options.reasoning), ontology_texts(ontologies))
+        ecology, self._connect = rendezvous.asked_for(options.ecology, options.connect)
+        if ecology is None:
+            which = f"{setting('ecology', 'NAME')}, or set {rendezvous.ECOLOGY_VARIABLE}"
+            raise AuthorError(f"a site is part of an ecology; give {which}")
+        checked_name(ecology, "an ecology")
+        self._ecology = ecology
+        self._secured, self._name = _named(rendezvous.keys_folder(options.keys), options.name)
+        self._believed = None if self._secured is None else self._secured.believed
+        self._is_open_to_all = self._secured is None and _beyond_loopback(options.listen)
+        if self._is_open_to_all and not options.insecure:
+            raise AuthorError(
+                f"{options.listen} can be reached from other hosts, and without keys by everybody there: give"
+                f" {setting('keys', 'DIR')} (see `selfconf keys --help`), or {setting('insecure')} if that is what you"
+                " want"
             )
 
-        composites = _CompositesOnceThereAre(composites_of_site)
-        site = Site(bus, ecology, name, shelf, environment, log_path, life, keys_of, beyond, changed=composites.refresh)
+    def open(self) -> None:
+        """Join the ecology, and begin to serve. Raises NetworkError."""
+        options, ecology, name, secured = self._options, self._ecology, self._name, self._secured
+        shelf = Shelf(options.paths, self._complain)
+        security = None if secured is None else secured.first(ecology, name, shelf)
+        self._credentials = None if security is None else security.credentials
+        self._joining = Joining(ecology, name, options.listen, self._connect, security)
+        self._bus = self._joining.bus
+        if secured is not None and not self._bus.endpoint:
+            secured.introduce(self._bus, ecology)  # the hub of another site has to know this one
+        _refuse_taken(name, ecology, self._joining)
+        self._work = WorkQueue()
+        self._ended = Termination(self._bus, told=self._work.abandon)
+        log_path = _log_path(options.log, ecology, name).absolute()
+        self._joining.log = str(log_path)
+        self._composites = _CompositesOnceThereAre(self._made_composites)
+        self._site = Site(
+            self._bus,
+            ecology,
+            name,
+            shelf,
+            rendezvous.environment(ecology, " ".join(self._joining.endpoints), options.ontologies),
+            log_path,
+            f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}",
+            None if secured is None else secured.keys_of,
+            self._is_open_to_all,
+            changed=self._composites.refresh,
+        )
         if secured is not None:
-            secured.keep_door(site, joining, complain)
-        keeper = Keeper(bus, ecology, name, records, partial(_request_of, work, believed))
-        joining.announce()
-        bus.watch(site.keys.site_life(name, "*"), partial(_met, complain, site))
-    for unknown in unknown_in_ecology(site.shelf.advertisements):
-        complain(unknown)
-    served = count(len(site.shelf.advertisements), "advertisement")
-    how = " without keys, open to everybody who reaches it" if beyond else ""
-    complain(f"site {name} of ecology {ecology} serves {served} on {joining.endpoint}{how}")
-    bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
-    try:
-        with beside(ecology, lambda: client(joining.endpoints, shared_memory=True, credentials=shown)):
-            while not ended():
-                _do_next(work)
-    finally:
-        joining.leave()
-        bus.wake_up(composites.close)
-        bus.wake_up(keeper.close)
-        site.close()
+            secured.keep_door(self._site, self._joining, self._complain)
+        records = TaskFolder((options.state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
+        self._keeper = Keeper(self._bus, ecology, name, records, partial(_request_of, self._work, self._believed))
+        self._joining.announce()
+        self._bus.watch(self._site.keys.site_life(name, "*"), partial(_met, self._complain, self._site))
+
+    def _made_composites(self) -> Composites:
+        from selfconf.composites import Composites  # loads all that configures their insides and runs them
+
+        return Composites(
+            self._bus,
+            self._ecology,
+            described_in,
+            self._complain,
+            self._work.work,
+            self._believed,
+            self._hierarchy,
+            lambda why: self._site.tell_unable(why),  # it refreshes the composites while it is made
+        )
+
+    def tell_what_is_served(self) -> None:
+        """Say what is served and where, and which terms of it nothing declares."""
+        advertisements = self._site.shelf.advertisements
+        for unknown in unknown_in_ecology(advertisements):
+            self._complain(unknown)
+        served = count(len(advertisements), "advertisement")
+        how = " without keys, open to everybody who reaches it" if self._is_open_to_all else ""
+        where = f"{self._joining.endpoint}{how}"
+        self._complain(f"site {self._name} of ecology {self._ecology} serves {served} on {where}")
+
+    def run(self, beside: Beside) -> None:
+        """Serve until the program is to end; then close."""
+        self._bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
+        try:
+            with beside(self._ecology, self._session):
+                while not self._ended():
+                    _do_next(self._work)
+        finally:
+            self._joining.leave()
+            self._bus.wake_up(self._composites.close)
+            self._bus.wake_up(self._keeper.close)
+            self._site.close()
+
+    def _session(self) -> Bus:
+        """Another session in the ecology, as this site."""
+        return client(self._joining.endpoints, shared_memory=True, credentials=self._credentials)
 
 
 def _do_next(work: WorkQueue) -> None:

@@ -95,9 +95,17 @@ def run(given: argparse.Namespace) -> int:
     module, extra = ("rosbags", "ros2") if given.world == "ros2" else ("aiohttp", "wot")
     if importlib.util.find_spec(module) is None:
         raise InstallationError(f"{module} is missing; install the extra `{extra}`")
-    from selfconf.api.bridge_program import BridgeSite, serve_nodes, serve_things
+    from selfconf.api.bridge_program import serve_nodes, serve_things
+    from selfconf.api.site_program import SiteOptions
 
-    site = BridgeSite(given.ecology, given.name, given.listen, given.sites, given.keys, given.insecure)
+    site = SiteOptions(
+        ecology=given.ecology,
+        name=given.name,
+        listen=given.listen,
+        connect=tuple(given.sites),
+        keys=given.keys,
+        insecure=given.insecure,
+    )
     with complaining_aside() as complain:
         if given.world == "ros2":
             serve_nodes(given.router, given.domain, given.definitions, site, complain)

@@ -49,26 +49,26 @@ def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT, SIGTERM or SIGHUP; then 0. Of `restart`: 0 once the component lives again."""
     if given.paths[:1] == [RESTART]:
         return _restart(given)
-    from selfconf.api.site_program import serve
+    from selfconf.api.site_program import SiteOptions, serve
 
     paths = [Path(path) for path in given.paths] or given.project.values.get("ads")
     if not paths:
         given.misused("there is nothing to serve; name files or folders, or give `ads` in selfconf.toml")
+    options = SiteOptions(
+        paths=tuple(paths),
+        ecology=given.ecology,
+        name=given.name,
+        listen=given.listen,
+        connect=tuple(given.connect),
+        state=given.state,
+        log=given.log,
+        keys=given.keys,
+        insecure=given.insecure,
+        ontologies=tuple(given.ontology),
+        reasoning=given.reasoning,
+    )
     with complaining_aside() as complain:
-        serve(
-            paths,
-            given.ecology,
-            given.name,
-            given.listen,
-            given.connect,
-            complain,
-            given.state,
-            given.log,
-            given.keys,
-            given.insecure,
-            ontologies=given.ontology,
-            reasoning=given.reasoning,
-        )
+        serve(options, complain)
     return 0
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 import selfconf as sc
-from selfconf.api.bridge_program import BridgeSite, serve_bridge, serve_things
+from selfconf.api.bridge_program import serve_bridge, serve_things
+from selfconf.api.site_program import SiteOptions
 
 
 class World:
@@ -28,7 +29,7 @@ def test_a_name_that_is_none_ends_it(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     said: list[str] = []
     with pytest.raises(sc.SelfconfError):
-        serve_bridge(World(), BridgeSite(ecology, name), said.append)
+        serve_bridge(World(), SiteOptions(ecology=ecology, name=name), said.append)
     assert said == []
     assert list(tmp_path.iterdir()) == []
 
@@ -40,7 +41,7 @@ def test_sources_and_credentials_have_to_be_there(tmp_path: Path) -> None:
         ([str(tmp_path)], tmp_path / "none.json", "cannot read the credentials"),
     ):
         with pytest.raises(sc.SelfconfError, match=words):
-            serve_things(sources, 1.0, credentials, (), BridgeSite("home"), print)
+            serve_things(sources, 1.0, credentials, (), SiteOptions(ecology="home"), print)
 
 
 def test_files_of_which_none_can_be_read_end_it_and_a_folder_may_fill_later(tmp_path: Path) -> None:
@@ -50,7 +51,7 @@ def test_files_of_which_none_can_be_read_end_it_and_a_folder_may_fill_later(tmp_
     worse.write_text('{"title": ')
     lamp.write_text('{"id": "urn:x:lamp", "title": "Lamp"}')
     (tmp_path / "things").mkdir()
-    nowhere = BridgeSite(None)  # which is refused once the sources are accepted
+    nowhere = SiteOptions()  # which is refused once the sources are accepted
     for sources, words in (
         ([bad], r"bad\.json:1:1: this is not JSON"),
         ([bad, worse], r"bad\.json:1:1: this is not JSON"),

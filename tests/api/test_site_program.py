@@ -11,7 +11,7 @@ import pytest
 
 import selfconf as sc
 from selfconf import rendezvous
-from selfconf.api.site_program import serve
+from selfconf.api.site_program import SiteOptions, serve
 from selfconf.errors import SelfconfError
 from tests.cli.command import run
 from tests.cli.processes import Home
@@ -24,7 +24,7 @@ from tests.cli.processes import Home
 def test_a_path_that_is_not_there_and_a_name_that_is_none_end_it(path: str, ecology: str, name: str | None) -> None:
     said: list[str] = []
     with pytest.raises(sc.SelfconfError):
-        serve([Path(path)], ecology, name, None, (), said.append)
+        serve(SiteOptions((Path(path),), ecology, name), said.append)
     assert said == []
     assert sc.sites() == ()
 
@@ -60,7 +60,7 @@ def test_a_site_that_cannot_be_announces_nothing(
     monkeypatch.delenv("SELFCONF_KEYS", raising=False)  # a site with keys takes over what its process prints
     said: list[str] = []
     with pytest.raises(SelfconfError, match=words):
-        serve([tmp_path], ecology, name, listen, connect, said.append)
+        serve(SiteOptions((tmp_path,), ecology, name, listen, connect), said.append)
     assert said == []
     assert list(runtime_folder.glob("*.json")) == []
 
