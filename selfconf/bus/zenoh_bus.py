@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import atexit
 import logging
-import threading
 import time
 import weakref
 from collections.abc import Callable, Sequence
@@ -32,6 +31,7 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
 from selfconf.bus.reader_threads import ReaderThreads
+from selfconf.bus.zenoh_receivers import DirectReceiver, Receiver, ZenohRequest, sample_of
 from selfconf.bus.zenoh_relay import Hub, Relay
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
 from selfconf.errors import NetworkError
@@ -149,98 +149,6 @@ class _Publisher:
                 raise
 
 
-class _Request:
-    """A Zenoh query, kept until it is finished."""
-
-    def __init__(self, query: zenoh.Query) -> None:
-        self._query: Any = query
-        self.key = str(query.key_expr)
-        self.payload = bytes(query.payload) if query.payload is not None else b""
-        self.attachment = bytes(query.attachment) if query.attachment is not None else b""
-
-    def reply(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
-        """One reply, on a concrete key of one's own."""
-        if self._query is not None:
-            self._query.reply(key, payload, attachment=attachment)
-
-    def refuse(self, reason: str) -> None:
-        """Reply that it cannot be answered."""
-        if self._query is not None:
-            self._query.reply_err(reason.encode())
-
-    def finish(self) -> None:
-        """End the answer."""
-        if self._query is not None:
-            self._query.drop()
-            self._query = None
-
-
-class _Receiver:
-    """Calls back on the loop's thread for what a declaration receives, until the declaration is taken back."""
-
-    def __init__(self, bus: ZenohBus, call: Callable[..., None]) -> None:
-        self._bus, self._call = bus, call
-        self._listening = True
-
-    def received(self, *arguments: Any) -> None:
-        """Called by Zenoh, on a thread of its own, for what may not be missed: it waits however much else does."""
-        self._bus.wake_up(lambda: self._call(*arguments) if self._listening else None)
-
-    def received_message(self, message: Sample | _Request, urgent: bool = True) -> bool:
-        """Called by Zenoh, on a thread of its own, for what others say; whether there is room for it."""
-        enqueue = self._bus.enqueue_urgent if urgent else self._bus.enqueue_bulk
-        size = len(message.payload) + len(message.attachment)
-        return enqueue(lambda: self._call(message) if self._listening else None, size)
-
-    def open(self, declared: Any) -> Callable[[], None]:
-        """Begin, for what has been declared; the result takes it back, with every callback that has not run yet."""
-        undeclare = self._bus._keep(declared)
-
-        def undo() -> None:
-            self._listening = False
-            undeclare()
-
-        return undo
-
-
-class _DirectReceiver:
-    """Calls back on Zenoh's thread for what a subscription receives, until the subscription is taken back."""
-
-    def __init__(self, bus: ZenohBus, receive: Callable[[Sample], None]) -> None:
-        self._bus, self._receive = bus, receive
-        self._listening = True
-        # Held during each call, so that the undo waits for one that is under way. Reentrant: `receive` may put on the
-        # key that it receives, which arrives on the same thread.
-        self._calling = threading.RLock()
-
-    def received(self, sample: zenoh.Sample) -> None:
-        """Called by Zenoh, on a thread of its own, or on the thread of a publisher of the same session."""
-        with self._calling:
-            if not self._listening:
-                return
-            try:
-                self._receive(_sample(sample))
-            except Exception:  # an outermost loop, like that of the bus: Zenoh would print it and go on
-                log.exception("a direct callback broke; going on")
-
-    def open(self, declared: Any) -> Callable[[], None]:
-        """Begin, for what has been declared; once the result has returned there is no call any more."""
-        undeclare = self._bus._keep(declared)
-        self._bus._direct.add(self)
-
-        def undo() -> None:
-            self.close()
-            self._bus._direct.discard(self)
-            undeclare()
-
-        return undo
-
-    def close(self) -> None:
-        """Wait for a call that is under way, and let none begin any more."""
-        with self._calling:
-            self._listening = False
-
-
 class ZenohBus(Loop):
     """A Zenoh session as a bus."""
 
@@ -251,7 +159,7 @@ class ZenohBus(Loop):
         """Where the relay of this bus listens; empty if it has none."""
         self._relay: Relay | None = None
         self._declared: set[Any] = set()
-        self._direct: set[_DirectReceiver] = set()
+        self._direct: set[DirectReceiver] = set()
         self._readers = ReaderThreads()
         """The threads that read channels; none may be left when Python ends, or it ends with a crash."""
         self._open = True
@@ -277,10 +185,9 @@ class ZenohBus(Loop):
 
     def watch_link(self, changed: Callable[[], None]) -> Callable[[], None]:
         """Call `changed` whenever this bus has gained or lost its hub, on the bus's thread."""
-        receiver = _Receiver(self, lambda _: changed())
-        return receiver.open(
-            self._session.info.declare_transport_events_listener(Callback(receiver.received, indirect=False))
-        )
+        receiver = Receiver(self, lambda _: changed())
+        heard = Callback(receiver.received, indirect=False)
+        return receiver.until(self._keep(self._session.info.declare_transport_events_listener(heard)))
 
     @property
     def link(self) -> str:
@@ -328,26 +235,38 @@ class ZenohBus(Loop):
     ) -> Callable[[], None]:
         """Receive every sample put on a key from now on."""
         if direct:
-            immediate = _DirectReceiver(self, receive)
-            return immediate.open(self._session.declare_subscriber(key, Callback(immediate.received, indirect=False)))
-        receiver, urgent = _Receiver(self, receive), urgency is Urgency.EVENT
+            return self._subscribe_directly(key, DirectReceiver(receive))
+        receiver, urgent = Receiver(self, receive), urgency is Urgency.EVENT
 
         def arrived(sample: zenoh.Sample) -> None:
-            receiver.received_message(_sample(sample), urgent)
+            receiver.received_message(sample_of(sample), urgent)
 
-        return receiver.open(self._session.declare_subscriber(key, Callback(arrived, indirect=False)))
+        return receiver.until(self._keep(self._session.declare_subscriber(key, Callback(arrived, indirect=False))))
 
-    def serve(self, key: str, answer: Callable[[_Request], None], *, complete: bool = False) -> Callable[[], None]:
+    def _subscribe_directly(self, key: str, receiver: DirectReceiver) -> Callable[[], None]:
+        """Begin; once the result has returned there is no call any more."""
+        undeclare = self._keep(self._session.declare_subscriber(key, Callback(receiver.received, indirect=False)))
+        self._direct.add(receiver)
+
+        def undo() -> None:
+            receiver.close()
+            self._direct.discard(receiver)
+            undeclare()
+
+        return undo
+
+    def serve(self, key: str, answer: Callable[[ZenohRequest], None], *, complete: bool = False) -> Callable[[], None]:
         """Answer questions to a key."""
 
-        receiver = _Receiver(self, answer)
+        receiver = Receiver(self, answer)
 
         def asked(query: zenoh.Query) -> None:
-            request = _Request(query)
+            request = ZenohRequest(query)
             if not receiver.received_message(request):
                 request.finish()
 
-        return receiver.open(self._session.declare_queryable(key, Callback(asked, indirect=False), complete=complete))
+        heard = Callback(asked, indirect=False)
+        return receiver.until(self._keep(self._session.declare_queryable(key, heard, complete=complete)))
 
     def ask(
         self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None], attachment: bytes = b""
@@ -363,7 +282,7 @@ class ZenohBus(Loop):
                 if reply.ok is not None:
                     size += len(reply.ok.payload) + len(reply.ok.attachment or b"")
                     if size <= LARGEST_REPLIES:
-                        samples.append(_sample(reply.ok))
+                        samples.append(sample_of(reply.ok))
                 elif reply.err is not None:
                     size += len(reply.err.payload)
                     if size <= LARGEST_REPLIES:
@@ -402,7 +321,7 @@ class ZenohBus(Loop):
             for life in lives:
                 changed(*life)
 
-        receiver = _Receiver(self, change)
+        receiver = Receiver(self, change)
 
         def listen(samples: Sequence[zenoh.Sample]) -> None:
             receiver.received(*((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT) for sample in samples))
@@ -411,7 +330,7 @@ class ZenohBus(Loop):
         handler: Any = FifoChannel(_CHANNEL) if many else _each(listen)
         declared = self._session.liveliness().declare_subscriber(key, handler, history=history)
         self._read_aside(handler, declared.handler, listen)
-        return receiver.open(declared)
+        return receiver.until(self._keep(declared))
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
         """The keys that are alive right now."""
@@ -493,8 +412,3 @@ def _received(channel: Any) -> list[Any]:
     except zenoh.ZError:
         pass
     return some
-
-
-def _sample(sample: zenoh.Sample) -> Sample:
-    attachment = bytes(sample.attachment) if sample.attachment is not None else b""
-    return Sample(str(sample.key_expr), bytes(sample.payload), attachment)

@@ -1,0 +1,100 @@
+"""What Zenoh calls back for a declaration, and how that comes to the thread that it is meant for."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+
+from selfconf.bus.loop import Loop
+from selfconf.bus.port import Sample, Undo
+
+log = logging.getLogger(__name__)
+
+
+def sample_of(sample: zenoh.Sample) -> Sample:
+    """What Zenoh has received, as a value of our own."""
+    attachment = bytes(sample.attachment) if sample.attachment is not None else b""
+    return Sample(str(sample.key_expr), bytes(sample.payload), attachment)
+
+
+class ZenohRequest:
+    """A Zenoh query, kept until it is finished."""
+
+    def __init__(self, query: zenoh.Query) -> None:
+        self._query: Any = query
+        self.key = str(query.key_expr)
+        self.payload = bytes(query.payload) if query.payload is not None else b""
+        self.attachment = bytes(query.attachment) if query.attachment is not None else b""
+
+    def reply(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
+        """One reply, on a concrete key of one's own."""
+        if self._query is not None:
+            self._query.reply(key, payload, attachment=attachment)
+
+    def refuse(self, reason: str) -> None:
+        """Reply that it cannot be answered."""
+        if self._query is not None:
+            self._query.reply_err(reason.encode())
+
+    def finish(self) -> None:
+        """End the answer."""
+        if self._query is not None:
+            self._query.drop()
+            self._query = None
+
+
+class Receiver:
+    """Calls back on a loop's thread for what a declaration receives, until the declaration is taken back."""
+
+    def __init__(self, loop: Loop, call: Callable[..., None]) -> None:
+        self._loop, self._call = loop, call
+        self._listening = True
+
+    def received(self, *arguments: Any) -> None:
+        """Called by Zenoh, on a thread of its own, for what may not be missed: it waits however much else does."""
+        self._loop.wake_up(lambda: self._call(*arguments) if self._listening else None)
+
+    def received_message(self, message: Sample | ZenohRequest, urgent: bool = True) -> bool:
+        """Called by Zenoh, on a thread of its own, for what others say; whether there is room for it."""
+        enqueue = self._loop.enqueue_urgent if urgent else self._loop.enqueue_bulk
+        size = len(message.payload) + len(message.attachment)
+        return enqueue(lambda: self._call(message) if self._listening else None, size)
+
+    def until(self, undeclare: Undo) -> Undo:
+        """Return what takes the declaration back, with every callback that has not run yet."""
+
+        def undo() -> None:
+            self._listening = False
+            undeclare()
+
+        return undo
+
+
+class DirectReceiver:
+    """Calls back on Zenoh's thread for what a subscription receives, until the subscription is taken back."""
+
+    def __init__(self, receive: Callable[[Sample], None]) -> None:
+        self._receive = receive
+        self._listening = True
+        # Held during each call, so that `close` waits for one that is under way. Reentrant: `receive` may put on the
+        # key that it receives, which arrives on the same thread.
+        self._calling = threading.RLock()
+
+    def received(self, sample: zenoh.Sample) -> None:
+        """Called by Zenoh, on a thread of its own, or on the thread of a publisher of the same session."""
+        with self._calling:
+            if not self._listening:
+                return
+            try:
+                self._receive(sample_of(sample))
+            except Exception:  # an outermost loop, like that of the bus: Zenoh would print it and go on
+                log.exception("a direct callback broke; going on")
+
+    def close(self) -> None:
+        """Wait for a call that is under way, and let none begin any more."""
+        with self._calling:
+            self._listening = False
