@@ -133,8 +133,10 @@ def heed_free(state: State, component: IRI) -> Reaction:
         return deploying.ask_again(state, component)
     known, effects = _free(state, component)
     searches = known.phase in (Phase.DISCOVERING, Phase.COMPOSING)  # and may find that it is what it takes
-    if searches or component in state.held:
-        return known, effects  # it remembers this task until it is reserved or released
+    if searches or effects:
+        return replace(known, offered=known.offered | {component}), effects
+    if component in state.held:  # it remembers this task until it is reserved or released
+        return deploying.take_offered(replace(known, offered=known.offered | {component}), component)
     return replace(known, queued=known.queued - {component}), (Decline(component, state.epoch),)
 
 

@@ -105,6 +105,19 @@ def proceed(state: State) -> Reaction:
     return end_deployment(state)
 
 
+def take_offered(state: State, component: IRI) -> Reaction:
+    """Reserve a component while others are woken, out of turn, if it is kept for this task: not for as long as that.
+
+    No circle comes of it, as a task does not wait for a component that comes before one that it holds.
+    """
+    calls = {(component, Call.WAKE), (component, Call.RESERVE)}
+    known = component in state.offered and component in state.held and not state.held[component].reserved
+    wakes = any(call is Call.WAKE for _, call in state.pending)
+    if not (wakes and known and calls.isdisjoint(state.pending)):
+        return state, ()
+    return _reserve(replace(state, offered=state.offered - {component}), component)
+
+
 def _is_reserved_by_apply(state: State, component: IRI) -> bool:
     """Whether the only component that is not reserved may be applied to: it can turn no motor, and the rest acts."""
     assert state.target is not None
@@ -162,7 +175,7 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     """A component has done what it was asked: reserve the next one, or apply to those that wait for it."""
     held = state.held[answer.component]
     if answer.call is Call.WAKE:
-        return proceed(state)
+        return take_offered(state, answer.component) if state.pending else proceed(state)
     if answer.call is Call.RESERVE:
         known = replace(held, life=answer.life, asked=False, reserved=True)
         return proceed(replace(state, held={**state.held, answer.component: known}))
@@ -192,6 +205,7 @@ def end_deployment(state: State) -> Reaction:
         phase=Phase.RUNNING,
         fallback=None,
         queued=frozenset(),
+        offered=frozenset(),
         repeats={},
         held={component: held for component, held in state.held.items() if component in wanted},
         owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},

@@ -75,6 +75,7 @@ def dismantle(state: State, afterwards: Phase) -> Reaction:
         pending=frozenset(),
         unreleased=tuple(owed),
         queued=state.queued - owed.keys(),
+        offered=frozenset(),
         fallback=None,
         owed=owed,
         watched=frozenset(),

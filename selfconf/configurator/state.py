@@ -129,6 +129,8 @@ class State:
     """What the search that goes on leaves out for the sake of others that share a component."""
     free: frozenset[IRI] = frozenset()
     """The components that have said that they are free since the ecology was last asked: they know it first."""
+    offered: frozenset[IRI] = frozenset()
+    """The components that are kept for this task for a moment, as it waits for them, or were."""
     queued: frozenset[IRI] = frozenset()
     """The components that remember that this task waits for them."""
     ignores_holders: bool = False

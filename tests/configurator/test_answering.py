@@ -30,6 +30,7 @@ from selfconf.configurator.events import (
 from selfconf.configurator.state import Phase, State
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
+    CONTROL,
     DRIVE,
     ODOMETRY,
     OTHERS,
@@ -41,6 +42,7 @@ from tests.configurator.builders import (
     kinds,
     navigation,
     released,
+    reserved,
 )
 
 
@@ -169,6 +171,27 @@ def test_what_is_free_while_a_task_searches_goes_to_no_other_before_that_has_fou
     history.hear(Discovered())
     assert history.state.phase is Phase.COMPOSING
     assert history.hear(Freed(ODOMETRY)) == []
+
+
+def test_what_is_kept_for_a_task_is_reserved_while_others_are_started() -> None:
+    """It is not kept for as long as that takes, and a task that began later has all that it needs."""
+    history = waiting()
+    history.hear(Freed(TRACKER), Discovered())
+    history.composed(navigation())
+    assert history.answer(CONTROL, Call.WAKE) == [], "it is not offered, and comes in its turn"
+    assert reserved(history.answer(TRACKER, Call.WAKE)) == [TRACKER]
+    assert history.answer(TRACKER, Call.RESERVE) == []
+    assert reserved(history.answer(DRIVE, Call.WAKE)) == [CONTROL]
+    assert kinds(history.all_answer()) == [Running]
+
+
+def test_what_is_kept_for_a_task_while_it_has_others_started_is_reserved_at_once() -> None:
+    history = waiting()
+    history.hear(Appeared({ODOMETRY: "1"}), Discovered())
+    history.composed(navigation())
+    assert history.answer(TRACKER, Call.WAKE) == []
+    assert reserved(history.hear(Freed(TRACKER))) == [TRACKER]
+    assert history.hear(Freed(TRACKER)) != [], "it says so again: it is asked again"
 
 
 def test_a_notice_that_comes_after_the_component_was_reserved_lets_it_not_go() -> None:

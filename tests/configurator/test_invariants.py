@@ -197,11 +197,12 @@ class Ledger:
                 assert state.target is not None
                 assert component in self.watched
                 assert (epoch, state.phase) == (state.epoch, Phase.RESERVING)
-                assert not any(call is Call.WAKE for _, call in state.pending)
+                waking = any(call is Call.WAKE for _, call in state.pending)
+                assert not waking or component in before.offered | state.free
                 assert inputs == wiring(state.target)[component]
                 assert values == parameter_values(state.target)[component]
                 free = [c for c in state.target.components if not state.held[c].reserved]
-                assert component == min(free)
+                assert component == min(free) or waking
             case ApplyTo(component):
                 assert component in self.watched
                 self._check_apply(effect, before)
