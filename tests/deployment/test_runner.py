@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from selfconf.configurator.events import Event, Failed, LossLasts
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.components.liveness import AUDIT
 from selfconf.deployment.retries import TRY_AGAIN
+from selfconf.deployment.runner import LASTS_LONG
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.protocol.codec import decode, encode
@@ -163,6 +165,27 @@ def test_an_actuator_is_not_disturbed_while_another_one_is_replaced(tmp_path: Pa
     home.goes_on(3.0)
     assert home.agent.state.phase is Phase.RUNNING
     assert home.turns("wheels") == ["started"]
+
+
+def test_a_drive_that_did_not_hear_that_it_is_to_rest_is_told_again_whatever_has_been_decided_since(lab: Lab) -> None:
+    slow_code(lab, "odometry")
+    lab.components["odometry"].slow = 7.0
+    lab.running(agent := lab.agent())
+    control, drive = lab.components["control"], lab.components["drive"]
+    lab.components["tracker"].fail("Astrid has left the picture")
+    lab.let_pass(LASTS_LONG - 0.1)
+    faults = lab.network.faults
+    lab.network.faults = replace(faults, loss=1.0)
+    lab.let_pass(0.2)
+    lab.network.faults = faults
+    assert agent.state.held[iri("astrid-drive")].rests
+    lab.let_pass(0.1)
+    assert drive.said[-1] != ("stopped",), "it was not heard"
+    for _ in range(25):
+        control.emit("set.velocity", {"v": 0.3})
+        lab.let_pass(0.1)
+    assert agent.state.phase is not Phase.RUNNING
+    assert drive.said[-1] == ("stopped",)
 
 
 def test_an_actuator_that_has_started_again_rests_again_if_more_is_lost_meanwhile(tmp_path: Path) -> None:

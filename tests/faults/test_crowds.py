@@ -45,6 +45,10 @@ def test_a_task_that_wants_again_what_has_not_obeyed_its_release_waits_for_no_ot
     play_well(Recipe(902408, CROWDED, large=True), folder)
 
 
+def test_an_actuator_that_did_not_hear_that_it_is_to_rest_is_told_again(folder: Path) -> None:
+    play_well(Recipe(9401546, CROWDED, busy=True, large=True, upgrades=True), folder)
+
+
 def test_in_a_crowd_most_tasks_begin_at_once_and_some_are_of_either_template() -> None:
     scripts = [with_crowd(write(seed, ecology=CROWDED)) for seed in range(20)]
     at_once = [sum(one.kind == "begin" and one.time <= 0.5 for one in script.actions) for script in scripts]

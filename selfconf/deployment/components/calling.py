@@ -76,6 +76,8 @@ class Calling:
         self.identity, self.supervisor = identity, supervisor
         self.state, self.step, self._report = task.state, task.step, task.report
         self.lives, self._acts = lives, acts
+        self._latest: dict[IRI, Reserve | Apply | Release] = {}
+        """The last call that was made to each component."""
 
     def ask(
         self,
@@ -111,7 +113,12 @@ class Calling:
         `unanswered` is called where no answer has come in time, with what there is to do then otherwise: to ask for
         the component's state.
         """
+        self._latest[component] = message
         _Attempt(self, component, call, message, unanswered).make()
+
+    def stands(self, component: IRI, message: Reserve | Apply | Release) -> bool:
+        """Whether a call is the last that was made to a component which is held: it holds in later epochs as well."""
+        return self._latest.get(component) is message and component in self.state().held
 
     def answered(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
         """A component has answered a call, or its state shows that it has obeyed: report it, and step."""
@@ -234,12 +241,17 @@ class _Attempt:
         return self._call is Call.RELEASE
 
     def _seen(self, replies: Replies) -> None:
-        """Decide by the state of the component; of an older epoch nothing is done any more, but for a release."""
+        """Decide by the state of the component.
+
+        A call of an older epoch is made again only if none has been made since, and nothing depends on its answer: it
+        may have brought an actuator to rest.
+        """
         answer = self._said(replies)
         if answer is not None and self._has_obeyed(answer):
             self._calling.answered(self._component, self._call, self._message, answer)
             return
-        if self._message.epoch == self._calling.state().epoch:
+        current = self._message.epoch == self._calling.state().epoch
+        if current or self._calling.stands(self._component, self._message):
             if self._takes_longer(answer, replies):
                 self._calling.bus.later(PAUSE, self._inspect)
                 return
@@ -248,7 +260,7 @@ class _Attempt:
                 again = self._component, self._call, self._message, self._unanswered, left, self._first
                 _Attempt(self._calling, *again).make()
                 return
-        elif not self._hasty:
+        if not (current or self._hasty):
             return
         stopping = answer is not None and answer.stopping
         detail = "its code has not come to rest" if stopping else "it does not answer"
