@@ -22,6 +22,7 @@ from tests.faults.reservation_model import (
     RUNNING,
     SEARCH,
     WAITING,
+    WAKING,
     Claim,
     Configurator,
     Scheme,
@@ -107,7 +108,7 @@ class Exploration:
 
     def start(self) -> State:
         """The state in which every configurator has just begun."""
-        idle = (RESERVING, 0, 0, 0, 0, 0, 0, 0, SEARCH)
+        idle = (RESERVING, 0, 0, 0, 0, 0, 0, 0, SEARCH, 0)
         pairs = len(self.claims) * self.places
         budget = self.bounds.crashes, self.bounds.cuts, self.bounds.preemptions
         free = (-1, 0, -1, 0, 0, 0)
@@ -123,6 +124,10 @@ class Exploration:
             yield from self._changes_of_mind(state, component)
         for who in range(len(self.claims)):
             yield from self._ends(state, who)
+            if state[0][who][0] == WAKING:
+                new = self.world(state)
+                new.woken(who)
+                yield f"all of {who} live", new.freeze()
             if self.bounds.cuts and self.scheme.asks_again:
                 yield from self._second_looks(state, who)
 
@@ -176,7 +181,7 @@ class Exploration:
         alive = sum(one[0] != DEAD for one in configurators)
         if crashes and configurators[who][0] not in (DEAD, ENDED) and alive > 1:
             new = self.world(state)
-            new.configurators[who] = Configurator((DEAD, 0, 0, 0, 0, 0, 0, 0, 0))
+            new.configurators[who] = Configurator((DEAD, 0, 0, 0, 0, 0, 0, 0, 0, 0))
             new.budget[0] = crashes - 1
             for index in range(who * self.places, (who + 1) * self.places):
                 new.back[index] = ()

@@ -5,7 +5,9 @@ order, between different pairs they overtake each other at will. A configurator 
 one after the other in one order of all components; a component that is held remembers who waits, higher priority
 first, then the earlier beginning. When it becomes free it offers itself to the first. A holder of lower priority is
 asked to yield: it turns its actuators to rest, releases, and searches again. A waiting task lets go of everything when
-the component that it waits for begins to act for somebody else, and stays in the queue.
+the component that it waits for begins to act for somebody else, and stays in the queue. So does one that holds nothing
+that acts, when what it lacks is kept for another that goes before. Components of a task may have to be started, at each
+attempt anew; what is offered to the task meanwhile it reserves out of turn.
 
 Faults are bounded: a configurator crashes; a component falsely believes that a configurator is gone, and what is on
 the way between the two is lost; a holder is slow to yield and is preempted. `Scheme` turns single rules off, so that
@@ -32,6 +34,8 @@ class Claim:
     priority: int = 0
     patient: bool = True
     actuators: Mask = 0
+    dormant: Mask = 0
+    """The components that have to be started before the task reserves any in turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +59,26 @@ class Scheme:
 
 
 # A configurator's phases.
-RESERVING, WAITING, SOURCES, ACTUATORS, RUNNING, RESTING, RELEASING, QUEUED, ENDED, DEAD = range(10)
-PHASES = ("reserving", "waiting", "sources", "actuators", "running", "resting", "releasing", "queued", "ended", "dead")
+RESERVING, WAITING, SOURCES, ACTUATORS, RUNNING, RESTING, RELEASING, QUEUED, ENDED, DEAD, WAKING = range(11)
+PHASES = (
+    "reserving",
+    "waiting",
+    "sources",
+    "actuators",
+    "running",
+    "resting",
+    "releasing",
+    "queued",
+    "ended",
+    "dead",
+    "waking",
+)
 
 
 class Configurator:
     """What a configurator knows."""
 
-    __slots__ = ("after", "confirmed", "excluded", "held", "pending", "phase", "queued", "target", "wanted")
+    __slots__ = ("after", "confirmed", "excluded", "held", "offered", "pending", "phase", "queued", "target", "wanted")
 
     def __init__(self, frozen: tuple[int, ...]) -> None:
         (
@@ -75,6 +91,7 @@ class Configurator:
             self.queued,
             self.wanted,
             self.after,
+            self.offered,
         ) = frozen
 
     def freeze(self) -> tuple[int, ...]:
@@ -89,6 +106,7 @@ class Configurator:
             self.queued,
             self.wanted,
             self.after,
+            self.offered,
         )
 
 
@@ -116,10 +134,11 @@ State = tuple[
     tuple[tuple[str, ...], ...],
     tuple[int, int, int],
 ]
-SEARCH, JOIN, GIVE_UP = range(3)
-"""What comes after everything was released: search again, stay in the queue, or end."""
+SEARCH, JOIN, GIVE_UP, ANEW = range(4)
+"""What comes after everything was released: go on with the target, stay in the queue, end, or search among all."""
 ANSWERS = {
-    RESERVING: ("reserved", "wait", "acting", "lower"),
+    RESERVING: ("reserved", "wait", "kept", "acting", "lower"),
+    WAKING: ("reserved", "wait", "kept", "acting", "lower"),
     SOURCES: ("applied", "refused"),
     ACTUATORS: ("applied", "refused"),
     RESTING: ("rested",),
@@ -246,7 +265,8 @@ class World:
         if lower and not place.asked:
             place.asked = 1
             self.say(component, place.holder, "yield")
-        self.say(component, who, "lower" if lower else "acting" if place.acting else "wait")
+        kept = "wait" if place.holder >= 0 else "kept"
+        self.say(component, who, "lower" if lower else "acting" if place.acting else kept)
 
     def _applied(self, who: int, component: int, place: Place, target: Mask) -> None:
         if place.holder != who:
@@ -313,7 +333,10 @@ class World:
             if not one.target or one.target & one.excluded:
                 self.seek(who, retry=True)
             else:
-                self.reserve(who)
+                self.wake(who)
+        elif one.after == ANEW:
+            one.excluded = 0
+            self.seek(who, retry=False)
         elif one.after == JOIN:
             one.phase = QUEUED
             if not one.queued:  # everything it waited for has become free meanwhile
@@ -321,6 +344,26 @@ class World:
                 self.seek(who, retry=False)
         else:
             one.phase, one.target = ENDED, 0
+
+    def wake(self, who: int) -> None:
+        """Have what is dormant of the target started, and reserve meanwhile what has been offered; then the rest."""
+        one = self.configurators[who]
+        lacking = one.target & ~one.held
+        offered, one.offered = one.offered & lacking, 0
+        if not self.claims[who].dormant & lacking:
+            self.reserve(who)
+            return
+        one.phase, one.pending = WAKING, offered
+        for component in bits(offered):
+            self.call(who, component, "reserve")
+
+    def woken(self, who: int) -> None:
+        """All components live: go on with what is not reserved yet."""
+        one = self.configurators[who]
+        if one.pending:
+            one.phase = RESERVING
+        else:
+            self.reserve(who)
 
     def reserve(self, who: int) -> None:
         """Reserve what is lacking of the target, or activate it once nothing is."""
@@ -387,7 +430,7 @@ class World:
             self._event(who, component, message)
         elif one.pending & bit and message in ANSWERS.get(one.phase, ()):  # else it answers a call that was taken back
             one.pending &= ~bit
-            if one.phase == RESERVING:
+            if one.phase in (RESERVING, WAKING):
                 self._answered(who, bit, message)
             elif message == "refused":
                 one.held &= ~bit
@@ -411,16 +454,20 @@ class World:
         if message == "reserved":
             one.held |= bit
             one.queued &= ~bit
-            if not one.pending:
+            if not one.pending and one.phase == RESERVING:
                 self.reserve(who) if self.scheme.one_by_one or not one.target & ~one.held else self._back_off(who)
         elif not self.scheme.one_by_one:
             if not one.pending:
                 self._back_off(who)
+        elif one.phase == WAKING:
+            one.queued |= bit  # its turn comes
         else:
             one.queued |= bit
             in_order = self.claims[who].patient and not self._out_of_order(one, bit)
-            if message == "lower" or (message == "wait" and in_order):
-                one.phase = WAITING
+            if message == "kept":
+                in_order = in_order and (not one.held or bool(one.held & one.confirmed))
+            if message == "lower" or (message in ("wait", "kept") and in_order):
+                one.phase, one.pending = WAITING, bit
             else:
                 one.excluded |= bit
                 self.seek(who, retry=False)
@@ -433,11 +480,7 @@ class World:
 
     def _event(self, who: int, component: int, message: str) -> None:
         one, bit = self.configurators[who], 1 << component
-        waits = (
-            one.phase == WAITING
-            and bool(one.queued & bit)
-            and (one.target & ~one.held) & -(one.target & ~one.held) == bit
-        )
+        waits = self._waits_for(one, bit)
         if message == "free":
             self._freed(who, bit, waits)
         elif message == "held":
@@ -447,24 +490,34 @@ class World:
         elif message == "yield":
             if one.held & bit:
                 one.wanted |= bit
-                if one.phase in (RESERVING, WAITING):
+                if one.phase in (RESERVING, WAITING, WAKING):
                     self._yields_early(who)
                 elif one.phase == RUNNING:
                     self.yields(who)
         elif one.held & bit:
             self._lose(who, bit)
 
+    def _waits_for(self, one: Configurator, bit: Mask) -> bool:
+        return one.phase == WAITING and bool(one.pending & bit)
+
     def _freed(self, who: int, bit: Mask, waits: bool) -> None:
         one = self.configurators[who]
         one.excluded &= ~bit
         if waits:
-            self.reserve(who)
+            one.phase = RESERVING
+            self.call(who, bit.bit_length() - 1, "reserve")
         elif one.phase == QUEUED:
-            one.excluded = 0
+            one.excluded, one.offered = 0, bit
             self.seek(who, retry=False)
+        elif one.phase == WAKING and one.target & ~one.held & bit:
+            if not one.pending & bit:
+                one.pending |= bit
+                self.call(who, bit.bit_length() - 1, "reserve")
         elif one.queued & bit and not (one.phase == RESERVING and one.pending & bit):
             one.queued &= ~bit
             self.call(who, bit.bit_length() - 1, "release")
+            if one.phase == RELEASING and one.after == JOIN:
+                one.after = ANEW  # it may be what was lacking
 
     def _yields_early(self, who: int) -> None:
         """Let go of all while reserving: nothing acts yet."""
@@ -481,7 +534,7 @@ class World:
         one = self.configurators[who]
         one.held &= ~bit
         one.confirmed &= ~bit
-        if one.phase in (RESERVING, WAITING):
+        if one.phase in (RESERVING, WAITING, WAKING):
             asked = one.pending
             one.target = 0
             self.release(who, one.held | one.queued | asked, SEARCH)
@@ -500,7 +553,7 @@ class World:
         one, bit = self.configurators[who], 1 << component
         if not one.pending & bit or not self.quiet(who, component):
             return False
-        if one.phase == RESERVING:
+        if one.phase in (RESERVING, WAKING):
             self.call(who, component, "reserve")
         elif one.phase in (SOURCES, ACTUATORS):
             self.call(who, component, str(one.target))
@@ -522,6 +575,6 @@ class World:
             return True
         if one.queued & bit and not place.queue >> who & 1 and place.offer != who and one.phase in (WAITING, QUEUED):
             one.queued &= ~bit
-            self._freed(who, bit, one.phase == WAITING)
+            self._freed(who, bit, self._waits_for(one, bit))
             return True
         return False

@@ -19,9 +19,10 @@ def components(letters: str) -> Mask:
     return sum(1 << "abcdefgh".index(letter) for letter in letters)
 
 
-def claim(*targets: str, priority: int = 0, patient: bool = True, actuators: str = "") -> Claim:
+def claim(*targets: str, priority: int = 0, patient: bool = True, actuators: str = "", dormant: str = "") -> Claim:
     """What a task wants; by default the last component of its first target is an actuator."""
-    return Claim(tuple(map(components, targets)), priority, patient, components(actuators or targets[0][-1]))
+    acting = components(actuators or targets[0][-1])
+    return Claim(tuple(map(components, targets)), priority, patient, acting, components(dormant))
 
 
 HASTY = {"patient": False}
@@ -29,6 +30,7 @@ ONE_TARGET = [claim("ab"), claim("ab")]
 ONE_TARGET_URGENT = [claim("abc"), claim("abc", priority=1)]
 RING = [claim("ab"), claim("bc"), claim("ac")]
 CHAIN = [claim("bc"), claim("ab"), claim("a")]
+STARTING = [claim("abc", dormant="c"), claim("abd", priority=1, dormant="d")]
 YIELDING = [claim("bc", "ac"), claim("ac", actuators="a"), claim("b", priority=1)]
 
 CASES: dict[str, list[Claim]] = {
@@ -40,6 +42,15 @@ CASES: dict[str, list[Claim]] = {
     "a task that waits in the way of a third": CHAIN,
     "a task that yields and has an alternative": YIELDING,
     "three tasks with alternatives": [claim("cd", "ad"), claim("ac", actuators="a"), claim("bc", "ab", priority=1)],
+    "two tasks with one target that is started": [claim("ab", dormant="a")] * 2,
+    "the first of two has to start what only it wants": [claim("abc", dormant="c"), claim("ab")],
+    "the second of two has to start what only it wants": [claim("ab"), claim("abc", dormant="c")],
+    "one of two that start something is urgent": STARTING,
+    "three tasks in a ring that start something": [
+        claim("abd", dormant="d"),
+        claim("bc"),
+        claim("ac", dormant="a"),
+    ],
     "three hasty tasks with one target": [claim("abc", **HASTY)] * 3,
     "three hasty tasks in a ring": [claim("ab", **HASTY), claim("bc", **HASTY), claim("ac", **HASTY)],
     "hasty tasks with alternatives": [claim("cd", "ad", **HASTY), claim("ac", "bd", actuators="a", **HASTY)],
@@ -75,7 +86,9 @@ def test_waiting_tasks_run_when_running_ones_end(case: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("faults", FAULTS)
 @pytest.mark.parametrize(
-    "claims", [ONE_TARGET, [claim("ab"), claim("ab", priority=1)], CHAIN], ids=["equal", "urgent", "chain"]
+    "claims",
+    [ONE_TARGET, [claim("ab"), claim("ab", priority=1)], CHAIN, YIELDING, STARTING],
+    ids=["equal", "urgent", "chain", "yielding", "starting"],
 )
 def test_after_a_fault_nothing_acts_on_part_and_nobody_waits_in_vain(claims: list[Claim], faults: str) -> None:
     check(explore(claims, bounds=replace(FAULTS[faults], states=STATES)))
@@ -89,7 +102,7 @@ def test_after_a_fault_nothing_acts_on_part_and_nobody_waits_in_vain(claims: lis
         ("rests_first", ONE_TARGET_URGENT, Bounds(), "acts on part"),
         ("tells_waiting", CHAIN, Bounds(), "deadlock"),
         ("keeps_order", YIELDING, Bounds(), "deadlock"),
-        ("offers_end", ONE_TARGET, Bounds(cuts=1), "deadlock"),
+        ("offers_end", [claim("a"), claim("ab"), claim("b")], Bounds(cuts=1), "deadlock"),
         ("asks_again", ONE_TARGET, Bounds(cuts=1), "deadlock"),
         ("asks_again", ONE_TARGET, Bounds(cuts=1), "acts on part"),
     ],
