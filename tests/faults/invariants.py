@@ -57,6 +57,11 @@ def retries(history: History) -> float:
     return 20 * CALLS if history.script.faults.loss else 2 * CALLS
 
 
+def told_again(history: History) -> float:
+    """How much later an actuator may hear that it is to rest, as the first message was lost, in seconds."""
+    return CALLS if history.script.faults.loss else 0.0
+
+
 def tolerated(history: History) -> float:
     """How long an actuator may act on at most without what feeds it, in seconds."""
     profiles = map(history.lab.profile, history.script.ecology.processes)
@@ -272,7 +277,11 @@ STEPS = (
     Invariant("each runs with its own", runs_with_anothers, lambda h: LOOKS + retries(h) + travel(h)),
     Invariant("held is known", held_for_nothing, lambda history: retries(history) + travel(history)),
     Invariant("nobody obeys two", obeys_two),
-    Invariant("no actuator acts on part", acts_on_part, lambda h: max(GRACE, tolerated(h)) + LEASE + travel(h)),
+    Invariant(
+        "no actuator acts on part",
+        acts_on_part,
+        lambda h: max(GRACE, tolerated(h)) + LEASE + travel(h) + told_again(h),
+    ),
     Invariant("nobody heeds a stranger", heeds_a_stranger, heeded),
     Invariant("no actuator acts blind", acts_blind, lambda h: tolerated(h) + LEASE + GRACE + travel(h) + 1.0),
     Invariant("who hangs has failed", hangs_unnoticed, lambda history: 0.05),
