@@ -88,7 +88,8 @@ def _busy(state: State, event: Answered) -> Reaction:
             return deploying.await_release(state, event.component)
         if state.repeats[event.component] <= MOST_REPEATS:
             return then(effects, _reserve_anew(apart, event.component))
-    apart = replace(apart, news=True)  # what the others hold, and insist on, says the ecology before this is a refusal
+    if event.component not in apart.asked_about:  # before this is a refusal: who holds it, and what they insist on
+        apart = replace(apart, news=True, asked_about=apart.asked_about | {event.component})
     busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True)
     return then(effects, losing.lose(apart, event.component, busy))
 
@@ -147,4 +148,5 @@ def _free(state: State, component: IRI) -> Reaction:
         {c: holder for c, holder in holders.items() if c != component} for holders in (state.taken, state.sharers)
     )
     known = replace(state, lost=lost, taken=taken, sharers=sharers, free=state.free | {component}, news=True)
+    known = replace(known, asked_about=state.asked_about - {component})
     return phases.discover(known) if state.phase is Phase.REFUSED else (known, ())

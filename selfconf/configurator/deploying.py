@@ -1,10 +1,10 @@
 """Act 4 as a transaction: wake, reserve, then activate; each function gives the next state and what is to be done.
 
 All components of the target are woken at once, those that live are awake. Then each that is not held yet is reserved,
-one after the other in the order of their IRIs. When all are held, each is applied to as soon as everything before it in
-the starting order has confirmed. A component that acts already, and gets other inputs, is applied to at once if a
-source of it is lost, else not before its new sources have confirmed: make before break. What is not needed any more is
-released when everything has confirmed.
+one after the other in the order of their IRIs; but what is kept for the task is reserved while others are woken. When
+all are held, each is applied to as soon as everything before it in the starting order has confirmed. A component that
+acts already, and gets other inputs, is applied to at once if a source of it is lost, else not before its new sources
+have confirmed: make before break. What is not needed any more is released when everything has confirmed.
 
 Why in the order of the IRIs: a task that waits for a component holds none that comes later, so tasks cannot wait for
 each other in a circle (Havender 1968). One that was asked in a deployment which began anew before the answer came
@@ -206,6 +206,7 @@ def end_deployment(state: State) -> Reaction:
         fallback=None,
         queued=frozenset(),
         offered=frozenset(),
+        asked_about=frozenset(),
         repeats={},
         held={component: held for component, held in state.held.items() if component in wanted},
         owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},

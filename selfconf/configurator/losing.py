@@ -71,6 +71,7 @@ def lose(state: State, component: IRI, loss: Loss) -> Reaction:
         owed={**state.owed, component: epoch},
         lost={**state.lost, component: loss},
         queued=state.queued - {component},
+        offered=frozenset(),
     )
     if loss.cause in PROCESS_ENDS and loss.life:
         without = replace(without, ended_lives={**state.ended_lives, component: loss.life})

@@ -131,6 +131,8 @@ class State:
     """The components that have said that they are free since the ecology was last asked: they know it first."""
     offered: frozenset[IRI] = frozenset()
     """The components that are kept for this task for a moment, as it waits for them, or were."""
+    asked_about: frozenset[IRI] = frozenset()
+    """The components for which the ecology was asked once who holds them, as they have said that another task does."""
     queued: frozenset[IRI] = frozenset()
     """The components that remember that this task waits for them."""
     ignores_holders: bool = False

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Replies
 from selfconf.configurator.events import Event, Failed, LossLasts
 from selfconf.configurator.state import Phase, Policy
@@ -640,3 +641,15 @@ def test_a_configurator_that_has_ended_asks_nobody_any_more(lab: Lab, monkeypatc
     monkeypatch.setattr(agent.bus, "later", lambda seconds, action: timers.append(seconds))
     lab.let_pass(10.0)
     assert timers == []
+
+
+@pytest.mark.parametrize("patient", [False, True])
+def test_a_task_is_refused_though_it_cannot_hear_who_holds_what_it_needs(lab: Lab, patient: bool) -> None:
+    first = lab.agent()
+    assert lab.running(first)
+    second = lab.agent(patient=patient)
+    assert isinstance(first.bus, MemoryBus)
+    assert isinstance(second.bus, MemoryBus)
+    lab.network.cut(first.bus, second.bus)
+    assert lab.until(lambda: second.state.phase is Phase.REFUSED, 5.0)
+    assert second.state.attempt < 10
