@@ -215,11 +215,20 @@ class LivingTasks:
                 with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
                     self._end_record(record)
                 raise
-            for other in self.kept(claimed.name):  # which may have been handed over in the same moment, on another host
-                if other.task != record.task and (other.beginning, other.task) < (record.beginning, record.task):
-                    self._end_record(record)
-                    raise _taken(claimed.name)
+            self._settle(record)
             return claimed.name
+
+    def _settle(self, record: TaskRecord) -> None:
+        """Have one go on of the tasks of a name that were handed over in the same moment, on several hosts.
+
+        The last to look sees all. Raises NetworkError if it is another one than that of the record.
+        """
+        same = [one for one in self.kept(task_name(record.task)) if one.task != record.task]
+        first = min([record, *same], key=lambda one: (one.beginning, one.task))
+        for other in same if first is record else [record]:
+            self._end_record(other)
+        if first is not record:
+            raise _taken(task_name(record.task))
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them; returns their names.

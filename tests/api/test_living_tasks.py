@@ -437,7 +437,7 @@ def test_of_tasks_that_are_handed_over_with_one_name_on_several_hosts_the_first_
     node.serve(KEYS.kept_tasks(), tell)
     if beginning > PATROL.beginning:
         assert tasks.asked.detach(PATROL) == "patrol"
-        assert tasks.kept == [PATROL]
+        assert tasks.kept == [PATROL, replace(other, revision=2, ended=True)], "it may have looked before"
     else:
         with pytest.raises(NetworkError, match="a task 'patrol' lives already"):
             tasks.asked.detach(PATROL)
