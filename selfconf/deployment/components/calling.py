@@ -117,8 +117,9 @@ class Calling:
         _Attempt(self, component, call, message, unanswered).make()
 
     def stands(self, component: IRI, message: Reserve | Apply | Release) -> bool:
-        """Whether a call is the last that was made to a component which is held: it holds in later epochs as well."""
-        return self._latest.get(component) is message and component in self.state().held
+        """Whether a call holds in later epochs as well: it brings to rest what is held, and is the last one to that."""
+        rests = isinstance(message, Apply) and message.rests
+        return rests and self._latest.get(component) is message and component in self.state().held
 
     def answered(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
         """A component has answered a call, or its state shows that it has obeyed: report it, and step."""

@@ -79,8 +79,11 @@ class HeldLives:
     def obeyed(self, component: IRI, life: str, late: bool = False) -> None:
         """Note that a life of a component has obeyed a call of this task.
 
-        One that is heard of `late`, as the call was of an older epoch, is not held in the place of another that lives.
+        One that is heard of `late`, as the call was of an older epoch, is not held if it has ended since, nor in the
+        place of another that lives.
         """
+        if late and not self._ecology.lives_on(component, life):
+            return
         if not (late and component in self._held and self.lives_on(component)):
             self._held[component] = life
         self.caught_up(component, life)
