@@ -264,8 +264,8 @@ class Keeper:
     def _report(self, task: str, event: RunEvent) -> None:
         """Let every site know what runs, so that the next one can go on with it."""
         log.info("%s: %s", task, event.act)
-        known = self.folder.records[task]
-        if isinstance(event, TaskRunning) and self._revisions.get(task) == known.revision:
+        known = self.folder.records.get(task)  # none if it has ended, and was forgotten meanwhile
+        if known is not None and isinstance(event, TaskRunning) and self._revisions.get(task) == known.revision:
             record = replace(
                 known,
                 revision=known.revision + 1,
