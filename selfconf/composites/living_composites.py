@@ -8,7 +8,6 @@ again. Composites that could be inside of each other in a circle never live.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Mapping, Set
 from functools import partial
 
@@ -23,8 +22,6 @@ from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.keys import Keys, safe_name
 from selfconf.rdf.advertisements import Advertisement
-
-log = logging.getLogger(__name__)
 
 LOOK_AT_REFUSED = 10.0
 """After how many seconds it is looked again whether an inside that was refused can be configured. The pause doubles
