@@ -266,7 +266,9 @@ def test_problems_on_one_long_line_take_as_long_each_however_many_there_are() ->
         assert len(check(" ".join(f":a{n} a sc:Component, rob:Tuneer ." for n in range(size))).diagnostics) == size
         return time.process_time() - began
 
-    assert seconds(480) < 20 * min(seconds(60), seconds(60)) + 0.1  # 8 times, or 64 if it were quadratic
+    # 8 times, or 64 if it were quadratic; on a machine that others use too, one in five runs at least is not held up
+    few = min(seconds(60), seconds(60))
+    assert any(seconds(480) < 20 * few + 0.1 for _ in range(5))
 
 
 @pytest.mark.parametrize("link", ["rdfs:subPropertyOf", "owl:equivalentProperty"])
