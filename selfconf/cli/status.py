@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """What `code_of_tasks` says: 0 also if nothing is deployed."""
+    """Return 0 once every configurator has answered, also if nothing is deployed; else as `code_of_tasks`."""
     with joined(given) as ecology:
         found = ecology.tasks
         complain_of(ecology)

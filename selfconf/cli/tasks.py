@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """What `code_of_tasks` says: 0 also if there is no task."""
+    """Return 0 once every configurator has answered, also if there is no task; else as `code_of_tasks`."""
     from selfconf.render import table
 
     with joined(given) as ecology:

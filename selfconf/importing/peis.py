@@ -66,9 +66,7 @@ class _Scanner:
 
     def mistake(self, message: str, position: int | None = None) -> AuthorError:
         """An error at a position, or where the scanner is."""
-        position = self.position if position is None else position
-        line, column = self.text.count("\n", 0, position) + 1, position - self.text.rfind("\n", 0, position)
-        return AuthorError(message, file=self.source.shown, line=line, column=column)
+        return self.source.mistake(message, self.position if position is None else position)
 
 
 def import_peis(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:

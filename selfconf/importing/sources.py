@@ -46,6 +46,11 @@ class SourceDocument:
         check_utf_8(self.octets, self.shown)
         return self.octets.removeprefix(BOM_UTF8).decode()
 
+    def mistake(self, message: str, offset: int) -> AuthorError:
+        """An error at a character of the text, counted from 0, with its line and column."""
+        before = self.text()[:offset]
+        return AuthorError(message, file=self.shown, line=before.count("\n") + 1, column=offset - before.rfind("\n"))
+
 
 def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadable) -> Iterator[SourceDocument]:
     """The documents that some paths and URLs stand for: of a folder, all files below it that end so, sorted by name.

@@ -29,7 +29,7 @@ class JsonText:
 def parse_json(source: SourceDocument) -> JsonText:
     """Read a JSON document. Raises AuthorError with line and column where it is none."""
     text = source.text()
-    _check_depth(text, source.shown)
+    _check_depth(text, source)
     repeated: list[str] = []
 
     def members(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -39,9 +39,8 @@ def parse_json(source: SourceDocument) -> JsonText:
         return found
 
     def no_number(name: str) -> None:
-        found = next((token for token in _CONSTANT.finditer(text) if token[1]), None)
-        line, column = (None, None) if found is None else _place(text, found.start())
-        raise AuthorError(f"this is not JSON: {name} is no number of JSON", file=source.shown, line=line, column=column)
+        offset = next(token.start() for token in _CONSTANT.finditer(text) if token[1])
+        raise source.mistake(f"this is not JSON: {name} is no number of JSON", offset)
 
     try:
         value = json.loads(text, object_pairs_hook=members, parse_constant=no_number)
@@ -64,7 +63,7 @@ def one_or_several(value: Any) -> list[Any]:
     return [] if value is None else value if isinstance(value, list) else [value]
 
 
-def _check_depth(text: str, shown: str) -> None:
+def _check_depth(text: str, source: SourceDocument) -> None:
     """Raises AuthorError where it is nested too deep; short of that many brackets there is nothing to look at."""
     if text.count("{") + text.count("[") <= DEEPEST_JSON:
         return
@@ -73,13 +72,7 @@ def _check_depth(text: str, shown: str) -> None:
         if token[1]:
             depth += 1
             if depth > DEEPEST_JSON:
-                line, column = _place(text, token.start())
                 message = f"its JSON is nested more than {DEEPEST_JSON} levels deep, which no description needs"
-                raise AuthorError(message, file=shown, line=line, column=column)
+                raise source.mistake(message, token.start())
         elif token[2]:
             depth -= 1
-
-
-def _place(text: str, offset: int) -> tuple[int, int]:
-    """The line and the column of a character, both from 1."""
-    return text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)
