@@ -4,6 +4,9 @@ An array is anything with a buffer of numbers: a NumPy array, a memoryview with 
 travel little-endian, the last dimension quickest (C order); their datatype and the shape stand in the stamp. What
 arrives is a view of the bytes that came, without a copy: a NumPy array that is not to be written to, or, where NumPy is
 not installed, a memoryview. NumPy is imported by the first array that arrives, and by nothing else.
+
+JSON is written and read by orjson, in a tenth of the time of the standard library, and by that library wherever the two
+could differ: values that orjson refuses, numbers that it writes as null or would round, text that it takes for none.
 """
 
 from __future__ import annotations
@@ -14,6 +17,8 @@ import sys
 from functools import cache
 from types import ModuleType
 from typing import Any, NoReturn
+
+import orjson
 
 from selfconf.protocol.messages import SignalEncoding
 from selfconf.protocol.stamps import PLAIN
@@ -58,10 +63,16 @@ def _unsayable(value: object) -> NoReturn:
 
 
 _WRITER = json.JSONEncoder(separators=(",", ":"), allow_nan=False, ensure_ascii=False, default=_unsayable)
-"""One for all signals: `json.dumps` makes one for each, which takes a third of the time of a small signal.
+"""Writes what orjson does not, and says why where there is nothing to write.
 
 It does not escape letters: text that is none, with half of a surrogate pair, is noticed where UTF-8 cannot say it.
 """
+_PLAIN_TYPES = orjson.OPT_PASSTHROUGH_SUBCLASS | orjson.OPT_PASSTHROUGH_DATETIME | orjson.OPT_PASSTHROUGH_DATACLASS
+"""Has orjson refuse what is nothing of JSON, but for a UUID and a member of an `Enum`, which travel as their values."""
+_DIGITS = bytes.maketrans(b"123456789", b"000000000")
+"""Makes every digit a zero."""
+_LONG, _LONG_NEGATIVE = b"0" * 20, b"-" + b"0" * 19
+"""What whole numbers beyond 64 bits have in them once their digits are zeros: orjson reads these as doubles."""
 
 
 class UnsayableError(Exception):
@@ -91,9 +102,14 @@ def as_json(value: Any) -> bytes:
     Raises UnsayableError.
     """
     try:
-        said = _WRITER.encode(value).encode()
-    except (TypeError, ValueError, RecursionError) as error:
-        raise UnsayableError(f"is nothing that JSON can say: {error}") from None
+        said = orjson.dumps(value, None, _PLAIN_TYPES)
+    except orjson.JSONEncodeError:
+        said = b""
+    if not said or b"null" in said:  # which NaN and infinity are to orjson
+        try:
+            said = _WRITER.encode(value).encode()
+        except (TypeError, ValueError, RecursionError) as error:
+            raise UnsayableError(f"is nothing that JSON can say: {error}") from None
     if len(said) > LARGEST_JSON:
         raise UnsayableError(f"has {len(said)} bytes as JSON, which are too many; an array or bytes can be that large")
     return said
@@ -104,7 +120,7 @@ def read_payload(payload: bytes, raw: bool, encoding: SignalEncoding) -> Any:
     if not raw:
         if len(payload) > LARGEST_JSON:
             raise ValueError(f"{len(payload)} bytes of JSON are too many")
-        return json.loads(payload)
+        return _read_json(payload)
     if not encoding.datatype:
         return payload
     if encoding.datatype not in ELEMENT_FORMATS or _size(encoding.datatype) * math.prod(encoding.shape) != len(payload):
@@ -117,6 +133,17 @@ def read_payload(payload: bytes, raw: bool, encoding: SignalEncoding) -> Any:
         return memoryview(payload).cast(form, encoding.shape)  # type: ignore[call-overload]  # `form` is no constant
     except (TypeError, ValueError):  # a memoryview knows neither these datatypes nor dimensions without any element
         return memoryview(payload)
+
+
+def _read_json(payload: bytes) -> Any:
+    """The value that JSON says. Raises ValueError, and RecursionError where it is nested too deeply."""
+    zeros = payload.translate(_DIGITS)
+    if _LONG not in zeros and _LONG_NEGATIVE not in zeros:
+        try:
+            return orjson.loads(payload)
+        except orjson.JSONDecodeError:
+            pass  # what the standard library takes for JSON, such as NaN, goes on being read, and it says what is wrong
+    return json.loads(payload)
 
 
 def _datatype(view: memoryview) -> str:

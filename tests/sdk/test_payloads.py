@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import array
+import json
+from collections import OrderedDict
 from typing import Any
 
 import pytest
 
+from selfconf.model.term import IRI
 from selfconf.protocol.messages import SignalEncoding
 from selfconf.sdk import payloads
 from selfconf.sdk.payloads import ELEMENT_FORMATS, LARGEST_JSON, UnsayableError, as_bytes, as_json, read_payload
@@ -46,6 +49,26 @@ def test_a_single_element_of_an_array_is_refused_with_what_makes_a_number_of_it(
 def test_what_json_cannot_say_is_refused(value: Any) -> None:
     with pytest.raises(UnsayableError):
         as_json(value)
+
+
+@pytest.mark.parametrize(
+    "number", [2**63, 2**64 - 1, 2**64, -(2**63), -(2**63) - 1, 10**40, -(10**40), 0.00012345678901234567]
+)
+def test_a_number_arrives_as_it_was_however_long(number: float) -> None:
+    value = {"numbers": [1, number, 2.5], "text": "-12345678901234567890"}
+    arrived = read_payload(as_json(value), False, SignalEncoding())
+    assert arrived == value
+    assert type(arrived["numbers"][1]) is type(number)
+
+
+@pytest.mark.parametrize("value", [{1: "a"}, {"x": OrderedDict(a=None)}, (1, [2]), IRI("urn:x"), {True: 1}])
+def test_what_looks_like_json_to_python_is_json(value: Any) -> None:
+    assert as_json(value) == json.dumps(value, separators=(",", ":")).encode()
+
+
+@pytest.mark.parametrize("payload", [b"[NaN]", b"-Infinity", b'"\\ud800"', b"1e400", b"\xef\xbb\xbf[1]"])
+def test_what_other_libraries_write_as_json_is_read(payload: bytes) -> None:
+    assert repr(read_payload(payload, False, SignalEncoding())) == repr(json.loads(payload))
 
 
 @pytest.mark.parametrize("datatype", ELEMENT_FORMATS)
