@@ -6,9 +6,9 @@ else on its host, the site's own bus included, is a *client* of a relay. How ses
 
 * Callbacks of Zenoh only put into the loop's queues (`indirect=False`): work in one would hold up every other message,
   and by default each would have a thread. The callback of a direct subscription puts into a queue of its owner.
-* What comes by the thousand, the answers and the lives of all, is read from a channel of Zenoh by a thread of its
-  own, many at a time: each callback takes Python's lock, for which Zenoh's thread would wait so long while Python works
-  that it misses the signs of life of its router.
+* What comes by the thousand, the answers and the lives of all, is read from a channel (`zenoh_channels`): with a
+  callback for each, Zenoh's thread would wait so long for Python that it misses the signs of life of its router.
+* A roll-call is made again where its answer may lack something (`zenoh_roll_call`).
 * Questions go to all queryables and are not consolidated, for that keeps one reply per key and waits for the slowest.
   They end when every queryable has finished, not at the time-out.
 * All control calls of one component have the same priority and are express, or they would overtake each other.
@@ -25,23 +25,21 @@ from typing import Any
 
 import zenoh
 import zenoh.ext
-from zenoh.handlers import Callback, FifoChannel
+from zenoh.handlers import Callback
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
 from selfconf.bus.reader_threads import ReaderThreads
+from selfconf.bus.zenoh_channels import each, may_be_many, open_channel, read_together
 from selfconf.bus.zenoh_receivers import DirectReceiver, Receiver, ZenohRequest, sample_of
 from selfconf.bus.zenoh_relay import Hub, Relay
+from selfconf.bus.zenoh_roll_call import RollCalls
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
 from selfconf.errors import NetworkError
 
 log = logging.getLogger(__name__)
 
-_CHANNEL = 1 << 17
-"""How much a channel holds that Python has not read yet, before Zenoh's thread waits."""
-_TOGETHER = 200
-"""How many of them are handed over together: what is urgent waits for as many lives at most."""
 LAST_TOLD = 0.5
 """Seconds after which the last sample is announced as that, where samples are kept: the last may be lost, too."""
 _QUALITY: dict[Urgency, dict[str, Any]] = {
@@ -162,6 +160,7 @@ class ZenohBus(Loop):
         self._direct: set[DirectReceiver] = set()
         self._readers = ReaderThreads()
         """The threads that read channels; none may be left when Python ends, or it ends with a crash."""
+        self._roll_calls = RollCalls(self, session, self._readers)
         self._open = True
         self._turns = 0
         """How often this bus has gained or lost a hub: of a hub that was away for a moment the name is the same."""
@@ -293,7 +292,7 @@ class ZenohBus(Loop):
             replies = Replies(tuple(samples), tuple(e for e in errors if e != "Timeout"), not late)
             self.wake_up(lambda: done(replies))
 
-        handler = _handler(key, listen, end)
+        handler: Any = open_channel() if may_be_many(key) else each(listen, end)
         channel = self._session.get(
             key,
             handler,
@@ -327,25 +326,15 @@ class ZenohBus(Loop):
             receiver.received(*((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT) for sample in samples))
 
         # A channel is looked at ten times a second; a callback for each of thousands would hold Zenoh's thread up.
-        handler: Any = FifoChannel(_CHANNEL) if many else _each(listen)
+        handler: Any = open_channel() if many else each(listen)
+        self._roll_calls.knows_many |= many
         declared = self._session.liveliness().declare_subscriber(key, handler, history=history)
         self._read_aside(handler, declared.handler, listen)
         return receiver.until(self._keep(declared))
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
         """The keys that are alive right now."""
-        alive: list[str] = []
-
-        def listen(replies: Sequence[zenoh.Reply]) -> None:
-            alive.extend(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
-
-        def end() -> None:
-            keys = tuple(sorted(alive))
-            self.wake_up(lambda: done(keys))
-
-        handler = _handler(key, listen, end)
-        channel = self._session.liveliness().get(key, handler, timeout=seconds)
-        self._read_aside(handler, channel, listen, end)
+        self._roll_calls.call(key, seconds, done)
 
     def _read_aside(
         self,
@@ -359,7 +348,7 @@ class ZenohBus(Loop):
             return
 
         def read() -> None:
-            while some := _received(channel):
+            while some := read_together(channel):
                 take(some)
             end()
 
@@ -389,26 +378,3 @@ class ZenohBus(Loop):
                 declared.undeclare()
 
         return undo
-
-
-def _handler(key: str, take: Callable[[Sequence[Any]], object], end: Callable[[], None] = lambda: None) -> Any:
-    """What Zenoh hands over under a key to: a channel where it may be thousands, else a callback for each."""
-    if "*" in key.removesuffix("/*"):  # of one component there are few lives, and few outputs
-        return FifoChannel(_CHANNEL)
-    return _each(take, end)
-
-
-def _each(take: Callable[[Sequence[Any]], object], end: Callable[[], None] = lambda: None) -> Any:
-    return Callback(lambda one: take((one,)), end, indirect=False)
-
-
-def _received(channel: Any) -> list[Any]:
-    """Wait for what a channel receives, and return it with what else is there; nothing if the channel has ended."""
-    some: list[Any] = []
-    try:
-        some.append(channel.recv())
-        while len(some) < _TOGETHER and (one := channel.try_recv()) is not None:
-            some.append(one)
-    except zenoh.ZError:
-        pass
-    return some
