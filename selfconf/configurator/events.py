@@ -78,6 +78,8 @@ class Answered:
     """The holder of the component, where that is another task."""
     shared: bool = False
     """Whether a component that is busy acts for this task as well, as it has before."""
+    acts: bool = False
+    """Whether a component that is reserved acts for this task, as one does that was given up when it was cut off."""
     startable: bool = False
     """Whether the site of the component can start it again."""
 

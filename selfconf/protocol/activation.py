@@ -30,12 +30,12 @@ lasts, but blocks no other task, and another configurator of the same task goes 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from enum import Enum
 
 from selfconf.model.immutable import immutable
-from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict
+from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict, Wire
 
 MOST_WAITING = 64
 """How many tasks a component remembers that wait for it; those that come last wait by asking again."""
@@ -235,14 +235,26 @@ def _activate(activation: Activation, call: Apply, gone: frozenset[str]) -> Acti
 def _reserve(activation: Activation, own: Hold | None, call: Reserve) -> Activation:
     """Hold the component; one that acts already goes on as it is, until it is applied to.
 
-    One that has failed waits for the apply of a newer epoch than the one that it failed in.
+    But what it follows and is not to follow is lost to it: its task has given it up since, when it could not be heard,
+    and what is not reserved with it may act for another task by now. One that has failed waits for the apply of a newer
+    epoch than the one that it failed in.
     """
     others = tuple(hold for hold in activation.holds if hold is not own)
     held = Hold(call)
     if own is not None and own.active and (activation.phase is ActivationPhase.ACTIVE or call.epoch == own.claim.epoch):
         wish = call if others and own.wants != (call.inputs, call.values) else None
-        held = Hold(replace(own.claim, epoch=call.epoch, supervisor=call.supervisor), True, wish)
+        left = (
+            own.claim.inputs if others or call.epoch == own.claim.epoch else _in_common(own.claim.inputs, call.inputs)
+        )
+        held = Hold(replace(own.claim, epoch=call.epoch, supervisor=call.supervisor, inputs=left), True, wish)
     return replace(activation, holds=(*others, held), ended=_ended(activation, call), passed=frozenset())
+
+
+def _in_common(
+    inputs: Mapping[str, tuple[Wire, ...]], others: Mapping[str, tuple[Wire, ...]]
+) -> Mapping[str, tuple[Wire, ...]]:
+    """Inputs with those of their wires that others have as well."""
+    return {port: tuple(wire for wire in wires if wire in others.get(port, ())) for port, wires in inputs.items()}
 
 
 def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gone: frozenset[str]) -> bool:

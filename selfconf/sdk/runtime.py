@@ -241,8 +241,9 @@ class ComponentRuntime:
             verdict = Verdict.DONE if isinstance(message, Release) else Verdict.OTHER_LIFE
             reply(self._verdict(verdict, message.task, LIFE_ENDS))
             return
+        before = self.activation
         after, verdict, step = table.obey(
-            self.activation,
+            before,
             message,
             shareable=self.profile.is_shareable,
             actuator=not self.profile.outputs,
@@ -269,7 +270,17 @@ class ComponentRuntime:
             self._when_at_rest(lambda: reply(self._verdict(Verdict.DONE, message.task)))
             self._when_at_rest(self._offer)
         else:
+            self._follow_what_is_left(before, message.task)
             reply(self._verdict(Verdict.DONE, message.task))
+
+    def _follow_what_is_left(self, before: Activation, task: str) -> None:
+        """Follow no more what a task that the component acts for has not reserved with it, after it was given up."""
+        last, hold = before.hold(task), self.activation.hold(task)
+        if hold is None or last is None or not (hold.active and isinstance(hold.claim, Apply)):
+            return
+        if hold.claim.inputs != last.claim.inputs:
+            self.inputs.follow(hold.claim)
+            self.operations.follow(hold.claim)
 
     def _apply(self, message: Apply, step: ActivationStep, reply: Reply) -> None:
         """Have the code start, or take what has changed, and connect the inputs meanwhile."""

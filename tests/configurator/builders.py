@@ -87,10 +87,11 @@ class History:
         life: str = "1",
         holder: Holder | None = None,
         shared: bool = False,
+        acts: bool = False,
     ) -> list[Effect]:
         """A component answers the call that it is waited for."""
         epoch, life = self.state.epoch, life if verdict else ""
-        return self.hear(Answered(component, call, epoch, verdict, life, epoch, holder=holder, shared=shared))
+        return self.hear(Answered(component, call, epoch, verdict, life, epoch, "", holder, shared, acts))
 
     def busy(self, component: IRI, holder: Holder = OTHERS, call: Call = Call.RESERVE) -> list[Effect]:
         """A component answers that another task holds it."""

@@ -210,3 +210,18 @@ def test_what_was_adopted_hears_less_as_one_that_acts_already() -> None:
     history.hear(Adopted(100, navigation()), LOST)
     (apart,) = [effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)]
     assert (apart.component, apart.adopted) == (CONTROL, True)
+
+
+@pytest.mark.parametrize("acts", [True, False])
+def test_an_actuator_that_acts_on_since_it_was_given_up_follows_nothing_that_is_lost_again(acts: bool) -> None:
+    history = History(TASK).running()
+    history.hear(Failed(DRIVE, "1", Cause.CRASH), Failed(CONTROL, "1", Cause.CRASH))
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    history.answer(CONTROL, Call.RESERVE)
+    history.answer(DRIVE, Call.RESERVE, acts=acts)
+    assert history.state.phase is Phase.DEPLOYING
+    history.hear(Failed(CONTROL, "1", Cause.FAIL))
+    effects = [effect for effect in history.hear(LossLasts()) if isinstance(effect, ApplyTo)]
+    told = [effect.component for effect in effects if not any(effect.inputs.values())]
+    assert told == ([DRIVE] if acts else [])

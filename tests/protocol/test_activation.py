@@ -146,13 +146,22 @@ def test_a_reserved_component_does_not_act() -> None:
     assert activation.hold(A) == Hold(call_of(Reserve), False)  # type: ignore[arg-type]  # it is one
 
 
-def test_a_component_that_acts_keeps_its_inputs_when_it_is_reserved_until_it_is_applied_to() -> None:
-    activation, _, _ = obey(Activation(), call_of(Apply, inputs=INPUTS, values=GOAL))
-    activation, _, _ = obey(activation, call_of(Reserve, epoch=6, inputs=OTHER))
-    assert activation.hold(A) == Hold(call_of(Apply, epoch=6, inputs=INPUTS, values=GOAL), True)  # type: ignore[arg-type]  # it is one
-    activation, _, step = obey(activation, call_of(Apply, epoch=6, inputs=OTHER))
+def test_a_component_that_acts_goes_on_when_it_is_reserved_but_follows_only_what_is_reserved_with_it() -> None:
+    both = {"position": (*INPUTS["position"], *OTHER["position"])}
+    activation, _, _ = obey(Activation(), call_of(Apply, inputs=both, values=GOAL))
+    activation, verdict, step = obey(activation, call_of(Reserve, epoch=6, inputs=OTHER))
+    assert (verdict, step) == (Verdict.DONE, ActivationStep.NONE)
+    assert activation.hold(A) == Hold(call_of(Apply, epoch=6, inputs=OTHER, values=GOAL), True)  # type: ignore[arg-type]  # it is one
+    activation, _, _ = obey(activation, call_of(Reserve, epoch=7, inputs=INPUTS))
+    assert activation.holds[0].wants == ({"position": ()}, GOAL)
+    activation, _, step = obey(activation, call_of(Apply, epoch=7, inputs=INPUTS))
     assert step is ActivationStep.NONE
-    assert activation.holds[0].wants == (OTHER, {})
+    assert activation.holds[0].wants == (INPUTS, {})
+
+
+def test_a_reserve_that_comes_after_the_apply_of_its_epoch_changes_nothing() -> None:
+    activation, _, _ = obey(Activation(), call_of(Apply, inputs=INPUTS, values=GOAL))
+    assert obey(activation, call_of(Reserve, inputs=OTHER))[0].holds[0].wants == (INPUTS, GOAL)
 
 
 # Epochs.

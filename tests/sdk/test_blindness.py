@@ -50,6 +50,21 @@ def driving(tolerates: float | None = None) -> tuple[Stage, ComponentRuntime]:
     return stage, tracker
 
 
+def test_an_actuator_that_is_reserved_with_other_inputs_than_it_follows_rests_and_one_with_the_same_acts_on() -> None:
+    """Its task has given it up when it could not be heard; what it follows may act for another task by now."""
+    stage, tracker = driving()
+    stage.call(reserve(2, inputs={"position": (Wire(TRACKER, "pose"),)}))
+    stage.let_pass(2 * TOLERATES)
+    assert stage.recorder.said == []
+    assert stage.call(reserve(3, inputs={"position": (Wire(CHART, "pose"),)})).active
+    tracker.component.emit("pose", 2)
+    stage.let_pass(2 * TOLERATES)
+    assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
+    stage.call(follow(3, values={"goal": Literal("x")}))
+    stage.let_pass(0.1)
+    assert stage.recorder.said[2:] == [("goal", "x"), ("started",), ("fed", "position"), ("position", 2)]
+
+
 @pytest.mark.parametrize(("tolerates", "seconds"), [(None, 0.0), (0.3, 0.0), (5.0, 4.0)])
 def test_an_actuator_whose_configuration_stays_incomplete_rests_and_starts_when_it_is_fed(
     tolerates: float | None, seconds: float

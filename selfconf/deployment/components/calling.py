@@ -142,8 +142,10 @@ class Calling:
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
+        acts = answer.verdict is Verdict.DONE and answer.active
         newest, epoch, verdict = answer.epoch, message.epoch, answer.verdict
-        self.step(Answered(component, call, epoch, verdict, answer.life, newest, answer.detail, holder, answer.shared))
+        said = answer.detail, holder, answer.shared, acts
+        self.step(Answered(component, call, epoch, verdict, answer.life, newest, *said))
 
     def outlived(self, component: IRI, life: str, answer: CallAnswer) -> None:
         """Believe that a life has ended, as all were asked, and only another one has answered.
