@@ -33,6 +33,9 @@ def heed_answer(state: State, event: Answered) -> Reaction:
     known = state
     if event.call is Call.RELEASE and event.verdict in OBEYED and event.epoch >= state.owed.get(event.component, 0):
         known = replace(state, owed={c: since for c, since in state.owed.items() if c != event.component})
+        if state.phase is Phase.REFUSED and event.component in state.queued & state.owed.keys():
+            # It is not asked to remember this task before it has obeyed: a release, which may be doubled, ends that.
+            return phases.queue(replace(known, epoch=state.epoch + 1))
     if (event.component, event.call) not in state.pending or event.epoch != state.epoch:
         return _unasked(known, event)
     rest = replace(known, pending=state.pending - {(event.component, event.call)})

@@ -98,6 +98,16 @@ def test_a_task_waits_for_a_component_that_has_obeyed_a_newer_epoch_of_it_by_ask
     assert history.state.epoch > epoch + 300_000
 
 
+def test_a_task_waits_for_what_it_was_to_let_go_of_itself_once_that_has_obeyed() -> None:
+    """A component that hangs, as another task waits for it, may be had again when that one has let go of it."""
+    state = waiting().state
+    history = History(replace(state, owed={TRACKER: state.epoch}))
+    assert history.answer(TRACKER, Call.RELEASE, None) == []
+    assert history.answer(TRACKER, Call.RELEASE) == [QueueFor(TRACKER, state.epoch + 1)]
+    assert history.answer(TRACKER, Call.RELEASE) == [], "once"
+    assert history.hear(Freed(TRACKER)) == [Discover()]
+
+
 def test_a_component_that_says_without_end_that_it_has_obeyed_a_newer_epoch_is_asked_a_few_times() -> None:
     history = waiting()
     for _ in range(MOST_REPEATS + 1):

@@ -49,6 +49,7 @@ BROKEN_ONCE = {
     "what runs loses a source while what is better is silent": Recipe(3502067, CHOICE, large=True, upgrades=True),
     "an upgrade begins before a composite says what it is": Recipe(2004121, COMPOSED, busy=True, upgrades=True),
     "what is followed was stopped since, which is heard of too late": Recipe(9303807, CHOICE, upgrades=True),
+    "a task waits for what hung when another has asked for it": Recipe(9751881, CHOICE, busy=True, upgrades=True),
     "a source acts for another task when it is followed": Recipe(5002231, CHOICE, busy=True, upgrades=True),
 }
 
