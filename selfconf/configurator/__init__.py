@@ -13,9 +13,9 @@ it (`ReserveOf`), wait for it (`QueueFor`, `AwaitRelease`) or not (`Decline`), a
 (`ReleaseFrom`), follow its life or not (`Watch`, `Unwatch`); tell that the task is `Running`, or over (`Finish`).
 
 Of a state: its `Phase` (`DEPLOYING` are those of a deployment), its `Policy` after a failure, and why a component is
-lost (`Loss`). Of a configuration: which outputs each input follows (`wiring`), which values each component gets
-(`parameter_values`), and which may call which (`callers`: a `Caller` by component, operation by operation in
-`Callers`).
+lost (`Loss`). Of a configuration: its `Plan` (`plan_of`), which says of each component which outputs its inputs
+follow, which values it has, who may call it (a `Caller` by component, operation by operation in `Callers`), and when it
+starts.
 """
 
 from selfconf.configurator.deploying import DEPLOYING
@@ -56,7 +56,7 @@ from selfconf.configurator.events import (
     WaitedLong,
 )
 from selfconf.configurator.machine import step
-from selfconf.configurator.starting_order import Caller, Callers, callers, parameter_values, wiring
+from selfconf.configurator.starting_order import Caller, Callers, Plan, plan_of
 from selfconf.configurator.state import Loss, Phase, Policy, State
 
 __all__ = [
@@ -85,6 +85,7 @@ __all__ = [
     "Loss",
     "LossLasts",
     "Phase",
+    "Plan",
     "Policy",
     "QueueFor",
     "Ranked",
@@ -99,8 +100,6 @@ __all__ = [
     "WaitedLong",
     "WakeUp",
     "Watch",
-    "callers",
-    "parameter_values",
+    "plan_of",
     "step",
-    "wiring",
 ]

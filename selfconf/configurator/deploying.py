@@ -17,7 +17,7 @@ reservation, and everything else acts already.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 
 from selfconf.configurator.effects import (
@@ -32,14 +32,7 @@ from selfconf.configurator.effects import (
     Watch,
 )
 from selfconf.configurator.events import Answered, Call
-from selfconf.configurator.starting_order import (
-    InputWires,
-    callers,
-    parameter_values,
-    resting_order,
-    starting_order,
-    wiring,
-)
+from selfconf.configurator.starting_order import Plan, plan_of, resting_order
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
@@ -67,11 +60,12 @@ def deploy(state: State) -> Reaction:
     target = state.target
     assert target is not None
     epoch = state.epoch + 1
-    wires, values, calling = wiring(target), parameter_values(target), callers(target)
+    plan = plan_of(target)
+    wires = plan.inputs
     held = dict(state.held)
     for component, inputs in wires.items():
         before = held.get(component, Held({}, asked=component in state.owed))
-        wanted = inputs, values[component], calling[component]
+        wanted = inputs, plan.values[component], plan.callers[component]
         same = before.confirmed and (before.inputs, before.values, before.callers) == wanted
         held[component] = before if same else replace(before, confirmed=False)
     asleep = sorted(component for component in wires if not held[component].reserved)
@@ -81,7 +75,7 @@ def deploy(state: State) -> Reaction:
     deployed = replace(
         state,
         phase=Phase.RESERVING,
-        order=starting_order(target),
+        plan=plan,
         epoch=epoch,
         held=held,
         pending=frozenset((component, Call.WAKE) for component in asleep),
@@ -97,7 +91,6 @@ def proceed(state: State) -> Reaction:
         return state, ()
     if state.phase is Phase.RESERVING:
         assert state.target is not None
-        assert state.order is not None
         free = sorted(component for component in state.target.components if not state.held[component].reserved)
         if free and not (len(free) == 1 and _is_reserved_by_apply(state, free[0])):
             return _reserve(state, free[0])
@@ -121,47 +114,44 @@ def take_offered(state: State, component: IRI) -> Reaction:
 def _is_reserved_by_apply(state: State, component: IRI) -> bool:
     """Whether the only component that is not reserved may be applied to: it can turn no motor, and the rest acts."""
     assert state.target is not None
-    assert state.order is not None
+    assert state.plan is not None
     rest_acts = all(state.held[other].acts for other in state.target.components if other != component)
-    return rest_acts and component not in state.order.actuators and component not in state.queued
+    return rest_acts and component not in state.plan.order.actuators and component not in state.queued
 
 
 def _reserve(state: State, component: IRI) -> Reaction:
-    target = state.target
-    assert target is not None
-    reserve = ReserveOf(component, state.epoch, wiring(target)[component], parameter_values(target)[component])
+    plan = state.plan
+    assert plan is not None
+    reserve = ReserveOf(component, state.epoch, plan.inputs[component], plan.values[component])
     held = {**state.held, component: replace(state.held[component], asked=True)}
     return replace(state, held=held, pending=state.pending | {(component, Call.RESERVE)}), (reserve,)
 
 
 def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
     """Apply to those components that may be started, or changed, by now."""
-    target = state.target
-    assert target is not None
-    wires, values, calling = wiring(target), parameter_values(target), callers(target)
+    plan = state.plan
+    assert plan is not None
     effects: list[Effect] = []
     held, pending = dict(state.held), set(state.pending)
-    assert state.order is not None
     for component in candidates:
         before = held[component]
-        if before.confirmed or (component, Call.APPLY) in pending or not _may_begin(state, component, wires):
+        if before.confirmed or (component, Call.APPLY) in pending or not _may_begin(state, component, plan):
             continue
         pending.add((component, Call.APPLY))
-        inputs, set_, called_by = wires[component], values[component], calling[component]
-        rests = state.rests and component in state.order.actuators
+        inputs, set_, called_by = plan.inputs[component], plan.values[component], plan.callers[component]
+        rests = state.rests and component in plan.order.actuators
         held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, active=True, rests=rests)
         gently, adopted = state.fallback is not None, before.is_adopted
         effects.append(ApplyTo(component, state.epoch, inputs, set_, called_by, gently, adopted, rests))
     return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
 
 
-def _may_begin(state: State, component: IRI, wires: Mapping[IRI, InputWires]) -> bool:
+def _may_begin(state: State, component: IRI, plan: Plan) -> bool:
     """Whether everything is confirmed that must be before a component is applied to."""
-    order, held = state.order, state.held
-    assert order is not None
+    order, held = plan.order, state.held
     mine = held[component]
     if mine.acts:
-        wanted = wires[component]
+        wanted = plan.inputs[component]
         changed = [port for port in {**mine.inputs, **wanted} if mine.inputs.get(port) != wanted.get(port)]
         sources = {wire.component for port in changed for wire in mine.inputs.get(port, ())}
         if not changed or not all(source in held for source in sources):
@@ -186,10 +176,10 @@ def confirmed(state: State, answer: Answered) -> Reaction:
         return proceed(replace(state, held={**state.held, answer.component: known}))
     known = replace(held, life=answer.life, asked=False, reserved=True, acts=True, confirmed=True)
     done = replace(state, held={**state.held, answer.component: known})
-    assert done.order is not None
-    waiting: Iterable[IRI] = done.order.after[answer.component]
+    assert done.plan is not None
+    waiting: Iterable[IRI] = done.plan.order.after[answer.component]
     if not done.pending:  # the last of a wave: actuators may be waiting for it
-        waiting = (*waiting, *done.order.actuators)
+        waiting = (*waiting, *done.plan.order.actuators)
     return apply_to(done, dict.fromkeys(waiting))
 
 
@@ -225,8 +215,8 @@ def rewire(state: State, components: frozenset[IRI]) -> Reaction:
 
     Of these components, also to the actuators: they are to rest, or to act again (`State.rests`).
     """
-    assert state.order is not None
-    actuators = components & state.order.actuators
+    assert state.plan is not None
+    actuators = components & state.plan.order.actuators
     held = {
         one: replace(held, confirmed=held.confirmed and one not in actuators and not is_wired_to(held, components))
         for one, held in state.held.items()

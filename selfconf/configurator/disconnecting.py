@@ -90,9 +90,9 @@ def _outside(state: State) -> set[IRI]:
 
 def _lacks_actuators_alone(state: State) -> bool:
     """Whether everything else acts: then actuators may, and one that rests would be started again at once."""
-    if state.phase is not Phase.DEPLOYING or state.target is None or state.order is None:
+    if state.phase is not Phase.DEPLOYING or state.target is None or state.plan is None:
         return False
-    return all(state.held[one].confirmed for one in state.target.components if one not in state.order.actuators)
+    return all(state.held[one].confirmed for one in state.target.components if one not in state.plan.order.actuators)
 
 
 def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:

@@ -138,7 +138,7 @@ def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
     wired = component in state.held or any(deploying.is_wired_to(held, changed) for held in state.held.values())
     if component not in state.held and rests != state.rests:
         state, wired = replace(state, rests=rests), True
-        changed |= state.held.keys() & (state.order.actuators if state.order is not None else frozenset())
+        changed |= state.held.keys() & (state.plan.order.actuators if state.plan is not None else frozenset())
     if state.phase is Phase.RUNNING or _waits_for(state, changed):
         return deploying.rewire(state, changed)
     if not wired:

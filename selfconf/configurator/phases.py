@@ -89,7 +89,7 @@ def released(state: State) -> Reaction:
         return state, ()
     if state.unreleased:
         return _release_next(state)
-    empty = replace(state, held={}, target=None, order=None)
+    empty = replace(state, held={}, target=None, plan=None)
     if state.afterwards is Phase.COMPOSING:
         return compose(empty)
     ended = replace(empty, phase=state.afterwards)
@@ -131,7 +131,7 @@ def stand_down(state: State) -> Reaction:
         state,
         phase=Phase.STOPPED,
         target=None,
-        order=None,
+        plan=None,
         held={},
         owed={},
         pending=frozenset(),

@@ -1,4 +1,4 @@
-"""In which order the components of a configuration start and come to rest.
+"""What the components of a configuration are to do, and in which order they start and come to rest.
 
 What feeds is started before what it feeds; in a loop of connections the order of the roles decides; actuators, which
 feed nothing, come last, when everything else acts. Coming to rest goes the other way.
@@ -71,6 +71,23 @@ class StartingOrder:
     """For each component, those that wait for it."""
     actuators: frozenset[IRI]
     """The components that feed nothing: they wait for all others."""
+
+
+@immutable
+class Plan:
+    """What a deployment needs to know of its configuration, as each of its many steps asks for a part of it."""
+
+    inputs: Mapping[IRI, InputWires]
+    values: Mapping[IRI, Mapping[str, Term]]
+    callers: Mapping[IRI, Callers]
+    order: StartingOrder
+
+
+def plan_of(configuration: Configuration) -> Plan:
+    """Return the plan of a deployment."""
+    return Plan(
+        wiring(configuration), parameter_values(configuration), callers(configuration), starting_order(configuration)
+    )
 
 
 def starting_order(configuration: Configuration) -> StartingOrder:

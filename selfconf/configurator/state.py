@@ -7,7 +7,7 @@ from dataclasses import field
 from enum import Enum
 
 from selfconf.configurator.events import Call
-from selfconf.configurator.starting_order import Callers, InputWires, StartingOrder
+from selfconf.configurator.starting_order import Callers, InputWires, Plan
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable
@@ -104,8 +104,8 @@ class State:
     epoch: int = 0
     attempt: int = 0
     target: Configuration | None = None
-    order: StartingOrder | None = None
-    """In which order the components of the target are started."""
+    plan: Plan | None = None
+    """What the components of the target are to do, and in which order they start, since its deployment began."""
     fallback: Configuration | None = None
     """What ran before a change for the better: if that does not come about, it is what is wanted again."""
     held: Mapping[IRI, Held] = field(default_factory=dict)

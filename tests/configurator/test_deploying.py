@@ -33,7 +33,7 @@ from selfconf.configurator.events import (
     Rewired,
     WaitedLong,
 )
-from selfconf.configurator.starting_order import wiring
+from selfconf.configurator.starting_order import plan_of, wiring
 from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.holder import Holder
@@ -88,6 +88,17 @@ def test_components_are_reserved_one_after_the_other_in_the_order_of_their_iris(
         effects = history.answer(reserve.component, Call.RESERVE)
     assert order == sorted(navigation().components)
     assert applied(effects) == [TRACKER]
+
+
+def test_what_each_component_is_to_do_is_found_out_once_for_a_deployment() -> None:
+    history = History().accepted()
+    history.composed(navigation())
+    plan = history.state.plan
+    assert plan == plan_of(navigation())
+    while history.state.pending:
+        history.answer(*min(history.state.pending))
+        assert history.state.plan is plan
+    assert history.state.phase is Phase.RUNNING
 
 
 def test_nothing_is_applied_to_before_all_are_reserved() -> None:

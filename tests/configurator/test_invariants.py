@@ -232,7 +232,7 @@ class Ledger:
         """All components are reserved; sources have confirmed, and for an actuator everything else."""
         state = self.state
         assert state.target is not None
-        assert state.order is not None
+        assert state.plan is not None
         component, others = effect.component, [c for c in state.target.components if c != effect.component]
         assert effect.epoch == state.epoch
         assert effect.inputs == wiring(state.target)[component]
@@ -240,16 +240,16 @@ class Ledger:
         unreserved = [c for c in state.target.components if not state.held[c].reserved]
         if unreserved:  # the apply is the reservation, in a repair that lacks one component
             assert len(unreserved) == 1
-            assert unreserved[0] not in state.order.actuators
+            assert unreserved[0] not in state.plan.order.actuators
             assert all(state.held[c].acts for c in state.target.components if c != unreserved[0])
         earlier = before.held.get(component, Held({}))
         if not state.held[component].acts:
-            assert all(state.held[source].confirmed for source in state.order.before[component])
-            if component in state.order.actuators:
-                assert all(state.held[c].confirmed for c in others if c not in state.order.actuators)
+            assert all(state.held[source].confirmed for source in state.plan.order.before[component])
+            if component in state.plan.order.actuators:
+                assert all(state.held[c].confirmed for c in others if c not in state.plan.order.actuators)
         elif component in before.held and earlier.inputs != effect.inputs:
             followed = {wire.component for wires in earlier.inputs.values() for wire in wires}
-            make_before_break = all(state.held[source].confirmed for source in state.order.before[component])
+            make_before_break = all(state.held[source].confirmed for source in state.plan.order.before[component])
             assert make_before_break or followed - state.held.keys()
 
     def _order_of_releases(self, effects: tuple[Effect, ...], before: State) -> None:

@@ -24,9 +24,7 @@ from selfconf.configurator import (
     ReserveOf,
     Rewired,
     WaitedLong,
-    callers,
-    parameter_values,
-    wiring,
+    plan_of,
 )
 from selfconf.deployment.components.calling import CALL, Calling
 from selfconf.deployment.components.held_lives import HeldLives
@@ -208,13 +206,15 @@ class Calls:
 
     def stand_by(self, configuration: Configuration, standby: Standby) -> None:
         """Let the inputs listen to what may come next, now that there is time; the answers are not waited for."""
-        wires, values, calling = wiring(configuration), parameter_values(configuration), callers(configuration)
+        plan = plan_of(configuration)
         for component, outputs in standby.items():
             claim = self._calling.claim(component, self._state().epoch)
-            inputs, spare = self._ends.wires(wires[component]), self._ends.wires(outputs)
-            who = self._ends.callers(calling[component])
+            inputs, spare = self._ends.wires(plan.inputs[component]), self._ends.wires(outputs)
+            who = self._ends.callers(plan.callers[component])
             rests = self._state().held[component].rests
-            message = Apply(**claim, inputs=inputs, standby=spare, values=values[component], callers=who, rests=rests)
+            message = Apply(
+                **claim, inputs=inputs, standby=spare, values=plan.values[component], callers=who, rests=rests
+            )
             self._calling.ask(component, Call.APPLY, message)
 
     # Turning off.
