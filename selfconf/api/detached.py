@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from selfconf.api.answer import Method, refusal_with_places
-from selfconf.api.arguments import checked_priority, checked_upgrade, option
+from selfconf.api.arguments import checked_priority, checked_text, checked_upgrade, option
 from selfconf.api.refusal_among import outcome_among, searched_ecology
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
@@ -18,6 +18,7 @@ from selfconf.deployment import Aside, RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.seconds import DELAY_IN_WORDS, is_delay
 from selfconf.model.term import IRI
@@ -27,32 +28,50 @@ from selfconf.rdf import tasks, turtle
 from selfconf.rdf.advertisements import Advertisement
 
 
-def task_record(
-    task: TaskSpecification,
-    method: Method,
-    policy: Policy,
-    name: str = "",
-    priority: int | None = None,
-    upgrade: float | None = None,
-) -> TaskRecord:
+@immutable
+class TaskOptions:
+    """How a task is to run: what is done about a loss and for the better, and its name and rank among others."""
+
+    policy: Policy = Policy.REPAIR
+    name: str = ""
+    """Empty for that of its template."""
+    priority: int | None = None
+    """None for that of its template."""
+    upgrade: float | None = None
+    """The seconds before a change for the better; None for no such change."""
+
+    @classmethod
+    def of(cls, policy: str, name: str, priority: int | None, upgrade: float | None) -> TaskOptions:
+        """The options that a caller of the library has named. Raises ProgrammerError for a policy or text that is none.
+
+        The priority and the seconds are checked by `task_record`.
+        """
+        return cls(option(Policy, "policy", policy), checked_text(name, "the name of a task"), priority, upgrade)
+
+
+AS_USUAL = TaskOptions()
+"""How a task runs of which nothing else is said."""
+
+
+def task_record(task: TaskSpecification, method: Method, how: TaskOptions = AS_USUAL) -> TaskRecord:
     """What the sites are given of a task that is to live in the ecology.
 
     Raises AuthorError for a name that is none, and ProgrammerError for a priority or upgrade that is none.
     """
     document = task.document.document
-    name = checked_name(name, "a task") if name else safe_name(task.iri.short)
+    name = checked_name(how.name, "a task") if how.name else safe_name(task.iri.short)
     options: dict[str, Any] = {
-        "policy": policy.value,
+        "policy": how.policy.value,
         "strategy": method.strategy.value,
         "reasoning": method.reasoning.value,
         "steps": method.steps,
         "seconds": method.seconds,
-        "upgrade": checked_upgrade(upgrade),
+        "upgrade": checked_upgrade(how.upgrade),
     }
     return TaskRecord(
         task=task_identity(name, secrets.token_hex(4)),
         revision=1,
-        priority=task.document.task.priority if priority is None else checked_priority(priority),
+        priority=task.document.task.priority if how.priority is None else checked_priority(how.priority),
         beginning=time.time(),
         document=turtle.to_turtle(document.triples()),
         source=document.source,

@@ -18,14 +18,13 @@ from selfconf.api.arguments import (
     checked_path,
     checked_text,
     listed_endpoints,
-    option,
 )
 from selfconf.api.component_states import ComponentState, component_states
 from selfconf.api.deployed import connected, deployed_body
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
 from selfconf.api.living_tasks import STATE_PATIENCE, LivingTask, LivingTasks
-from selfconf.api.membership import MEMBERS, beliefs, check_may_run, member
+from selfconf.api.membership import MEMBERS, Membership
 from selfconf.api.output_sources import follow_output
 from selfconf.api.site_access import SiteAccess, site_accesses
 from selfconf.api.site_logs import LogSource
@@ -81,9 +80,10 @@ class LivingEcology(Ecology):
 
     def __init__(self, name: str, endpoints: Sequence[str], credentials: Credentials | None = None) -> None:
         """Connects, with keys by showing a certificate; raises NetworkError if no site of the ecology answers."""
-        self.name, self.endpoints, self._credentials = name, tuple(endpoints), credentials
-        self._bus = member(name, endpoints, credentials)
-        self._view = EcologyView(self._bus, name, beliefs(credentials), selects=True)
+        self.name, self.endpoints = name, tuple(endpoints)
+        self._membership = Membership(name, self.endpoints, credentials)
+        self._bus = self._membership.connect()
+        self._view = EcologyView(self._bus, name, self._membership.beliefs(), selects=True)
         self._view.suspended_sites = partial(rendezvous.suspended_sites, name)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
@@ -152,8 +152,8 @@ class LivingEcology(Ecology):
         discovery = self.discover()
         asked = self._view.keys.any_call("state")
         # No component would hear the question of a reader.
-        replies = Replies() if self._looks_on_only else self._synchronous.ask(asked, seconds=STATE_PATIENCE)
-        holders = self.holders() if self._looks_on_only else {}
+        replies = Replies() if self._membership.looks_on_only else self._synchronous.ask(asked, seconds=STATE_PATIENCE)
+        holders = self.holders() if self._membership.looks_on_only else {}
         found = []
         silent: list[str] = []
         for one in component_states(discovery, self._view.keys, replies):
@@ -162,7 +162,7 @@ class LivingEcology(Ecology):
                 one = one._replace(state="alive", task=task_name(held_by.task) if held_by is not None else "")
                 silent.append(f"{one.component} lives, but does not say how it is")
             found.append(one)
-        if silent and self._looks_on_only:
+        if silent and self._membership.looks_on_only:
             silent = ["components do not tell readers how they are; that takes keys of conf.NAME"]
         self._complaints = (*self.complaints, *silent)
         return tuple(found)
@@ -172,18 +172,13 @@ class LivingEcology(Ecology):
 
         That takes some seconds where a component is stopping. A reader (`read.NAME`) sees none.
         """
-        return {} if self._looks_on_only else self._tasks.out_of_control()
+        return {} if self._membership.looks_on_only else self._tasks.out_of_control()
 
     def _life(self, component: IRI) -> str | None:
         """The life of a component; those of a large ecology, which most readers do not need, are called now."""
         if not self._view.knows(component_chunk(component)):
             self._view.called(self._synchronous.living(self._view.keys.any_life()))
         return self._view.life(component)
-
-    @property
-    def _looks_on_only(self) -> bool:
-        """Whether the keys, if there are any, are those of a reader: it hears no signals, and calls no component."""
-        return self._credentials is not None and self._credentials.name.startswith("read.")
 
     def component(self, term: str) -> FoundAdvertisement:
         """The advertised component that a term means: an IRI, with or without brackets, or its local name.
@@ -207,7 +202,7 @@ class LivingEcology(Ecology):
 
         `complain` hears of what is no signal, and of what is to be known before the first one.
         """
-        if self._looks_on_only:
+        if self._membership.looks_on_only:
             raise NetworkError("readers hear no signals; that takes keys of conf.NAME")
         found = self.component(component)
         profile = found.advertisement.profile
@@ -225,7 +220,7 @@ class LivingEcology(Ecology):
         The other components of the process end with it, and the tasks that hold one of them repair. Raises AuthorError
         for a component that is not there, and NetworkError for what its site cannot or does not do.
         """
-        check_may_run(self._credentials)
+        self._membership.check_may_run()
         found = self.component(component)
         one, site, keys = found.advertisement.component, found.site, self._view.keys
         life = self._life(one)
@@ -278,11 +273,11 @@ class LivingEcology(Ecology):
     @property
     def tasks(self) -> tuple[Status, ...]:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
-        return self._complaining(self._tasks.running(by_components=not self._looks_on_only))
+        return self._complaining(self._tasks.running(by_components=not self._membership.looks_on_only))
 
     def all_tasks(self) -> tuple[LivingTask, ...]:
         """The tasks that run and those that live in the sites, sorted by name."""
-        return self._complaining(self._tasks.all(by_components=not self._looks_on_only))
+        return self._complaining(self._tasks.all(by_components=not self._membership.looks_on_only))
 
     @property
     def silent(self) -> tuple[str, ...]:
@@ -318,7 +313,7 @@ class LivingEcology(Ecology):
     def _log_part(self, site: str, silent: set[str], complain: Callable[[str], None], question: LogQuestion) -> LogPart:
         """What a site tells of its log; nothing new where it does not answer."""
         replies = self._synchronous.ask(self._view.keys.log(site), encode(question))
-        trouble = [*replies.errors, *(["that takes keys of conf.NAME"] if self._looks_on_only else [])]
+        trouble = [*replies.errors, *(["that takes keys of conf.NAME"] if self._membership.looks_on_only else [])]
         try:
             return decode(replies.samples[0].payload, LogPart)
         except IndexError:
@@ -439,24 +434,13 @@ class LivingEcology(Ecology):
         to; without it, none is.
         """
         from selfconf.api.answer import Method
+        from selfconf.api.detached import TaskOptions
         from selfconf.api.run import Run
-        from selfconf.configurator import Policy
 
         self._synchronous.check()
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
-        chosen = option(Policy, "policy", policy)
-        return Run(
-            task,
-            method,
-            self.name,
-            self.endpoints,
-            chosen,
-            checked_flag(wait, "wait"),
-            name=checked_text(name, "the name of a task"),
-            priority=priority,
-            upgrade=upgrade,
-            credentials=self._credentials,
-        )
+        options = TaskOptions.of(policy, name, priority, upgrade)
+        return Run(task, method, self._membership, options, checked_flag(wait, "wait"))
 
     def detach(
         self,
@@ -478,15 +462,12 @@ class LivingEcology(Ecology):
         site keeps it, or if a task of that name lives.
         """
         from selfconf.api.answer import Method
-        from selfconf.api.detached import task_record
+        from selfconf.api.detached import TaskOptions, task_record
         from selfconf.api.task import completed
-        from selfconf.configurator import Policy
 
-        check_may_run(self._credentials)
+        self._membership.check_may_run()
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
-        chosen = option(Policy, "policy", policy)
-        checked_text(name, "the name of a task")
-        record = task_record(completed(task), method, chosen, name, priority, upgrade)
+        record = task_record(completed(task), method, TaskOptions.of(policy, name, priority, upgrade))
         return self._complaining(self._tasks.detach(record))
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
@@ -497,7 +478,7 @@ class LivingEcology(Ecology):
         it, if one does not answer or does not end in time, or if a component does not obey; of all tasks those are
         taken down first that answer.
         """
-        check_may_run(self._credentials)
+        self._membership.check_may_run()
         if name is not None:
             checked_text(name, "the name of a task")
         return self._complaining(self._tasks.stop(name))

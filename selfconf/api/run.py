@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
@@ -11,19 +11,18 @@ from typing import NamedTuple
 
 from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, refusal_with_places
-from selfconf.api.detached import task_record
+from selfconf.api.detached import AS_USUAL, TaskOptions, task_record
 from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.living_tasks import LivingTasks
-from selfconf.api.membership import beliefs, check_may_run, configurator_name, member
+from selfconf.api.membership import Membership
 from selfconf.api.places import Places
 from selfconf.api.refusal_among import outcome_among, searched_ecology
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.work_queue import UNDISTURBED, WorkQueue
-from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh_bus import ZenohBus
 from selfconf.composition import Composer, TimeLimit, composed
-from selfconf.configurator import Loss, Policy
+from selfconf.configurator import Loss
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
@@ -73,16 +72,11 @@ class Run:
         self,
         task: TaskSpecification,
         method: Method,
-        ecology: str,
-        endpoints: Sequence[str],
-        policy: Policy = Policy.REPAIR,
+        membership: Membership,
+        options: TaskOptions = AS_USUAL,
         wait: bool = False,
         rests_on: Callable[[], bool] = lambda: True,
         described: Callable[[], Mapping[IRI, Advertisement]] = dict,
-        name: str = "",
-        priority: int | None = None,
-        upgrade: float | None = None,
-        credentials: Credentials | None = None,
     ) -> None:
         """The run ends when `rests_on` does not hold any more; `described` are advertisements in files of this machine.
 
@@ -90,7 +84,7 @@ class Run:
         BindingError, ProgrammerError for a task, priority or upgrade that is none, and NetworkError for credentials
         that do not let it run tasks.
         """
-        check_may_run(credentials)
+        membership.check_may_run()
         self.task, self.method = completed(task), method
         self._refusal: Refusal | Undecided | None = None
         self._composer = method.composer(self.task)
@@ -100,9 +94,9 @@ class Run:
         self._work = WorkQueue()
         self._begun: _Begun | None = None
         self._left = self._ended = False
-        self._ecology, self._endpoints, self._credentials = ecology, endpoints, credentials
-        record = task_record(self.task, method, policy, name, priority, upgrade)
-        self._named = bool(name)
+        self._membership = membership
+        record = task_record(self.task, method, options)
+        self._named = bool(options.name)
         self.wanted_name = self.task_name = task_name(record.task)
         """The name that was given to the task, or that of its template; and the one that it has in the ecology."""
         self._request = RunRequest(
@@ -112,12 +106,12 @@ class Run:
             not_judged=self._composer.not_judged,
             usable=self._composer.usable,
             passed_over=self._composer.passed_over,
-            policy=policy,
+            policy=options.policy,
             patient=wait,
-            believed=beliefs(credentials),
-            suspended_sites=partial(rendezvous.suspended_sites, ecology),
+            believed=membership.beliefs(),
+            suspended_sites=partial(rendezvous.suspended_sites, membership.ecology),
             priority=record.priority,
-            upgrade=upgrade,
+            upgrade=options.upgrade,
             aside=partial(self._work.work, owner=OF_TASK),
             at_leisure=partial(self._work.at_leisure, owner=OF_TASK),
             abandon=partial(self._work.abandon, OF_TASK),  # and not what explains how the task has ended
@@ -130,14 +124,14 @@ class Run:
         """Connect, claim the name, and begin. Raises NetworkError, also for a name that was given and is taken."""
         if self._begun is not None:
             raise ProgrammerError(f"the run of {self.task_name} was entered already; ask the ecology for another run")
-        bus = member(self._ecology, self._endpoints, self._credentials)
+        bus = self._membership.connect()
         try:
             with ExitStack() as undone:
                 tasks = self._tasks(bus)
                 # A name that no other task of the ecology has: `stop` goes by it.
                 claimed = undone.enter_context(tasks.claim(self.wanted_name, numbered=not self._named))
                 request = replace(self._request, name=claimed.name)
-                runner = TaskRunner(bus, self._ecology, request, configurator_name(self._credentials))
+                runner = TaskRunner(bus, self._membership.ecology, request, self._membership.configurator_name())
                 if self._named:
                     tasks.check_alone(runner.identity.task, runner.identity.beginning)
                 undone.pop_all()
@@ -154,7 +148,7 @@ class Run:
     def _tasks(self, bus: ZenohBus) -> LivingTasks:
         """The other tasks of the ecology."""
         asking = SynchronousBus(bus, ROLL_CALL if self._named else TASKS_CALL)
-        return LivingTasks(asking, Keys(self._ecology), self._endpoints)
+        return LivingTasks(asking, Keys(self._membership.ecology), self._membership.endpoints)
 
     def _in_ecology(self) -> _Begun:
         """The run's part in the ecology. Raises ProgrammerError for a run that was not entered."""

@@ -183,26 +183,27 @@ def _tell_of_others(given: argparse.Namespace) -> None:
 def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple[Run, SiteProcess | None]]:
     """The run in the ecology that there is, or in one with a site of its own for the advertisements given."""
     from selfconf import rendezvous
+    from selfconf.api.detached import TaskOptions
     from selfconf.api.local_site import SiteProcess
-    from selfconf.api.membership import MEMBERS
+    from selfconf.api.membership import MEMBERS, Membership
     from selfconf.api.run import Run
-    from selfconf.configurator import Policy
 
-    policy, method = Policy(given.policy), method_of(given, task)
-    begun = partial(Run, task, method, policy=policy, wait=given.wait, priority=given.priority, upgrade=_upgrade(given))
+    method = method_of(given, task)
+    options = TaskOptions.of(given.policy, given.name or "", given.priority, _upgrade(given))
     shown = rendezvous.credentials(given.keys, *MEMBERS)
-    begun = partial(begun, credentials=shown)
     with ExitStack() as stack:
         paths = given.ads if given.endpoint is None else [stack.enter_context(_fetched(given, task, method))]
         if paths is None:
             ecology, endpoints = rendezvous.find(given.ecology, given.connect, shown)
-            yield stack.enter_context(begun(ecology, endpoints, name=given.name or "")), None
+            running = Run(task, method, Membership(ecology, tuple(endpoints), shown), options, given.wait)
+            yield stack.enter_context(running), None
             return
         site = stack.enter_context(
             SiteProcess(paths, given.ecology, given.connect, given.keys, method.reasoning.value, given.ontology)
         )
         described = partial(_described, given.ads or ())
-        running = begun(site.ecology, site.endpoints, name=given.name or "", rests_on=site.running, described=described)
+        membership = Membership(site.ecology, tuple(site.endpoints), shown)
+        running = Run(task, method, membership, options, given.wait, rests_on=site.running, described=described)
         yield stack.enter_context(running), site
 
 

@@ -65,15 +65,16 @@ def run(given: argparse.Namespace) -> int:
     if missing:
         raise InstallationError(f"{' and '.join(missing)} is missing; install the extra `serve`")
     from selfconf import rendezvous
+    from selfconf.api.membership import Membership
     from selfconf.serve import ServerOptions, refuse_exposure, serve_ecology
 
-    shown = rendezvous.credentials(given.keys, "read", "conf", "site")
+    shown = rendezvous.credentials(given.keys, "read", "conf", "site")  # a server that may only look on is the safest
     if not given.insecure:
         refuse_exposure(given.host, shown)
     with joined(given) as ecology:
-        name, endpoints = ecology.name, ecology.endpoints
+        membership = Membership(ecology.name, ecology.endpoints, shown)
     options = ServerOptions(given.host, given.port, given.answer_seconds, given.history, given.origins)
-    serve_ecology(name, endpoints, shown, options, lambda url: _tell(name, url))
+    serve_ecology(membership, options, lambda url: _tell(membership.ecology, url))
     return 0
 
 

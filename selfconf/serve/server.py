@@ -7,7 +7,7 @@ import logging
 import os
 import signal
 import socket
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,11 +15,10 @@ from types import FrameType
 
 import uvicorn
 
-from selfconf.api.membership import beliefs, member
+from selfconf.api.membership import Membership
 from selfconf.api.site_program import is_beyond_loopback
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
-from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.setting_names import setting
 from selfconf.query import StandingDataset
@@ -68,26 +67,18 @@ def refuse_exposure(host: str, credentials: Credentials | None) -> None:
         )
 
 
-def serve_ecology(
-    ecology: str,
-    endpoints: Sequence[str],
-    credentials: Credentials | None,
-    options: ServerOptions,
-    listening: Callable[[str], None],
-) -> None:
+def serve_ecology(membership: Membership, options: ServerOptions, listening: Callable[[str], None]) -> None:
     """Serve an ecology over HTTP until SIGINT, SIGTERM or SIGHUP; `listening` receives the URL.
 
-    `credentials` are what it shows where there are keys. Raises NetworkError where the port is taken or the ecology
-    cannot be reached, and AuthorError for a folder that cannot be used.
+    Raises NetworkError where the port is taken or the ecology cannot be reached, and AuthorError for a folder that
+    cannot be used.
     """
     with bound(options.host, options.port) as place:
         record = Record(options.folder)
         try:
-            bus = member(ecology, endpoints, credentials)
+            bus = membership.connect()
             try:
-                reads = credentials is not None and credentials.name.startswith("read.")
-                believed = beliefs(credentials)
-                asyncio.run(_serve(bus, ecology, record, place, options, listening, believed, may_hear=not reads))
+                asyncio.run(_serve(bus, membership, record, place, options, listening))
             finally:
                 bus.close()
         finally:
@@ -137,20 +128,18 @@ class Record:
 
 async def _serve(
     bus: Bus,
-    ecology: str,
+    membership: Membership,
     record: Record,
     place: socket.socket,
     options: ServerOptions,
     listening: Callable[[str], None],
-    believed: Beliefs | None,
-    may_hear: bool,
 ) -> None:
     loop, metrics = asyncio.get_running_loop(), Metrics()
-    board = Board(ecology, metrics)
+    board = Board(membership.ecology, metrics)
     sparql = SparqlEndpoint(record.dataset, metrics, options.seconds)
     host, port = place.getsockname()[:2]
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
-    onlookers = Onlookers(bus, board, may_hear)
+    onlookers = Onlookers(bus, board, may_hear=not membership.looks_on_only)
     fits, explained, hosts = Fits(board), ExplainedRefusals(board), LOOPBACK if local else ()
     app = application(
         board, metrics, sparql, onlookers, fits, explained, lambda: bool(bus.link), hosts, options.origins
@@ -166,7 +155,7 @@ async def _serve(
     def tell(change: EcologyChange) -> None:
         record.hands.submit(take, change)
 
-    watcher = EcologyWatcher(bus, ecology, tell, aside=record.hands.submit, believed=believed)
+    watcher = EcologyWatcher(bus, membership.ecology, tell, aside=record.hands.submit, believed=membership.beliefs())
     bus.run_aside()
     bus.wake_up(watcher.begin)
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))

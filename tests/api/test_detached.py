@@ -13,10 +13,9 @@ import pytest
 
 import selfconf as sc
 from selfconf.api.answer import Method
-from selfconf.api.detached import request_of, task_record
+from selfconf.api.detached import TaskOptions, request_of, task_record
 from selfconf.api.explaining import explained_refusal
 from selfconf.api.role_fits import role_fits
-from selfconf.configurator.state import Policy
 from selfconf.errors import AuthorError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
@@ -30,7 +29,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def record() -> TaskRecord:
     """The clock's task, as its record arrives at a site."""
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":kitchen")
-    return decode(encode(task_record(task, Method.of("best"), Policy.REPAIR, priority=2, upgrade=5.0)), TaskRecord)
+    return decode(encode(task_record(task, Method.of("best"), TaskOptions(priority=2, upgrade=5.0))), TaskRecord)
 
 
 def test_a_site_composes_what_the_library_composes() -> None:
@@ -47,7 +46,7 @@ def test_a_site_composes_what_the_library_composes() -> None:
 def test_a_site_explains_a_refusal_as_the_library_does() -> None:
     home, later, found = sc.read(ROOT / "examples" / "clock"), list[Callable[[], None]](), list[sc.Refusal]()
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":cellar")
-    kept = decode(encode(task_record(task, Method.of(), Policy.REPAIR)), TaskRecord)
+    kept = decode(encode(task_record(task, Method.of())), TaskRecord)
     request = request_of(kept, lambda work: lambda: None, at_leisure=later.append)
     plain = request.compose(home.advertisements(), frozenset(), None)
     wanted = sc.configure(task, home)
@@ -86,7 +85,7 @@ def test_a_site_explains_the_refusal_of_a_task_with_an_ontology(
     task = sc.template(LIT.format(path.as_uri()))
     lamp = sc.read(HALL_LAMP.replace("<#", f"<{path.as_uri()}#"))
     method = Method.of(reasoning=reasoning, ontologies=tmp_path)
-    record = decode(encode(task_record(task.complete(), method, Policy.REPAIR)), TaskRecord)
+    record = decode(encode(task_record(task.complete(), method)), TaskRecord)
     path.unlink()
     request = request_of(record, lambda work: lambda: None, at_leisure=later.append)
     assert isinstance(request.compose(lamp.advertisements(), frozenset(), None), Configuration) == (
@@ -108,14 +107,14 @@ def test_a_site_explains_the_refusal_of_a_task_with_an_ontology(
 def test_an_ontology_on_standard_input_is_kept_with_its_task(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"<urn:HallLamp> <urn:x> <urn:Lamp> .")))
     task = sc.template(LIT.format("urn:"))
-    kept = task_record(task.complete(), Method.of(ontologies="-"), Policy.REPAIR)
+    kept = task_record(task.complete(), Method.of(ontologies="-"))
     assert [text.partition(" . ")[2] for text in kept.ontologies] == ["<urn:HallLamp> <urn:x> <urn:Lamp> ."]
 
 
 def test_a_refusal_is_explained_by_the_ecology_in_which_it_was_found() -> None:
     home, later, found = sc.read(ROOT / "examples" / "clock"), list[Callable[[], None]](), list[sc.Refusal]()
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":cellar")
-    kept = decode(encode(task_record(task, Method.of(), Policy.REPAIR)), TaskRecord)
+    kept = decode(encode(task_record(task, Method.of())), TaskRecord)
     request = request_of(kept, lambda work: lambda: None, at_leisure=later.append)
     refused = request.compose(home.advertisements(), frozenset(), None)
     request.compose({}, frozenset(), None)  # the next search begins before the refusal of the first is reported
@@ -131,15 +130,15 @@ def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> Non
     assert record().task.startswith("tell-the-time~")
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")
     with pytest.raises(AuthorError, match="cannot name a task"):
-        task_record(task, Method.of(), Policy.REPAIR, "no/name")
+        task_record(task, Method.of(), TaskOptions(name="no/name"))
 
 
 def test_a_priority_that_no_component_would_take_and_an_upgrade_that_never_comes_are_refused() -> None:
     task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl")
     with pytest.raises(ProgrammerError, match="a priority is a whole number"):
-        task_record(task, Method.of(), Policy.REPAIR, priority=10**23)
+        task_record(task, Method.of(), TaskOptions(priority=10**23))
     with pytest.raises(ProgrammerError, match="an upgrade comes after"):
-        task_record(task, Method.of(), Policy.REPAIR, upgrade=-1)
+        task_record(task, Method.of(), TaskOptions(upgrade=-1))
 
 
 @pytest.mark.parametrize(

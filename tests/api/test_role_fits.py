@@ -13,7 +13,6 @@ import selfconf as sc
 from selfconf.api.answer import Method
 from selfconf.api.detached import task_record
 from selfconf.api.role_fits import role_fits
-from selfconf.configurator.state import Policy
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import advertisements, turtle
@@ -26,7 +25,7 @@ MISSPELT = ":old a sc:Component, rob:PositonSensor ."
 def record(text: str = NAVIGATE) -> TaskRecord:
     """The task of the tests."""
     task = sc.template(text).bind(robot=":Astrid", goal="(AT BEDROOM)")
-    return task_record(task.complete(), Method.of(), Policy.REPAIR)
+    return task_record(task.complete(), Method.of())
 
 
 def advertisement(text: str) -> Advertisement:

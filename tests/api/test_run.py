@@ -14,6 +14,7 @@ import pytest
 import selfconf as sc
 from selfconf import read, template
 from selfconf.api.answer import Method
+from selfconf.api.membership import Membership
 from selfconf.api.run import Run, WorkQueue
 from selfconf.composition import TimeLimit
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
@@ -223,8 +224,8 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
 
 def run(house: Home, task: object = TASK, method: Method | None = None, **more: object) -> Run:
     """A run in the house."""
-    shown = {"credentials": house.credentials()}
-    return Run(task, method or Method(), house.ecology, [house.endpoint()], **shown, **more)  # type: ignore[arg-type]  # by name
+    membership = Membership(house.ecology, (house.endpoint(),), house.credentials())
+    return Run(task, method or Method(), membership, **more)  # type: ignore[arg-type]  # by name
 
 
 def kinds(events: list[RunEvent]) -> list[type[RunEvent]]:
@@ -285,7 +286,7 @@ def test_a_run_that_cannot_begin_is_an_error(house: Home) -> None:
     with pytest.raises(BindingError, match="needs a value"):
         run(house, template(NAVIGATE))
     with pytest.raises(SelfconfError, match="no endpoint"):
-        Run(TASK, Method(), house.ecology, ["here"]).__enter__()
+        Run(TASK, Method(), Membership(house.ecology, ("here",))).__enter__()
 
 
 # The run's own threads: the bus listens, whatever the thread does that reads the events.

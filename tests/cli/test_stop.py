@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.api.membership import configurator_name
+from selfconf.api.membership import Membership
 from tests.cli.command import run
 from tests.cli.processes import Home
 
@@ -27,7 +27,8 @@ def test_what_answers_is_taken_down_though_a_configurator_lives_that_does_not(
 ) -> None:
     program = inhabited.run()
     program.act("running")
-    mute, name = inhabited.node(), configurator_name(inhabited.credentials()) or "mute"
+    member = Membership(inhabited.ecology, (), inhabited.credentials())
+    mute, name = inhabited.node(), member.configurator_name() or "mute"
     try:
         mute.announce(inhabited.keys.configurator_life(name, "1"))
         outcome = run(capsys, "stop", *inhabited.arguments())

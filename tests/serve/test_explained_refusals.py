@@ -12,7 +12,6 @@ import pytest
 import selfconf as sc
 from selfconf.api.answer import Method
 from selfconf.api.detached import task_record
-from selfconf.configurator.state import Policy
 from selfconf.deployment.runner import TaskRunner
 from selfconf.serve import explained_refusals
 from selfconf.serve.board import Board
@@ -34,7 +33,7 @@ def lab(tmp_path: Path) -> Lab:
 def agent(lab: Lab, robot: str) -> TaskRunner:
     """A configurator of a robot's task, which tells its task to whoever asks."""
     wanted = {"robot": robot, "goal": "(AT BEDROOM)"}
-    record = task_record(sc.template(NAVIGATE).bind(**wanted).complete(), Method.of(), Policy.REPAIR)
+    record = task_record(sc.template(NAVIGATE).bind(**wanted).complete(), Method.of())
     return lab.agent(bound=tuple(wanted.items()), record=record)
 
 

@@ -11,7 +11,6 @@ import pytest
 import selfconf as sc
 from selfconf.api.answer import Method
 from selfconf.api.detached import task_record
-from selfconf.configurator.state import Policy
 from selfconf.serve import fits
 from selfconf.serve.board import Board
 from tests.lab import NAVIGATE, Lab, iri
@@ -33,7 +32,7 @@ def lab(tmp_path: Path) -> Lab:
     lab = Lab(tmp_path)
     lab.navigation()
     task = sc.template(NAVIGATE).bind(robot=":Astrid", goal="(AT BEDROOM)").complete()
-    agent = lab.agent(record=task_record(task, Method.of(), Policy.REPAIR))
+    agent = lab.agent(record=task_record(task, Method.of()))
     assert lab.running(agent)
     return lab
 
