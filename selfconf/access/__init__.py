@@ -2,14 +2,14 @@
 
 `KeysFolder` is what `--keys` names: it issues, renews and revokes certificates, and gives a program what it shows to
 others. `Principal` is what a certificate names, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
-`Doorkeeper` keeps the rules of a site, from `first_rules` on; `introduce` shows a program's certificate to the sites,
-and `CertificateWatch` shows it again when it is renewed, and says that it expires.
+`Doorkeeper` keeps the rules of the `GuardedHub` of a site (`SiteIdentity`), from `first_rules` on; `introduce` shows a
+program's certificate to the sites, and `CertificateWatch` shows it again when it is renewed, and says that it expires.
 `believe` notes which site owns a component that two sites advertise. It needs the extra `keys`.
 """
 
 from selfconf.access.beliefs import believe, believed
 from selfconf.access.certificates import Certificate
-from selfconf.access.doorkeeper import Doorkeeper, first_rules
+from selfconf.access.doorkeeper import Doorkeeper, GuardedHub, SiteIdentity, first_rules
 from selfconf.access.expiry import CertificateWatch
 from selfconf.access.introduction import introduce
 from selfconf.access.keys_folder import DAYS, KeysFolder
@@ -22,9 +22,11 @@ __all__ = [
     "Certificate",
     "CertificateWatch",
     "Doorkeeper",
+    "GuardedHub",
     "KeysFolder",
     "Principal",
     "PrincipalKind",
+    "SiteIdentity",
     "believe",
     "believed",
     "first_rules",

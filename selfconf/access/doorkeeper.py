@@ -25,6 +25,7 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.bus.refusals import RefusalLog
 from selfconf.errors import NetworkError, PeerError, SelfconfError
+from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.wording import client_text
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
@@ -58,7 +59,7 @@ MOST_TOLD = 20
 
 
 def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, IRI]) -> AccessRules:
-    """The rules that follow from what a site knows by itself; `own` as for a `Doorkeeper`."""
+    """The rules that follow from what a site knows by itself; `own` as of a `SiteIdentity`."""
     return rules_of(ecology, site, _processes(own.items()), {}, _principals(folder, ecology))
 
 
@@ -79,35 +80,44 @@ def _processes(components: Iterable[tuple[IRI, IRI]]) -> list[Process]:
     return [tuple(map(Principal.component, dict.fromkeys((program, *mine)))) for program, mine in found.items()]
 
 
+@immutable
+class SiteIdentity:
+    """Who a site with keys is."""
+
+    ecology: str
+    name: str
+    folder: KeysFolder
+    credentials: Credentials
+    """What it shows."""
+    own: Callable[[], Mapping[IRI, IRI]]
+    """Its components, each with the one whose certificate its process has."""
+
+
+@immutable
+class GuardedHub:
+    """The hub that a site opens, or would open as the one that relays on its host."""
+
+    rules: AccessRules
+    """Those in force to begin with."""
+    relays: Callable[[], bool]
+    """Whether the site relays."""
+    sites: Callable[[], Iterable[str]]
+    """The names of the sites of this host, whose components connect to the hub."""
+    open_anew: Callable[[AccessRules], None]
+    """Opens it with other rules; raises NetworkError."""
+    refusals: RefusalLog
+
+
 class Doorkeeper:
     """Keeps the rules of one site's hub."""
 
-    def __init__(
-        self,
-        bus: Bus,
-        ecology: str,
-        site: str,
-        keys_folder: KeysFolder,
-        credentials: Credentials,
-        own: Callable[[], Mapping[IRI, IRI]],
-        of_this_host: Callable[[], Iterable[str]],
-        relays: Callable[[], bool],
-        enforce: Callable[[AccessRules], None],
-        complain: Callable[[str], None],
-        refusals: RefusalLog,
-        rules: AccessRules,
-    ) -> None:
-        """`own` are the components of this site, each with the one whose certificate its process has.
-
-        `of_this_host` are the names of the sites of this host, whose components connect to the hub of the one that
-        `relays`. `rules` are those in force; `enforce` opens the hub with others, and raises NetworkError.
-        """
-        self._bus, self._keys, self._name, self._folder = bus, Keys(ecology), site, keys_folder
-        self._credentials, self._own, self._enforce, self._complain = credentials, own, enforce, complain
-        self._of_this_host, self._relays, self._refusals = of_this_host, relays, refusals
+    def __init__(self, bus: Bus, site: SiteIdentity, hub: GuardedHub, complain: Callable[[str], None]) -> None:
+        self._bus, self._hub, self._complain = bus, hub, complain
+        self._keys, self._name, self._folder = Keys(site.ecology), site.name, site.folder
+        self._credentials, self._own = site.credentials, site.own
         self._warned = False
         """Whether the hub is about to be opened anew."""
-        self._warning = bus.publisher(self._keys.reopens(site), Urgency.EVENT)
+        self._warning = bus.publisher(self._keys.reopens(site.name), Urgency.EVENT)
         self._others: dict[str, frozenset[IRI]] = {}
         """The components that other sites advertise."""
         self._revisions: dict[str, int] = {}
@@ -126,13 +136,13 @@ class Doorkeeper:
         self._admitted = set[Certificate]()
         """The good certificates that were shown in these moments, and since when that is noted."""
         self._admitted_at = bus.now()
-        self._renewed_at = credentials.certificate.stat().st_mtime_ns
-        self.rules = rules
-        bus.serve(self._keys.introduce(site), self._introduced)
-        bus.serve(self._keys.access(site), self._tell)
+        self._renewed_at = self._credentials.certificate.stat().st_mtime_ns
+        self.rules = hub.rules
+        bus.serve(self._keys.introduce(site.name), self._introduced)
+        bus.serve(self._keys.access(site.name), self._tell)
         bus.subscribe(self._keys.changed(), lambda _: self._others_changed())
         bus.watch(self._keys.any_site_life(), lambda *_: self._others_changed())
-        CertificateWatch(bus, ecology, credentials, complain)
+        CertificateWatch(bus, site.ecology, site.credentials, complain)
         for pause in INTRODUCTIONS:
             bus.later(pause, self._introduce)
         bus.later(INTRODUCE_AGAIN, self._introduce_again)
@@ -147,7 +157,7 @@ class Doorkeeper:
             if not known:
                 self._renew_rules_soon()
             mine = self._credentials.certificate.read_text()
-            beside = tuple(sorted(self._of_this_host()))
+            beside = tuple(sorted(self._hub.sites()))
             request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known, beside)))
         except SelfconfError as error:
             request.refuse(str(error))
@@ -243,7 +253,7 @@ class Doorkeeper:
         advertised = {self._name: frozenset(own), **{s: c for s, c in self._others.items() if s in sites}}
         undisputed = self._undisputed(advertised)
         processes = _processes((component, own[component]) for component in undisputed[self._name])
-        for site in set(self._of_this_host()) & undisputed.keys() - {self._name}:
+        for site in set(self._hub.sites()) & undisputed.keys() - {self._name}:
             processes += _processes((component, component) for component in undisputed[site])
         others = {site: components for site, components in undisputed.items() if site != self._name}
         return rules_of(self._keys.ecology, self._name, processes, others, shown)
@@ -287,7 +297,7 @@ class Doorkeeper:
 
     def _open_anew(self) -> None:
         """Have the hub opened anew, and tell all clients before: a hub takes its clients off one after the other."""
-        if not self._relays():
+        if not self._hub.relays():
             self._enforced()
         elif not self._warned:
             self._warned = True
@@ -299,9 +309,9 @@ class Doorkeeper:
         self._undo_retry()
         self._warned = False
         try:
-            self._enforce(self.rules)
+            self._hub.open_anew(self.rules)
             for name in self._strangers:  # what it tried before it was known was not refused for what it is
-                self._refusals.forget(name)
+                self._hub.refusals.forget(name)
             self._strangers = frozenset()
         except NetworkError as error:
             self._tell_fault(f"the hub cannot be opened with its new rules: {error}; trying again")
@@ -315,7 +325,7 @@ class Doorkeeper:
         self._bus.later(LOOK, self._look)
         self._renew_certificates()
         self._renew_rules()
-        refused = {(one.principal, one.attempt, one.key): one for one in self._refusals.refused}
+        refused = {(one.principal, one.attempt, one.key): one for one in self._hub.refusals.refused}
         self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
         for what, one in refused.items():
             if self._seen[what] == LOOKS:
@@ -330,7 +340,7 @@ class Doorkeeper:
 
         def judge(living: tuple[str, ...] = ()) -> None:
             if refused.key in living:
-                self._refusals.drop(refused)
+                self._hub.refusals.drop(refused)
             else:
                 self._tell_refused(refused.principal, refused.attempt, refused.key)
 
@@ -373,7 +383,7 @@ class Doorkeeper:
         try:
             for access in self.rules.accesses:
                 request.reply(self._keys.access(self._name), encode(access))
-            for refused in self._refusals.refused:
+            for refused in self._hub.refusals.refused:
                 request.reply(self._keys.access(self._name), encode(refused))
         finally:
             request.finish()

@@ -11,9 +11,11 @@ from selfconf import rendezvous
 from selfconf.access import (
     AccessRules,
     Doorkeeper,
+    GuardedHub,
     KeysFolder,
     Principal,
     PrincipalKind,
+    SiteIdentity,
     believed,
     first_rules,
     introduce,
@@ -79,17 +81,13 @@ class SecuredSite:
     def keep_door(self, site: Site, joining: Joining, complain: Callable[[str], None]) -> None:
         """From now on, let in clients that show a good certificate, and renew what expires."""
         self._programs = lambda: site.programs
-        Doorkeeper(
-            site.bus,
-            site.keys.ecology,
-            site.name,
-            self._folder,
-            self._credentials,
-            self._programs,
-            lambda: (one.site for one in rendezvous.local_sites(site.keys.ecology)),
-            lambda: joining.relays,
-            lambda rules: joining.secure(self._security(rules)),
-            complain,
-            self._refusals,
+        ecology = site.keys.ecology
+        identity = SiteIdentity(ecology, site.name, self._folder, self._credentials, own=self._programs)
+        hub = GuardedHub(
             self._first,
+            relays=lambda: joining.relays,
+            sites=lambda: (one.site for one in rendezvous.local_sites(ecology)),
+            open_anew=lambda rules: joining.secure(self._security(rules)),
+            refusals=self._refusals,
         )
+        Doorkeeper(site.bus, identity, hub, complain)

@@ -10,9 +10,11 @@ from selfconf.access import (
     AccessRules,
     Certificate,
     Doorkeeper,
+    GuardedHub,
     KeysFolder,
     Principal,
     PrincipalKind,
+    SiteIdentity,
     believe,
     first_rules,
 )
@@ -42,20 +44,15 @@ class Door:
         self.hub_opens = True
         self.refusals = RefusalLog(clock=lambda: 0.0)
         credentials = folder.credentials((PrincipalKind.SITE,), "home")
-        self.keeper = Doorkeeper(
-            self.bus,
-            "lab",
-            "home",
-            folder,
-            credentials,
-            lambda: {LAMP: LAMP},
-            lambda: ["home"],
-            lambda: True,
-            self.enforce,
-            self.said.append,
-            self.refusals,
+        site = SiteIdentity("lab", "home", folder, credentials, own=lambda: {LAMP: LAMP})
+        hub = GuardedHub(
             first_rules("lab", "home", folder, {LAMP: LAMP}),
+            relays=lambda: True,
+            sites=lambda: ["home"],
+            open_anew=self.open_anew,
+            refusals=self.refusals,
         )
+        self.keeper = Doorkeeper(self.bus, site, hub, self.said.append)
         self.other = self.network.node()
 
     def ask(self, key: str, payload: bytes = b"") -> Replies:
@@ -65,7 +62,7 @@ class Door:
         self.other.run(lambda: bool(heard))
         return heard[0]
 
-    def enforce(self, rules: AccessRules) -> None:
+    def open_anew(self, rules: AccessRules) -> None:
         """Open the hub with other rules."""
         self.enforced.append(rules)
         if not self.hub_opens:
