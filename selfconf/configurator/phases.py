@@ -104,7 +104,8 @@ def _release_next(state: State) -> Reaction:
     """Release those that feed none of the others that are to come to rest."""
     wires = {component: held.inputs for component, held in state.held.items() if held.active}
     now = resting_next(wires, state.unreleased)
-    left = tuple(component for component in state.unreleased if component not in set(now))
+    resting = frozenset(now)
+    left = tuple(component for component in state.unreleased if component not in resting)
     pending = frozenset((component, Call.RELEASE) for component in now)
     effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
     return replace(state, unreleased=left, pending=pending), effects

@@ -183,6 +183,8 @@ def resting_order(wires: Mapping[IRI, InputWires], components: Iterable[IRI]) ->
     order: list[IRI] = []
     left = tuple(components)
     while left:
-        order += resting_next(wires, left)
-        left = tuple(component for component in left if component not in set(order))
+        now = resting_next(wires, left)
+        order += now
+        resting = frozenset(now)
+        left = tuple(component for component in left if component not in resting)
     return tuple(order)
