@@ -169,10 +169,10 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     if answer.call is Call.RESERVE:
         known = replace(held, life=answer.life, asked=False, reserved=True)
         if answer.acts and not held.active:  # it was given up, and has not heard of that: it follows some of this
-            assert state.target is not None
-            inputs, values = wiring(state.target)[answer.component], parameter_values(state.target)[answer.component]
-            calling = callers(state.target)[answer.component]
-            known = replace(known, active=True, inputs=inputs, values=values, callers=calling)
+            plan, mine = state.plan, answer.component
+            assert plan is not None
+            inputs, calling = plan.inputs[mine], plan.callers[mine]
+            known = replace(known, active=True, inputs=inputs, values=plan.values[mine], callers=calling)
         return proceed(replace(state, held={**state.held, answer.component: known}))
     known = replace(held, life=answer.life, asked=False, reserved=True, acts=True, confirmed=True)
     done = replace(state, held={**state.held, answer.component: known})
