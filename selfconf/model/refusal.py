@@ -1,4 +1,4 @@
-"""A refusal: why there is no configuration, what nearly fitted, and what would mend it. A value, not an exception.
+"""A refusal: why there is no configuration, what nearly fitted, which changes would help. A value, not an exception.
 
 The search records facts; each fact words itself in one sentence for people. `code` is stable, for programs. A
 *reason* stands on a set of requirements that cannot hold together; drop any one of them and the rest can.
@@ -252,7 +252,7 @@ Reason = Contradiction | ValueUnknown | TooFewEligible | InputUnfed | TooFewDist
 
 @immutable
 class Refusal:
-    """No configuration: the reasons, the most likely cause first, near misses, repairs, and a hint if there is one.
+    """No configuration: the reasons, the most likely cause first, near misses, relaxations, and a hint.
 
     >>> refusal = configure(template("examples/clock/tell-the-time.ttl").bind(room=":cellar"), home)
     >>> bool(refusal), str(refusal.reasons[0])
@@ -268,6 +268,7 @@ class Refusal:
     hint: str | None = None
     missing_sites: tuple[str, ...] = field(default=())
     repairs: tuple[Relaxation, ...] = ()
+    """The relaxations that were found."""
     held: tuple[tuple[IRI, Holder], ...] = ()
     """The components that the task could use, and which other tasks hold, where there would be a configuration with
     these; sorted."""
@@ -276,7 +277,7 @@ class Refusal:
     smallest: bool = True
     """Whether each reason was proved to have the fewest requirements that cannot hold together."""
     repairs_stopped: bool = False
-    """Whether the steps, time or trials for repairs were used up before all was tried: there may be others then."""
+    """Whether the steps, time or trials for relaxations were used up before all was tried: there may be others then."""
     left_out: tuple[LeftOut, ...] = field(default=(), kw_only=True, repr=False, compare=False)
     """The components that count for nothing, as what they say cannot be judged, or not in time."""
 

@@ -60,13 +60,6 @@ def with_relaxations(
     return replace(refused, repairs=found, repairs_stopped=effort.stopped)
 
 
-def relaxations(
-    problem: Problem, refused: Refusal, near_misses: NearMisses = (), steps: int | None = None
-) -> Iterator[Relaxation]:
-    """Yield changes that make a refused problem possible, those first that are easiest to make."""
-    return _relaxations(problem, refused, near_misses, RelaxationEffort(steps))
-
-
 def _relaxations(
     problem: Problem, refused: Refusal, near_misses: NearMisses, effort: RelaxationEffort
 ) -> Iterator[Relaxation]:

@@ -57,7 +57,7 @@ def checked_configuration(value: Any) -> Body | None:
 
 
 def checked_refusal(value: Any) -> Body | None:
-    """A refusal with its reasons, near misses and repairs, or the sentence of a search that has given up."""
+    """A refusal with its reasons, near misses and relaxations, or the sentence of a search that has given up."""
     if not isinstance(value, dict):
         return None
     body: Body = {

@@ -27,7 +27,7 @@ from selfconf.serve.problems import problem
 EXPLAINED_WITHIN = 20.0
 """Seconds that the search may take."""
 TOLD_WITHIN = 3.0
-"""Seconds within which the configurator of a task that waits has mostly told its near misses and repairs."""
+"""Seconds within which the configurator of a task that waits has mostly told its near misses and relaxations."""
 TOLD_CHECK = 0.1
 """How often, in seconds, it is looked whether it has."""
 
@@ -40,7 +40,7 @@ class ExplainedRefusals:
         self._one = asyncio.Semaphore(1)
 
     async def respond(self, request: Request) -> Response:
-        """`/mend?task=IDENTITY`: the refusal with near misses and repairs, or the detail of why there is none."""
+        """`/mend?task=IDENTITY`: the refusal with near misses and relaxations, or the detail of why there is none."""
         task = request.query_params.get("task", "")
         if not self._board.knows(task):
             return problem(404, "there is no task of this identity; /mend?task=IDENTITY takes one of /state")

@@ -69,7 +69,7 @@ def test_a_role_that_has_its_candidates_has_no_near_miss_by_type() -> None:
     assert explained(composer, ecology, refusal, NOTHING, UNLIMITED).near_misses == refusal.near_misses
 
 
-def test_steps_limit_what_is_tried_to_mend_a_refusal_too() -> None:
+def test_steps_limit_the_relaxations_that_are_tried() -> None:
     composer, ecology, refusal = refused(TEAM, CROWD)
     assert explained(composer, ecology, refusal, NOTHING, UNLIMITED).repairs
     composer, ecology, refusal = refused(TEAM, CROWD, steps=40)

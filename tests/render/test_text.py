@@ -160,7 +160,7 @@ def test_what_cannot_be_is_told_with_regard_to_what_others_hold(some_held: bool,
     assert alternative_text(one, None, some_held) == f"no preference; {said}"
 
 
-def test_a_refusal_says_that_the_search_for_repairs_stopped() -> None:
+def test_a_refusal_says_that_the_search_for_relaxations_stopped() -> None:
     stopped = replace(REFUSAL, repairs_stopped=True)
     assert "the search for other repairs stopped before all was tried" in refusal_text(stopped, NAMES).splitlines()
     bare = Refusal(TEMPLATE, REASONS, repairs_stopped=True)

@@ -9,7 +9,7 @@ from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AddComponents, AskForFewer
 from selfconf.search import components_to_add, relaxation_effort
-from selfconf.search.relaxations import MOST_ROLES, NEAR, relaxations, with_relaxations
+from selfconf.search.relaxations import MOST_ROLES, NEAR, with_relaxations
 from selfconf.search.strategies import first
 from tests.search.worlds import component, iri, problem
 
@@ -20,10 +20,10 @@ def test_what_may_be_tried_grows_with_the_ecology(monkeypatch: pytest.MonkeyPatc
     given_ = problem({f"r{number}": [component(f"c{other}") for other in range(59)] for number in range(60)})
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
-    assert str(next(relaxations(given_, refused))) == "add one more component for the role r0"
+    assert str(with_relaxations(given_, refused).repairs[0]) == "add one more component for the role r0"
 
 
-def test_a_search_for_repairs_that_ends_before_all_was_tried_says_so() -> None:
+def test_a_search_for_relaxations_that_ends_before_all_was_tried_says_so() -> None:
     given_ = problem({f"r{number}": [component(f"c{other}") for other in range(7)] for number in range(8)})
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
