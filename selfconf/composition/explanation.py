@@ -1,4 +1,4 @@
-"""What else a refusal can tell: which components nearly fit, which relaxations help, and whether other reasoning would."""
+"""What else a refusal can tell: which components nearly fit, which relaxations help, whether other reasoning would."""
 
 from __future__ import annotations
 

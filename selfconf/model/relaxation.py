@@ -1,6 +1,7 @@
 """Relaxations: changes to an ecology or a template, each of which makes a refused task possible.
 
-A refusal has them as its `repairs`. A relaxation is a fact; it words itself as a request. `code` is stable, for programs.
+A refusal has them as its `repairs`. A relaxation is a fact; it words itself as a request. `code` is stable, for
+programs.
 """
 
 from __future__ import annotations
