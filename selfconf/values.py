@@ -17,11 +17,11 @@ from selfconf.api.answer import Answer
 from selfconf.api.component_states import ComponentState
 from selfconf.api.echo import HeardSignal
 from selfconf.api.ecology import Components, Solutions
-from selfconf.api.event_answers import AnsweredEvent as AnyRunEvent
-from selfconf.api.event_answers import AnsweredRunning as TaskRunning
-from selfconf.api.event_answers import AnsweredSearch as SearchEnded
 from selfconf.api.living_tasks import LivingTask
 from selfconf.api.partition_table import PartitionTable, RolePartition
+from selfconf.api.run_outcomes import AnsweredEvent as AnyRunEvent
+from selfconf.api.run_outcomes import AnsweredRunning as TaskRunning
+from selfconf.api.run_outcomes import AnsweredSearch as SearchEnded
 from selfconf.api.validation import ValidationReport
 from selfconf.model.configuration import Assignment, Connection, ParameterSetting
 from selfconf.model.consequence import Consequence

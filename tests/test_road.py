@@ -30,7 +30,7 @@ def test_the_page_says_how_long_the_road_is(road: str) -> None:
 
 
 def test_what_runs_only_while_a_module_loads_is_no_part_of_the_road() -> None:
-    from selfconf.model.number import number_of
+    from selfconf.model.literal_values import number_of
 
     def load_and_ask() -> None:
         module = compile("number_of('1', 'urn:none')", "a module", "exec")
@@ -38,7 +38,7 @@ def test_what_runs_only_while_a_module_loads_is_no_part_of_the_road() -> None:
 
     assert Road().travel(load_and_ask).functions == {}
     asked = Road().travel(lambda: number_of("1", "urn:none"))
-    assert set(asked.functions) == {"model/number.py"}
+    assert set(asked.functions) == {"model/literal_values.py"}
     assert asked.rooms == {"model": 1}
 
 

@@ -22,7 +22,7 @@ from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.left_out import LeftOut
-from selfconf.model.number import number
+from selfconf.model.literal_values import number
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Place, Profile
 from selfconf.model.refusal import Outcome, Refusal, Undecided

@@ -10,7 +10,7 @@ from typing import Any
 
 from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.arguments import checked_priority, checked_text, checked_upgrade, option
-from selfconf.api.refusal_among import outcome_among, searched_ecology
+from selfconf.api.run_outcomes import outcome_among, searched_ecology
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.configurator import Policy

@@ -12,11 +12,10 @@ from typing import NamedTuple
 from selfconf import rendezvous
 from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.detached import AS_USUAL, TaskOptions, task_record
-from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import Membership
 from selfconf.api.places import Places
-from selfconf.api.refusal_among import outcome_among, searched_ecology
+from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, outcome_among, searched_ecology
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.work_queue import UNDISTURBED, WorkQueue

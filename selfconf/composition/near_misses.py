@@ -20,8 +20,7 @@ from selfconf.model.port_likeness import PortLikeness
 from selfconf.model.profile import Condition, Input, Output, Profile
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.requirement import InputFed
-from selfconf.model.signal_likeness import SignalLikeness
-from selfconf.model.signal_match import SignalMatch
+from selfconf.model.signal_likeness import SignalLikeness, SignalMatch
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import (

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import immutable
-from selfconf.model.number import fraction
+from selfconf.model.literal_values import fraction
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 

@@ -13,7 +13,7 @@ from typing import ClassVar
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import CALL_MARK, Operation, WantedSignal, port_in_words
 from selfconf.model.setting_names import setting
-from selfconf.model.signal_match import Degree, SignalMatch
+from selfconf.model.signal_likeness import Degree, SignalMatch
 from selfconf.model.term import IRI, Term
 from selfconf.model.unit_dimension import differ_in_dimension
 from selfconf.model.wording import in_full, in_words, term_in_words

@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 from selfconf.model.obstacle import UnlikePorts
 from selfconf.model.profile import Ports
-from selfconf.model.signal_likeness import SignalLikeness
-from selfconf.model.signal_match import SignalMatch
+from selfconf.model.signal_likeness import SignalLikeness, SignalMatch
 from selfconf.model.term import IRI
 
 Types = tuple[IRI, ...]

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from reprlib import Repr
 from typing import Any, NamedTuple
 
-from selfconf.model.number import DATATYPES, FLOATING, WHOLE_NUMBERS
+from selfconf.model.literal_values import DATATYPES, FLOATING, WHOLE_NUMBERS
 from selfconf.model.term import IRI, XSD_NAMESPACE
 
 _SHORT = Repr()

@@ -15,10 +15,9 @@ from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 
 from selfconf.model.immutable import immutable
-from selfconf.model.number import number_of
+from selfconf.model.literal_values import BOOLEAN, TRUTH, number_of
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
-from selfconf.model.truth import BOOLEAN, TRUTH
 from selfconf.rdf.turtle import SKOLEM
 from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
 

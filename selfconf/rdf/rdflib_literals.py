@@ -16,7 +16,7 @@ from xml.parsers import expat
 
 from rdflib import RDF, XSD, Literal, URIRef
 
-from selfconf.model.truth import TRUTH
+from selfconf.model.literal_values import TRUTH
 
 _MARKUP = frozenset((RDF.HTML, RDF.XMLLiteral))
 

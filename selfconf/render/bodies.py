@@ -12,7 +12,7 @@ from selfconf.model.alternative import Alternative
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.holder import Holder
-from selfconf.model.number import plain_number
+from selfconf.model.literal_values import BOOLEAN, TRUTH, plain_number
 from selfconf.model.obstacle import Obstacle, UnlikePorts
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
@@ -20,7 +20,6 @@ from selfconf.model.profile import Operation, Output
 from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import AddComponents, Relaxation
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.model.truth import BOOLEAN, TRUTH
 
 
 def configuration_body(configuration: Configuration) -> dict[str, Any]:

@@ -14,12 +14,12 @@ from functools import partial
 from typing import Any
 
 from selfconf.bus.port import Bus
+from selfconf.model.literal_values import as_python
 from selfconf.model.profile import Profile
 from selfconf.model.term import Term
 from selfconf.sdk.blindness import TOLERATES, Blindness
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component, Refused, Signal
-from selfconf.sdk.values import as_python
 
 log = logging.getLogger(__name__)
 

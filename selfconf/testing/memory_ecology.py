@@ -10,10 +10,9 @@ from typing import TypeVar
 from selfconf import files, library
 from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
-from selfconf.api.event_answers import AnsweredEvent, answered, answered_event
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered, text_of
-from selfconf.api.refusal_among import outcome_among, searched_ecology
+from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, outcome_among, searched_ecology
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.bus.memory import Faults, Network
 from selfconf.bus.memory_bus import MemoryBus

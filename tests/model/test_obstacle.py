@@ -31,7 +31,7 @@ from selfconf.model.obstacle import (
     WrongType,
 )
 from selfconf.model.profile import Operation
-from selfconf.model.signal_match import Degree, SignalMatch
+from selfconf.model.signal_likeness import Degree, SignalMatch
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.rdf.vocabulary import UNIT
 

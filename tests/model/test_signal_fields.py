@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.model.number import DATATYPES, FLOATING, WHOLE_NUMBERS
+from selfconf.model.literal_values import DATATYPES, FLOATING, WHOLE_NUMBERS
 from selfconf.model.signal_fields import SignalField, SignalFields
 from selfconf.model.term import IRI, XSD_NAMESPACE
 

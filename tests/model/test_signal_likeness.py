@@ -1,4 +1,4 @@
-"""How near signal types come to each other: degrees first, then how far up the hierarchy."""
+"""How near signal types come to each other: the degree of a match, and the likeness within it."""
 
 from __future__ import annotations
 
@@ -6,9 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.signal_likeness import EVERYTHING, SignalLikeness
-from selfconf.model.signal_match import Degree
+from selfconf.model.signal_likeness import EVERYTHING, Degree, SignalLikeness, SignalMatch
 from selfconf.model.term import IRI
+
+
+def test_only_what_is_wanted_is_exact() -> None:
+    pose = IRI("urn:Pose")
+    assert SignalMatch(pose, pose, Degree.EXACT, 1.0).exact
+    assert not any(SignalMatch(pose, None, degree, 0.0).exact for degree in Degree if degree is not Degree.EXACT)
 
 
 def iri(name: str) -> IRI:

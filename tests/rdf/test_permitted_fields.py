@@ -14,7 +14,7 @@ from rdflib.compare import isomorphic
 from rdflib.term import Node
 
 from selfconf import library
-from selfconf.model import number as numbers
+from selfconf.model import literal_values as numbers
 from selfconf.model import term as model
 from selfconf.model.profile import Profile
 from selfconf.rdf.advertisements import read_advertisements, reader

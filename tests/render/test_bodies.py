@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 import pytest
 
-from selfconf.model.number import DATATYPES, WHOLE_NUMBERS
+from selfconf.model.literal_values import DATATYPES, WHOLE_NUMBERS
 from selfconf.model.refusal import Reason, Refusal, TooFewEligible, Undecided
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from selfconf.model.number import number
+from selfconf.model.literal_values import number, truth
 from selfconf.model.profile import (
     Condition,
     Input,
@@ -23,7 +23,6 @@ from selfconf.model.profile import (
     shared_ports,
 )
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.model.truth import truth
 from selfconf.rdf.advertisements.accepted_shapes import ShapeNotAccepted, accepted_shape
 from selfconf.rdf.advertisements.advertisement import (
     Advertisement,

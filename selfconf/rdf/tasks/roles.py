@@ -10,10 +10,10 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from selfconf.model.literal_values import truth
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Setting
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.model.truth import truth
 from selfconf.rdf.shacl import ONLY_WITH_A_PATH, component_parameters, misfit
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.turtle import Document, Node, Triple

@@ -15,7 +15,7 @@ from fractions import Fraction
 from selfconf.errors import TemplateError
 from selfconf.model.cost import CostLevel, CostTerm
 from selfconf.model.immutable import immutable
-from selfconf.model.number import fraction
+from selfconf.model.literal_values import fraction
 from selfconf.model.setting_names import setting
 from selfconf.model.template import MOST_PRIORITY, Task, Template
 from selfconf.model.term import IRI, Literal, Term

@@ -23,10 +23,9 @@ from selfconf.rdf.turtle.document import (
     resource,
     term,
 )
-from selfconf.rdf.turtle.encoding import check_utf_8, first_not_utf_8
 from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, in_turtle, other_format, read_ontology
+from selfconf.rdf.turtle.refused_text import check_turtle_1_1, check_utf_8, first_not_utf_8
 from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, to_turtle
-from selfconf.rdf.turtle.versions import check_turtle_1_1
 
 __all__ = [
     "SKOLEM",

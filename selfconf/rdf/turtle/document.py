@@ -16,7 +16,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.turtle.versions import TAKES_RDF_1_2, check_turtle_1_1
+from selfconf.rdf.turtle.refused_text import TAKES_RDF_1_2, check_turtle_1_1
 from selfconf.rdf.vocabulary import FIRST, NIL, REST, TYPE
 
 Node = IRI | BlankNode

@@ -21,9 +21,8 @@ from selfconf.errors import TurtleError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle.document import Document, document_of
-from selfconf.rdf.turtle.encoding import check_utf_8
+from selfconf.rdf.turtle.refused_text import check_turtle_1_1, check_utf_8
 from selfconf.rdf.turtle.serialization import to_turtle
-from selfconf.rdf.turtle.versions import check_turtle_1_1
 
 _HEAD = 1 << 16
 """Bytes at the head of a file by which its format is recognised, where the ending of its name does not say it."""

@@ -1,8 +1,10 @@
-"""What the events of a run hand out is what `configure` answers with."""
+"""The outcomes of a run: as answers, and refusals that keep the advertisements among which they were found."""
 
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,9 +12,11 @@ import pytest
 import selfconf as sc
 from selfconf import values
 from selfconf.api.answer import Answer, ExplainedRefusal
-from selfconf.api.event_answers import answered, answered_event
-from selfconf.model.refusal import Refusal
+from selfconf.api.run_outcomes import RefusalAmong, answered, answered_event, outcome_among, searched_ecology
+from selfconf.model.optimum import Optimum
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import EcologyAsked, SearchEnded, TaskRefused, TaskRunning, TaskWaiting
+from tests.lab import iri
 
 
 @pytest.fixture
@@ -68,3 +72,36 @@ def test_what_is_an_answer_already_stays_and_what_has_none_too(answer: Answer) -
     assert answered(None, answer.task) is None
     assert answered_event(asked, answer.task) is asked
     assert answered_event(waiting, answer.task) is waiting
+
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_a_refusal_keeps_the_ecology_without_the_lost_components_whatever_is_added() -> None:
+    found = sc.read(ROOT / "examples" / "clock").advertisements()
+    lost, *others = sorted(found)
+    refusal = outcome_among(Refusal(iri("t"), ()), found, {lost})
+    assert isinstance(refusal, RefusalAmong)
+    added = replace(refusal.told_of_held({}), missing_sites=("attic",))
+    assert sorted(searched_ecology(added)) == others
+    assert added.missing_sites == ("attic",)
+    assert searched_ecology(Refusal(iri("t"), ())) == {}
+
+
+def test_it_is_not_kept_in_what_users_are_given() -> None:
+    home = sc.read(ROOT / "examples" / "clock")
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":kitchen")
+    refusal = outcome_among(Refusal(task.iri, ()), home.advertisements(), ())
+    assert isinstance(refusal, Refusal)
+    assert searched_ecology(ExplainedRefusal.of(refusal, task.document)) == {}
+
+
+def test_what_is_no_refusal_stays_as_it_is() -> None:
+    home = sc.read(ROOT / "examples" / "clock")
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":kitchen")
+    answer = sc.configure(task, home)
+    assert isinstance(answer, sc.Configuration)
+    assert outcome_among(answer, {}, ()) is answer
+    assert outcome_among(Optimum(answer, (), (), (), proved=True), {}, ()) is answer
+    undecided = Undecided()
+    assert outcome_among(undecided, {}, ()) is undecided

@@ -1,4 +1,4 @@
-"""Turtle 1.2 is refused wherever Turtle is read, at its place, and nothing else is taken for it."""
+"""What is refused of a text before it is parsed: what is not UTF-8, and what only Turtle 1.2 has."""
 
 from __future__ import annotations
 
@@ -11,9 +11,34 @@ import selfconf as sc
 from selfconf.errors import BindingError, TurtleError
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import read_advertisements
-from selfconf.rdf.turtle import check_turtle_1_1, read_ontology
+from selfconf.rdf.turtle import check_turtle_1_1, check_utf_8, first_not_utf_8, read_ontology
 from selfconf.rdf.validation import SourceText, validate_texts
 from tests.lab import PREFIXES
+
+
+@pytest.mark.parametrize("before", ["", "\ufeff"])
+@pytest.mark.parametrize("text", ["# ä\n<urn:a> <urn:b> 'ä%s' .\n", "# ä\n# another line ä%s\n"])
+def test_a_byte_that_is_no_utf_8_is_named_with_its_place(text: str, before: str) -> None:
+    head, tail = f"{before}{text}".split("%s")
+    with pytest.raises(TurtleError) as caught:
+        check_utf_8(head.encode() + "ö".encode("latin-1") + tail.encode(), "t.ttl")
+    wrong = "this is not UTF-8: the byte 0xF6 cannot stand here; save the file in the encoding UTF-8"
+    place = len(head.rpartition("\n")[2]) + 1
+    assert str(caught.value) == f"t.ttl:2:{place}: {wrong}"
+
+
+@pytest.mark.parametrize("text", ["", "a", "ä\U0001f916", "\ufeffa"])
+def test_a_text_that_is_utf_8_is_passed(text: str) -> None:
+    assert first_not_utf_8(text.encode()) is None
+    check_utf_8(text.encode(), "t.ttl")
+
+
+@pytest.mark.parametrize("octets", [b"\xff", b"\xc3", b"\xed\xa0\x80", b"\xc0\xaf"])
+def test_what_only_looks_like_utf_8_is_found(octets: bytes) -> None:
+    found = first_not_utf_8(b"\n ab" + octets)
+    assert found is not None
+    assert found[:2] == (2, 4)
+
 
 NEWER = [
     ("<<( :a :b :c )>>", 1),

@@ -1,17 +1,22 @@
-"""Outcomes in the words of a task: configurations and refusals of a run as `configure` would answer with them.
+"""Outcomes of a run in the words of its task: configurations and refusals as `configure` would answer with them.
 
 The events that have a configuration are classes of their own here, so that a type checker knows it as an Answer; they
 are the `TaskRunning` and `SearchEnded` of `selfconf.values`. The floors below know no answers.
+
+A refusal of a run keeps among which advertisements it was found: what else it can tell is found out later, and by then
+another search may have been made, in another ecology.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Collection, Mapping
+from dataclasses import field, fields, replace
 from typing import TypeAlias, overload
 
 from selfconf.api.answer import Answer, ExplainedRefusal
 from selfconf.model.configuration import Configuration
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import (
     AnyRunEvent,
@@ -21,6 +26,8 @@ from selfconf.model.run_event import (
     TaskRunning,
     TaskWaiting,
 )
+from selfconf.model.term import IRI
+from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.tasks import TaskDocument
 
 
@@ -68,3 +75,23 @@ def answered_event(event: AnyRunEvent, task: TaskDocument) -> AnsweredEvent:
     if isinstance(event, TaskWaiting | TaskRefused) and event.refusal is not None:
         return replace(event, refusal=answered(event.refusal, task))
     return event
+
+
+@immutable
+class RefusalAmong(Refusal):
+    """A refusal that keeps among which advertisements no configuration was found, also where facts are added to it."""
+
+    ecology: Mapping[IRI, Advertisement] = field(kw_only=True, repr=False, compare=False)
+
+
+def outcome_among(answer: Optimum | Outcome, found: Mapping[IRI, Advertisement], lost: Collection[IRI]) -> Outcome:
+    """What a search in an ecology without its lost components has come to: a refusal keeps that ecology."""
+    if isinstance(answer, Refusal):
+        able = FrozenMapping({component: one for component, one in found.items() if component not in lost})
+        return RefusalAmong(**{one.name: getattr(answer, one.name) for one in fields(Refusal)}, ecology=able)
+    return answer.configuration if isinstance(answer, Optimum) else answer
+
+
+def searched_ecology(refusal: Refusal) -> Mapping[IRI, Advertisement]:
+    """The advertisements among which a refusal was found; none if it does not keep them."""
+    return refusal.ecology if isinstance(refusal, RefusalAmong) else {}

@@ -1,9 +1,12 @@
-"""Numbers: which literals stand for one, and for which.
+"""Which literals are numbers and which are truth values, what they stand for, and what they are in Python.
 
-A literal is a number here if its datatype is one of XML Schema's numeric datatypes, its text is in the lexical space of
-that datatype (XSD 1.1 part 2, sections 3.3.3 to 3.3.5 and 3.4.13 to 3.4.25), and its value is finite. Infinity and
+A literal is a *number* here if its datatype is one of XML Schema's numeric datatypes, its text is in the lexical space
+of that datatype (XSD 1.1 part 2, sections 3.3.3 to 3.3.5 and 3.4.13 to 3.4.25), and its value is finite. Infinity and
 not-a-number measure nothing. `shapes:Number` in `shapes/advertisement.ttl` says the same; a test holds the two
 together.
+
+It is a *truth value* if its datatype is xsd:boolean and its text is in the lexical space of that datatype (section
+3.3.2.2): `true`, `false`, `1` or `0`. The shapes say the same by `sh:datatype xsd:boolean`.
 """
 
 from __future__ import annotations
@@ -85,3 +88,30 @@ def plain_number(term: Term) -> int | float | None:
     if found is None or not isinstance(term, Literal):
         return None
     return int(found) if term.datatype in WHOLE_NUMBERS else float(found)
+
+
+BOOLEAN = XSD_NAMESPACE + "boolean"
+TRUTH = {"true": True, "1": True, "false": False, "0": False}
+"""The texts of a truth value, each with what it stands for."""
+
+
+def truth(term: Term | None) -> bool | None:
+    """What a literal of xsd:boolean stands for; None for anything else."""
+    return TRUTH.get(term.lexical) if isinstance(term, Literal) and term.datatype == BOOLEAN else None
+
+
+def as_python(term: Term) -> bool | int | float | str:
+    """A term as code likes it: a truth value or a number where its datatype is one of these, else its text.
+
+    Raises ValueError for a literal that is no truth value, or no finite number, of its datatype.
+    """
+    if not isinstance(term, Literal):
+        return str(term)
+    if term.datatype == BOOLEAN and term.lexical in TRUTH:
+        return TRUTH[term.lexical]
+    if term.datatype != BOOLEAN and term.datatype not in DATATYPES:
+        return term.lexical
+    number = plain_number(term)
+    if number is None:
+        raise ValueError(f"{term.lexical!r} is no xsd:{term.datatype.short}")
+    return number
