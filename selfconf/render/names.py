@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
+from selfconf.model.curie import LOCAL_NAME
 from selfconf.model.term import IRI, Literal, Term
-
-_LOCAL = re.compile(r"[A-Za-z0-9_](?:[\w.-]*[\w-])?")  # a dot at the end would end the statement
 
 
 class Names:
@@ -22,7 +20,7 @@ class Names:
         if isinstance(term, Literal):
             return term.turtle(self)
         for prefix, base in self._prefixes:
-            if term.startswith(base) and _LOCAL.fullmatch(term[len(base) :]):
+            if term.startswith(base) and LOCAL_NAME.fullmatch(term[len(base) :]):
                 return f"{prefix}:{term[len(base) :]}"
         return f"<{term}>" if isinstance(term, IRI) else str(term)
 

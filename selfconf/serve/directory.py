@@ -7,6 +7,7 @@ import json
 from typing import Any
 from urllib.parse import quote, urlencode
 
+from starlette.datastructures import QueryParams
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
@@ -37,9 +38,8 @@ class Directory:
 
     async def things(self, request: Request) -> Response:
         """`/things`: all descriptions, or a page of them, as an array or a collection."""
-        for name in ("offset", "limit", "format"):
-            if len(request.query_params.getlist(name)) > 1:
-                return problem(400, f"{name} is given more than once")
+        if (fault := _fault(request.query_params)) is not None:
+            return fault
         try:
             offset = _whole(request.query_params.get("offset", "0"), 0)
             said = request.query_params.get("limit")
@@ -99,6 +99,21 @@ def event_stream(board: Board, kinds: tuple[str, ...], last: str, worded: Any = 
     """A stream of the events of some kinds, from the one after the last that the client has heard."""
     lines = board.stream.lines(kinds, last, worded)
     return StreamingResponse(lines, media_type=EVENT_STREAM, headers={"Cache-Control": "no-store"})
+
+
+def _fault(parameters: QueryParams) -> Response | None:
+    """What is wrong with the parameters of a list beside their values.
+
+    An optional feature that is missing is an error, not passed over (WoT Discovery, section 7.3: 501 or 400), as a
+    client that asked for another order would take this one for it.
+    """
+    for name in ("offset", "limit", "format"):
+        if len(parameters.getlist(name)) > 1:
+            return problem(400, f"{name} is given more than once")
+    for name in ("sort_by", "sort_order"):
+        if name in parameters:
+            return problem(501, f"there is no {name}: things are listed in the order of their IRIs alone")
+    return None
 
 
 def _page(**parameters: int | str | None) -> str:

@@ -24,13 +24,15 @@ NAMES = Names(PREFIXES)
         ("https://example.com/x", "<https://example.com/x>"),
         ("urn:xß-1.2", "u:xß-1.2"),
         ("urn:x.", "<urn:x.>"),
+        ("https://example.org/home#камера", ":камера"),
+        ("https://example.org/home#5µm", "<https://example.org/home#5µm>"),
     ],
 )
 def test_an_iri_is_shortened_by_the_longest_prefix_where_a_curie_can_say_it(iri: str, shown: str) -> None:
     assert NAMES(IRI.unchecked(iri)) == shown
 
 
-@pytest.mark.parametrize("local", ["clock", "a.b", "a-b", "_x", "0", "xß", "x_1", "a..b"])
+@pytest.mark.parametrize("local", ["clock", "a.b", "a-b", "_x", "0", "xß", "x_1", "a..b", "камера"])
 def test_a_curie_is_turtle_for_the_iri_that_it_was_made_of(local: str) -> None:
     iri = IRI(PREFIXES[""] + local)
     head = "".join(f"@prefix {name}: <{base}> .\n" for name, base in PREFIXES.items())

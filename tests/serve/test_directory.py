@@ -60,6 +60,12 @@ def test_a_parameter_that_makes_no_sense_is_a_problem(app: ASGIApp, parameters: 
     assert (answer.status, answer.media) == (400, "application/problem+json")
 
 
+def test_who_wants_another_order_hears_that_there_is_none(app: ASGIApp) -> None:
+    answer = ask(app, "/things?sort_by=title&sort_order=desc")
+    assert (answer.status, answer.media) == (501, "application/problem+json")
+    assert "sort_by" in answer.json["detail"]
+
+
 def test_one_thing_is_found_by_its_iri_as_description_or_as_turtle(app: ASGIApp) -> None:
     answer = ask(app, TRACKER)
     assert (answer.status, answer.media, answer.json["id"]) == (200, "application/td+json", iri("person-tracker"))

@@ -11,6 +11,7 @@ from functools import partial
 import pyoxigraph as ox
 
 from selfconf.errors import BindingError
+from selfconf.model.curie import LOCAL_NAME, PREFIX
 from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -23,18 +24,20 @@ from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, XSD
 
-_CURIE = re.compile(r"([A-Za-z][\w.-]*)?:[^\s\"'<>()]*")
-_LOCAL = re.compile(r"[A-Za-z]\w*")
+_CURIE = re.compile(rf"({PREFIX}):[^\s\"'<>()]*")
 _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
 _PLAIN = {
     STRING: re.compile(r"(?s).*"),
-    XSD.integer: re.compile(r"[+-]?\d+"),
-    XSD.decimal: re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)"),
-    XSD.double: re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?"),
+    XSD.integer: re.compile(r"[+-]?[0-9]+"),
+    XSD.decimal: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)"),
+    XSD.double: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?"),
     XSD.boolean: re.compile("true|false"),
 }
-"""How most literals of these datatypes are written, so that rdflib need not be asked whether they are well-typed."""
-_NUMBER_OR_BOOLEAN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|true|false")
+"""How most literals of these datatypes are written, so that rdflib need not be asked whether they are well-typed.
+
+Digits are spelt out, as `\\d` has those of all scripts.
+"""
+_NUMBER_OR_BOOLEAN = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|true|false")
 
 
 def read_term(text: str, prefixes: Mapping[str, str]) -> Term:
@@ -232,7 +235,7 @@ def _meant(parameter: Parameter, value: Term, document: Document) -> Literal | N
 def _curie(iri: IRI, prefixes: Mapping[str, str]) -> str:
     """An IRI as the command line takes it."""
     for name, base in prefixes.items():
-        if iri.startswith(base) and _LOCAL.fullmatch(iri[len(base) :]):
+        if iri.startswith(base) and LOCAL_NAME.fullmatch(iri[len(base) :]):
             return f"{name}:{iri[len(base) :]}"
     return f"<{iri}>"
 

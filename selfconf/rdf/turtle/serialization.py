@@ -5,13 +5,13 @@ In brackets stands a blank node that is named once, where it is named.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import overload
 
 import pyoxigraph as ox
 
+from selfconf.model.curie import LOCAL_NAME
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.turtle.document import Triple
 from selfconf.rdf.vocabulary import LABEL, PROV, ROB, SC, TYPE, XSD
@@ -50,7 +50,6 @@ def to_turtle(triples: Iterable[Triple], prefixes: Mapping[str, str] | None = No
     return (ox.serialize(_ox_triples(triples), format=ox.RdfFormat.TURTLE, prefixes=prefixes) or b"").decode()
 
 
-_LOCAL = re.compile(r"[A-Za-z0-9_](?:[\w-]*[\w-])?")
 MOST_NESTED = 200
 """Where there are more blank nodes than that, each is named: what a stranger wrote may nest without end."""
 ONE_LINE = 78
@@ -129,7 +128,7 @@ class _Writer:
 
     def _name(self, iri: IRI) -> str:
         for prefix, base in self._prefixes:
-            if iri.startswith(base) and _LOCAL.fullmatch(iri[len(base) :]):
+            if iri.startswith(base) and LOCAL_NAME.fullmatch(iri[len(base) :]):
                 self.used.add(prefix)
                 return f"{prefix}:{iri[len(base) :]}"
         return f"<{iri}>"

@@ -43,6 +43,7 @@ def test_a_term_on_the_command_line_is_read_as_an_author_means_it(text: str, ter
     ("text", "words"),
     [
         ("nobody:x", "no prefix nobody:"),
+        ("дом:x", "no prefix дом:"),
         ("http://example.org/x", "angle brackets"),
         ("<no iri>", "no Turtle term"),
         ('"unfinished', "no Turtle term"),
@@ -53,6 +54,14 @@ def test_a_term_on_the_command_line_is_read_as_an_author_means_it(text: str, ter
 def test_a_term_that_is_none_is_refused_with_what_to_write(text: str, words: str) -> None:
     with pytest.raises(BindingError, match=words):
         bindings.read_term(text, KNOWN)
+
+
+def test_a_prefix_and_its_names_may_be_of_any_script() -> None:
+    assert bindings.read_term("дом:кухня", {"дом": "urn:d:"}) == IRI("urn:d:кухня")
+
+
+def test_digits_of_other_scripts_are_words() -> None:
+    assert bindings.read_term("٣", KNOWN) == Literal("٣")
 
 
 TEMPLATE = """

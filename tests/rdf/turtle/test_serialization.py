@@ -7,14 +7,14 @@ from hypothesis import given
 from rdflib import Graph
 from rdflib.compare import isomorphic
 
-from selfconf.model.term import Literal, Term
+from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle import serialization as write
 from selfconf.rdf.turtle.document import parse
 from selfconf.rdf.turtle.serialization import ntriples, pretty_turtle
-from selfconf.rdf.vocabulary import XSD
+from selfconf.rdf.vocabulary import SC, XSD
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 from tests.protocol.strategies import literals
 
@@ -45,6 +45,12 @@ def test_it_can_be_read_back(text: str) -> None:
     triples = list(parse(text, "a.ttl").triples())
     written = pretty_turtle(triples, QUERY_PREFIXES)
     assert isomorphic(Graph().parse(data=written, format="turtle"), Graph().parse(data=ntriples(triples), format="nt"))
+
+
+@pytest.mark.parametrize("local", ["5µm", "m²", "µ", "метр", "a.b", "a."])
+def test_a_name_of_any_letters_is_read_back_by_a_strict_parser(local: str) -> None:
+    triple = (IRI(f"{SC.base}{local}"), SC.name, Literal("x"))
+    assert list(parse(pretty_turtle([triple], QUERY_PREFIXES), "a.ttl").triples()) == [triple]
 
 
 def test_blank_nodes_stand_where_they_are_named_and_only_used_prefixes_are_declared() -> None:

@@ -1,0 +1,24 @@
+r"""What Turtle and SPARQL let the two halves of a prefixed name be, as far as nothing in it needs to be escaped.
+
+Python's `\w` is no measure for that: it has the `µ` of micrometres and the `²` of square metres, which no parser of
+Turtle reads in a prefixed name, so that an IRI with one of these has to be written out.
+"""
+
+from __future__ import annotations
+
+import re
+
+_LETTER = (
+    r"A-Za-z\u00C0-\u00D6\u00D8-\u00F6\u00F8-\u02FF\u0370-\u037D\u037F-\u1FFF\u200C\u200D\u2070-\u218F\u2C00-\u2FEF"
+    r"\u3001-\uD7FF\uF900-\uFDCF\uFDF0-\uFFFD\U00010000-\U000EFFFF"
+)
+"""PN_CHARS_BASE (RDF 1.1 Turtle, section 6.5)."""
+_CHARACTER = rf"{_LETTER}_0-9\u00B7\u0300-\u036F\u203F\u2040\-"
+"""PN_CHARS."""
+_MORE = rf"(?:[{_CHARACTER}.]*[{_CHARACTER}])?"
+"""What may follow: a dot at the end would end the statement."""
+
+PREFIX = rf"(?:[{_LETTER}]{_MORE})?"
+"""PN_PREFIX, or nothing, as the pattern of a regular expression."""
+LOCAL_NAME = re.compile(rf"[{_LETTER}_0-9]{_MORE}")
+"""PN_LOCAL without colons and escapes."""
