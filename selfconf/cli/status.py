@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from selfconf.cli.exit_codes import code_of_tasks
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
+from selfconf.cli.tasks import code_of_tasks
 from selfconf.cli.terminal import STATE_COLOURS, complain, paint
 from selfconf.model.term import IRI
 from selfconf.model.wording import one_line

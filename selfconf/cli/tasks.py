@@ -5,9 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from typing import TYPE_CHECKING
 
-from selfconf.cli.exit_codes import code_of_tasks
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
+
+if TYPE_CHECKING:
+    from selfconf.api.living import LivingEcology
+
 
 EXAMPLE = """  selfconf tasks --format json"""
 
@@ -46,3 +50,11 @@ def run(given: argparse.Namespace) -> int:
     elif not code:
         print(f"there is no task in ecology {ecology.name}")
     return code
+
+
+def code_of_tasks(ecology: LivingEcology) -> int:
+    """0 once every configurator of an ecology that was asked for its tasks has answered, also if there is no task.
+
+    2 if one lives or holds components and does not answer, or if a run of this machine is suspended.
+    """
+    return 2 if ecology.silent or ecology.suspended else 0

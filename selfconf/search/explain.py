@@ -4,29 +4,35 @@ Roles that contradict themselves or have too few candidates are reasons by thems
 reason is an irreducible set of constraints that cannot hold together (`cores`), or, where arc consistency has found
 that out, the derivation of it: the input that nothing feeds first, and then what follows from it. A refusal says
 whether its reason is proved to be irreducible, and to be the smallest.
+
+Where nothing feeds a role because an interaction names a port that no candidate has, the refusal names the port that
+was probably meant: the name of an operation is mostly written without its `()`, or with a slip.
 """
 
 from __future__ import annotations
 
+import difflib
 from collections import Counter
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 
 from selfconf.model import requirement as model
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.refusal import (
     Conflict,
     Contradiction,
     DerivationStep,
     InputUnfed,
+    MisnamedPort,
     Reason,
     Refusal,
     TooFewDistinct,
     TooFewEligible,
     ValueUnknown,
 )
+from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.cores import FeasibilityOracle, core, smallest_of
 from selfconf.search.engines import hall_set
-from selfconf.search.misnamed_ports import misnamed_port
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import (
     Constraint,
@@ -160,3 +166,34 @@ class _Wording:
             names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
             return model.OneValue(names[problem.variables[constraint.variable].parameter])
         return model.OneRoleEach()
+
+
+LIKE_A_SLIP = 0.7
+"""How alike two names have to be for one to be a slip of the other; 1 is equal."""
+
+
+def misnamed_port(problem: Problem, sink: IRI) -> MisnamedPort | None:
+    """Return the first port of the interactions that feed a role which no candidate has, if one has a name like it."""
+    places = {role.iri: number for number, role in enumerate(problem.roles)}
+    for interaction in problem.task.template.interactions:
+        if interaction.sink != sink:
+            continue
+        giving, taking = (problem.candidates[places[role]] for role in (interaction.source, sink))
+        for role, kind, named, known in (
+            (interaction.source, "output", interaction.output, {o.name for c in giving for o in c.profile.outputs}),
+            (sink, "input", interaction.input, {i.name for c in taking for i in c.profile.inputs}),
+        ):
+            meant = None if named is None or named in known else _meant(named, known)
+            if named is not None and meant is not None:
+                return MisnamedPort(role, kind, named, meant)
+    return None
+
+
+def _meant(named: str, known: Iterable[str]) -> str | None:
+    """Return the known name that is most like another one: but for the mark of an operation, or by its letters."""
+    names = sorted(known)
+    plain = named.removesuffix(CALL_MARK)
+    same = [name for name in names if name.removesuffix(CALL_MARK) == plain]
+    by_letters = {name.removesuffix(CALL_MARK).lower(): name for name in names}
+    close = difflib.get_close_matches(plain.lower(), list(by_letters), n=1, cutoff=LIKE_A_SLIP)
+    return next(iter((*same, *(by_letters[one] for one in close))), None)

@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 
+from selfconf import join
+from selfconf.cli.tasks import code_of_tasks
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import Notice
 from tests.cli.command import run
@@ -143,3 +145,18 @@ def test_a_detached_task_needs_sites_that_are_there_already(capsys: pytest.Captu
     assert run(capsys, "run", TEMPLATE, "--ads", CLOCK, "--detach").is_one_sentence(
         "a detached task lives in the sites"
     )
+
+
+def test_a_run_of_this_machine_that_is_suspended_leaves_the_tasks_unknown(
+    home: Home, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
+    home.site("attic", "ads")
+    with join(home.ecology, connect=[home.endpoint()]) as living:
+        assert living.tasks == ()
+        assert code_of_tasks(living) == 0
+        with suspended_run(home.ecology, "patrol", home.endpoint()):
+            assert living.tasks == ()
+            assert code_of_tasks(living) == 2
+        assert living.tasks == ()
+        assert code_of_tasks(living) == 0

@@ -9,6 +9,12 @@ out (`Exclusion`). `kept_out_by_ports` finds those that only the ports keep out 
 
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.compiled_roles import bound_shape
+from selfconf.rdf.eligibility.near_types_and_ports import (
+    kept_out_by_ports,
+    near_misses_by_type,
+    ports_asked,
+    words_of_role,
+)
 from selfconf.rdf.eligibility.nearly_eligible import Exclusion, exclusions, near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.eligibility.remote import ANY_COMPONENT, TYPES, prefaced, statements, wanted
@@ -22,8 +28,6 @@ from selfconf.rdf.eligibility.role_tests import (
     SelfTest,
 )
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
-from selfconf.rdf.eligibility.similar_types import near_misses_by_type
-from selfconf.rdf.eligibility.unlike_ports import kept_out_by_ports, ports_asked, words_of_role
 
 __all__ = [
     "ANY_COMPONENT",

@@ -1,13 +1,16 @@
-"""Components that would play a role if only their type were the one that is asked for: misspelt, or above or below it.
+"""Near misses by type and by ports: components that a role would take if it asked for their type, or for no ports.
 
-A role that asks for :Clok finds no component, and nothing is wrong with the components. So components that their type
-alone keeps out are near misses too, if the type is written nearly like the one wanted, or related to it by the
-ontologies; or if they are of all other classes that the role asks for.
+*By type.* A role that asks for :Clok finds no component, and nothing is wrong with the components. So components that
+their type alone keeps out are near misses too, if the type is written nearly like the one wanted, or related to it by
+the ontologies; or if they are of all other classes that the role asks for.
+
+*By ports.* Components that only what the shape of a role asks of ports keeps out. How near they come is found out
+elsewhere (`composition.near_misses`), by these ports and by the words of the role.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from functools import lru_cache
@@ -15,12 +18,16 @@ from functools import lru_cache
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import TypeRelation, WrongType
 from selfconf.model.partition import NearMiss
-from selfconf.model.term import IRI
+from selfconf.model.port_likeness import WantedPorts
+from selfconf.model.term import IRI, Literal
+from selfconf.model.text_likeness import words
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.nearly_eligible import nearly
-from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.eligibility.partitioner import EligibleComponent, Partitioner
 from selfconf.rdf.eligibility.role_tests import ClassTest, CompiledRole
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.eligibility.wanted_signals import wanted_ports, without_port_shapes
+from selfconf.rdf.turtle import Document
+from selfconf.rdf.vocabulary import LABEL, RDFS, SC
 
 CLOSE = 0.8
 """How alike two local names are (0 to 1) to be taken for one that is misspelt: one letter of five."""
@@ -77,3 +84,27 @@ def _alike(offered: IRI, wanted: IRI) -> bool:
 def _matcher(wanted: IRI) -> SequenceMatcher[str]:
     """What compares names with a wanted one: one name with many is quicker than many pairs."""
     return SequenceMatcher(None, "", wanted.short.lower(), autojunk=False)
+
+
+_SAID = (LABEL, RDFS.comment)
+
+
+def ports_asked(partitioner: Partitioner, role: IRI) -> WantedPorts | None:
+    """What the shape of a role asks of ports; None if it asks nothing."""
+    return wanted_ports(partitioner.document, role)
+
+
+def kept_out_by_ports(
+    partitioner: Partitioner, role: IRI, ecology: AdvertisementIndex, inside: Container[IRI]
+) -> Iterator[EligibleComponent]:
+    """The components that only what the shape asks of ports keeps out of a role; `inside` are those that it takes."""
+    asking_less = partitioner.reading(without_port_shapes(partitioner.document, role), role)
+    (found,) = asking_less.eligible(ecology)
+    return (one for one in found if one.profile.component not in inside)
+
+
+def words_of_role(document: Document, role: IRI, wanted: WantedPorts | None) -> list[str]:
+    """The words of what a role asks for: its name, labels and comments, and the signals that it wants."""
+    texts = [role.short, *(o.lexical for p in _SAID for o in document.values(role, p) if isinstance(o, Literal))]
+    types = () if wanted is None else (*(wanted.issued or ()), *(wanted.given or ()))
+    return [word for text in (*texts, *(one.short for some in types for one in some)) for word in words(text)]
