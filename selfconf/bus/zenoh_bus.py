@@ -4,7 +4,7 @@ A site opens a *relay* (`zenoh_relay`): a router that listens on one endpoint an
 else on its host, the site's own bus included, is a *client* of a relay. How sessions are set up stands in
 `zenoh_session`, the topology and the keys in `docs/protocol.md`.
 
-* Callbacks of Zenoh only put into the loop's queues (`indirect=False`): work in one would hold up every other message,
+* Callbacks of Zenoh only put into the loop's queues (`callback`): work in one would hold up every other message,
   and by default each would have a thread. The callback of a direct subscription puts into a queue of its owner.
 * What comes by the thousand, the answers and the lives of all, is read from a channel (`zenoh_channels`): with a
   callback for each, Zenoh's thread would wait so long for Python that it misses the signs of life of its router.
@@ -32,7 +32,7 @@ from selfconf.bus.loop import Loop
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
 from selfconf.bus.reader_threads import ReaderThreads
 from selfconf.bus.zenoh_channels import each, may_be_many, open_channel, read_together
-from selfconf.bus.zenoh_receivers import DirectReceiver, Receiver, ZenohRequest, sample_of
+from selfconf.bus.zenoh_receivers import DirectReceiver, Receiver, ZenohRequest, callback, sample_of
 from selfconf.bus.zenoh_relay import Hub, Relay
 from selfconf.bus.zenoh_roll_call import RollCalls
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
@@ -164,7 +164,7 @@ class ZenohBus(Loop):
         self._open = True
         self._turns = 0
         """How often this bus has gained or lost a hub: of a hub that was away for a moment the name is the same."""
-        self._declared.add(session.info.declare_transport_events_listener(Callback(self._turned, indirect=False)))
+        self._declared.add(session.info.declare_transport_events_listener(callback(self._turned)))
         _OPEN.add(self)
 
     def relay(self, hub: Hub, connect: Sequence[str]) -> None:
@@ -185,7 +185,7 @@ class ZenohBus(Loop):
     def watch_link(self, changed: Callable[[], None]) -> Callable[[], None]:
         """Call `changed` whenever this bus has gained or lost its hub, on the bus's thread."""
         receiver = Receiver(self, lambda _: changed())
-        heard = Callback(receiver.received, indirect=False)
+        heard = callback(receiver.received)
         return receiver.until(self._keep(self._session.info.declare_transport_events_listener(heard)))
 
     @property
@@ -221,7 +221,7 @@ class ZenohBus(Loop):
                 matching = bool(status.matching)
                 self.wake_up(lambda: changed(matching))
 
-            declared.declare_matching_listener(Callback(listen, indirect=False))
+            declared.declare_matching_listener(callback(listen))
         return _Publisher(self, declared)
 
     def subscribe(
@@ -240,11 +240,11 @@ class ZenohBus(Loop):
         def arrived(sample: zenoh.Sample) -> None:
             receiver.received_message(sample_of(sample), urgent)
 
-        return receiver.until(self._keep(self._session.declare_subscriber(key, Callback(arrived, indirect=False))))
+        return receiver.until(self._keep(self._session.declare_subscriber(key, callback(arrived))))
 
     def _subscribe_directly(self, key: str, receiver: DirectReceiver) -> Callable[[], None]:
         """Begin; once the result has returned there is no call any more."""
-        undeclare = self._keep(self._session.declare_subscriber(key, Callback(receiver.received, indirect=False)))
+        undeclare = self._keep(self._session.declare_subscriber(key, callback(receiver.received)))
         self._direct.add(receiver)
 
         def undo() -> None:
@@ -264,7 +264,7 @@ class ZenohBus(Loop):
             if not receiver.received_message(request):
                 request.finish()
 
-        heard = Callback(asked, indirect=False)
+        heard = callback(asked)
         return receiver.until(self._keep(self._session.declare_queryable(key, heard, complete=complete)))
 
     def ask(

@@ -9,7 +9,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import zenoh
-from zenoh.handlers import Callback, FifoChannel
+from zenoh.handlers import FifoChannel
+
+from selfconf.bus.zenoh_receivers import callback
 
 _CHANNEL = 1 << 17
 """How much a channel holds that Python has not read yet, before Zenoh's thread waits."""
@@ -24,7 +26,7 @@ def open_channel() -> Any:
 
 def each(take: Callable[[Sequence[Any]], object], end: Callable[[], None] = lambda: None) -> Any:
     """A callback for each that comes, and one for the end."""
-    return Callback(lambda one: take((one,)), end, indirect=False)
+    return callback(lambda one: take((one,)), end)
 
 
 def may_be_many(key: str) -> bool:

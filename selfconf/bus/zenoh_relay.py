@@ -27,9 +27,9 @@ from pathlib import Path
 from typing import Any
 
 import zenoh
-from zenoh.handlers import Callback
 
 from selfconf.bus.loop import Loop
+from selfconf.bus.zenoh_receivers import callback
 from selfconf.bus.zenoh_session import Security, open_session, with_port
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import endpoint_port
@@ -212,8 +212,7 @@ class _Uplink:
         """Whether it has lost a hub and has it again: what is declared does not get through to it any more."""
         self._sessions = relay.open_uplink()
         self._listeners = [
-            session.info.declare_transport_events_listener(Callback(self._changed, indirect=False))
-            for session in self._sessions
+            session.info.declare_transport_events_listener(callback(self._changed)) for session in self._sessions
         ]
 
     def _changed(self, event: zenoh.TransportEvent) -> None:

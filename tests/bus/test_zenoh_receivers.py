@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 
 from selfconf.bus.loop import Loop
-from selfconf.bus.port import Sample
+from selfconf.bus.port import Sample, Urgency
+from selfconf.bus.zenoh_bus import ZenohBus
 from selfconf.bus.zenoh_receivers import DirectReceiver, Receiver
+from tests.bus.nets import ZenohNet
 
 SAMPLE = Sample("a/b", b"1")
 
@@ -18,6 +20,30 @@ SAMPLE = Sample("a/b", b"1")
 def from_zenoh(payload: bytes = b"1") -> Any:
     """A sample as Zenoh has it."""
     return SimpleNamespace(key_expr="a/b", payload=payload, attachment=None)
+
+
+def test_a_thread_of_zenoh_keeps_its_state_of_python_from_one_call_to_the_next(
+    zenoh_router: ZenohBus, top: str
+) -> None:
+    """What a thread has noted for itself is gone with its state."""
+    thread, first, calls = threading.local(), list[int](), list[int]()
+
+    def receive(sample: Sample) -> None:
+        number = threading.get_ident()
+        if not hasattr(thread, "noted"):
+            first.append(number)
+        thread.noted = True
+        calls.append(number)
+
+    net, followed = ZenohNet(zenoh_router), list[bool]()
+    net.node().subscribe(f"{top}/x", receive, direct=True)
+    publisher = net.node().publisher(f"{top}/x", Urgency.EVENT, followed.append)
+    assert net.until(lambda: followed == [True])
+    for _ in range(30):
+        publisher.put(b"1")
+    assert net.until(lambda: len(calls) == 30)
+    assert sorted(first) == sorted(set(calls))
+    net.close()
 
 
 def test_what_is_received_is_called_back_by_the_loop_and_not_before() -> None:
