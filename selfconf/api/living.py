@@ -20,7 +20,7 @@ from selfconf.api.arguments import (
     listed_endpoints,
 )
 from selfconf.api.component_states import ComponentState, component_states
-from selfconf.api.deployed import connected, deployed_body
+from selfconf.api.configurators import Configurators
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
 from selfconf.api.living_tasks import STATE_PATIENCE, LivingTask, LivingTasks
@@ -33,25 +33,21 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
-from selfconf.errors import AuthorError, NetworkError, PeerError, TurtleError
+from selfconf.errors import AuthorError, NetworkError, PeerError
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import component_chunk, configurator_of, owner_of, task_name
+from selfconf.protocol.keys import component_chunk, owner_of, task_name
 from selfconf.protocol.messages import (
     End,
     LogPart,
     LogQuestion,
-    Notice,
     Status,
     Wake,
 )
-from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
-from selfconf.rdf.turtle import Document
-from selfconf.render.why import told_why
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer
@@ -89,6 +85,7 @@ class LivingEcology(Ecology):
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self._synchronous = SynchronousBus(self._bus)
         self._tasks = LivingTasks(self._synchronous, self._view.keys, self.endpoints)
+        self._configurators = Configurators(self._synchronous, self._view.keys)
         try:
             if not any(self._sites_answer(pause) for pause in PAUSES):
                 raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
@@ -246,24 +243,7 @@ class LivingEcology(Ecology):
 
     def deployed(self) -> dict[str, dict[str, Any]]:
         """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
-        complaints: list[str] = []
-        bodies = [(name, deployed_body(document)) for name, document in self._configurations(complaints)]
-        self._complaints = tuple(complaints)
-        return {name: body for name, body in bodies if body is not None}
-
-    def _configurations(self, complaints: list[str]) -> Iterator[tuple[str, Document]]:
-        """Yield what each configurator has deployed, with its name; what is no such thing adds to the complaints."""
-        keys = self._view.keys
-        for sample in self._synchronous.ask(keys.configuration()).samples:
-            try:
-                name = configurator_of(sample.key)
-                if sample.key != keys.configuration(name):
-                    raise PeerError(f"{sample.key!r} is not the key of the configuration of {name!r}")
-                document = turtle.parse(sample.payload, sample.key)
-            except (PeerError, TurtleError) as error:
-                complaints.append(f"left out a configuration: {error}")
-                continue
-            yield name, document
+        return self._complaining(self._configurators, self._configurators.deployed())
 
     @property
     def sites(self) -> tuple[str, ...]:
@@ -273,11 +253,11 @@ class LivingEcology(Ecology):
     @property
     def tasks(self) -> tuple[Status, ...]:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
-        return self._complaining(self._tasks.running(by_components=not self._membership.looks_on_only))
+        return self._complaining(self._tasks, self._tasks.running(by_components=not self._membership.looks_on_only))
 
     def all_tasks(self) -> tuple[LivingTask, ...]:
         """The tasks that run and those that live in the sites, sorted by name."""
-        return self._complaining(self._tasks.all(by_components=not self._membership.looks_on_only))
+        return self._complaining(self._tasks, self._tasks.all(by_components=not self._membership.looks_on_only))
 
     @property
     def silent(self) -> tuple[str, ...]:
@@ -292,9 +272,9 @@ class LivingEcology(Ecology):
         """
         return tuple(task.name for task in self._tasks.suspended)
 
-    def _complaining(self, found: _Result) -> _Result:
+    def _complaining(self, asked: LivingTasks | Configurators, found: _Result) -> _Result:
         """Take over what was wrong with what configurators have answered."""
-        self._complaints = self._tasks.complaints
+        self._complaints = asked.complaints
         return found
 
     def access(self) -> tuple[SiteAccess, ...]:
@@ -331,22 +311,15 @@ class LivingEcology(Ecology):
         names = {status.configurator for status in running if status.name == task}
         if not names:
             return None
-        heard: dict[IRI, set[IRI]] = {c: set() for s in running if s.configurator in names for c in s.components}
-        complaints: list[str] = []
-        for name, document in self._configurations(complaints):
-            if name in names:
-                for source, sink in connected(document):
-                    heard.setdefault(sink, set()).add(source)
-        self._complaints = tuple(complaints)
-        return {component: tuple(sorted(sources)) for component, sources in sorted(heard.items())}
+        components = [component for one in running if one.configurator in names for component in one.components]
+        return self._complaining(self._configurators, self._configurators.links(names, components))
 
     def dataset(self) -> Dataset:
         """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
         dataset = super().dataset()
-        complaints = list(self.complaints)
-        for name, document in self._configurations(complaints):
+        for name, document in self._configurators.documents():
             dataset.add(IRI.unchecked(f"urn:selfconf:{self._view.keys.configuration(name)}"), document.triples())
-        self._complaints = tuple(complaints)
+        self._complaints = (*self.complaints, *self._configurators.complaints)
         return dataset
 
     def why(self, term: str, at: float | None = None) -> list[str]:
@@ -357,33 +330,7 @@ class LivingEcology(Ecology):
         that is no text, and for what is no moment.
         """
         checked_text(term, "the term that is asked about")
-        at = checked_moment(at)
-        told: dict[str, list[Notice]] = {}
-        rejected: list[str] = []
-        for sample in self._synchronous.ask(self._view.keys.notices()).samples:
-            try:
-                notice = decode(sample.payload, Notice)
-            except PeerError as error:
-                rejected.append(f"left out an answer: {error}")
-                continue
-            if sample.key == self._view.keys.notices(notice.configurator):
-                told.setdefault(notice.configurator, []).append(notice)
-        passed_over = {} if at is not None else self._passed_over(rejected)
-        sentences: list[str] = []
-        for configurator, notices in sorted(told.items()):
-            events = [notice.event for notice in sorted(notices, key=lambda notice: notice.sequence)]
-            try:
-                sentences += told_why(task_name(notices[0].task), events, term, at, passed_over.get(configurator, {}))
-            except PeerError as error:
-                rejected.append(f"left out an answer: {error}")
-        self._complaints = tuple(rejected)
-        return sentences
-
-    def _passed_over(self, complaints: list[str]) -> dict[str, dict[str, list[str]]]:
-        """By configurator and role, the candidates that go before those that are deployed; adds to the complaints."""
-        deployed = self.deployed().items()
-        complaints += self.complaints
-        return {name: {role["role"]: role["passed_over"] for role in body["roles"]} for name, body in deployed}
+        return self._complaining(self._configurators, self._configurators.why(term, checked_moment(at)))
 
     def configure(
         self,
@@ -468,7 +415,7 @@ class LivingEcology(Ecology):
         self._membership.check_may_run()
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         record = task_record(completed(task), method, TaskOptions.of(policy, name, priority, upgrade))
-        return self._complaining(self._tasks.detach(record))
+        return self._complaining(self._tasks, self._tasks.detach(record))
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them.
@@ -481,7 +428,7 @@ class LivingEcology(Ecology):
         self._membership.check_may_run()
         if name is not None:
             checked_text(name, "the name of a task")
-        return self._complaining(self._tasks.stop(name))
+        return self._complaining(self._tasks, self._tasks.stop(name))
 
     def _sites_answer(self, pause: float) -> bool:
         """Whether any site of the ecology lives, as it is found after a pause in seconds."""
