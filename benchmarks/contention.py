@@ -34,7 +34,7 @@ from typing import NamedTuple
 import selfconf as sc
 from benchmarks.live.__main__ import act_until_stdin_ends, line, program, until
 from benchmarks.machine import described, quantile, table
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.sdk import Component, Signal, open_host
 
 SENSORS, DRIVES = 4, 3
@@ -132,7 +132,7 @@ def ecology() -> Iterator[None]:
             FOLDER_VARIABLE: str(folder),
         }
         stack.enter_context(program("selfconf", "site", str(folder), "--name", "one"))
-        until(PATIENCE, lambda: bool(rendezvous.local_sites(name)))
+        until(PATIENCE, lambda: bool(this_machine.local_sites(name)))
         assert line(stack.enter_context(program("benchmarks.contention", "--act"))) == "ready"
         yield
 

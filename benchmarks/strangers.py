@@ -31,7 +31,7 @@ import selfconf as sc
 from benchmarks.live.__main__ import act_until_stdin_ends, line, program, until
 from benchmarks.machine import described, table
 from benchmarks.validate import run
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.sdk import Component, open_host
 from tests.hostile_words import HONEST, KINDS, TEMPLATE, stranger
 
@@ -92,7 +92,7 @@ def ecology(folder: Path, crowd: Path | None) -> Iterator[str]:
         served = [folder / "honest.ttl", *([] if crowd is None else [crowd])]
         for number, path in enumerate(served):
             stack.enter_context(program("selfconf", "site", str(path), "--name", f"site{number}"))
-        until(PATIENCE, lambda: len(rendezvous.local_sites(name)) == len(served))
+        until(PATIENCE, lambda: len(this_machine.local_sites(name)) == len(served))
         stack.enter_context(actors(folder / "honest.ttl", *OTHERS))
         yield name
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 _PROGRAM = """
 import os, signal, sys
-from selfconf.rendezvous import claim
+from selfconf.this_machine import claim
 
 claimed = claim(*sys.argv[1:3], sys.argv[3:])
 os.kill(os.getpid(), signal.SIGSTOP)

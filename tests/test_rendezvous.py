@@ -2,56 +2,23 @@
 
 from __future__ import annotations
 
-import fcntl
-import json
 import os
-import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.access import KeysFolder, Principal
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.term import IRI
-from selfconf.rendezvous import LocalSite, usual_endpoints
-from selfconf.termination import start_time
-from tests.suspended_run import suspended_run
-
-
-def meeting(ecology: str = "home", site: str = "a", process: int | None = None) -> LocalSite:
-    """A site of this process."""
-    return LocalSite(ecology, site, f"tcp/127.0.0.1:{len(site) + 7000}", os.getpid() if process is None else process)
-
-
-def dead_process() -> int:
-    """The number of a process that has just ended."""
-    process = subprocess.Popen([sys.executable, "-c", ""])
-    process.wait()
-    return process.pid
-
-
-def test_a_site_that_has_announced_itself_is_found(runtime_folder: Path) -> None:
-    path = rendezvous.announce(meeting())
-    assert path.parent == runtime_folder
-    assert rendezvous.local_sites() == [meeting()]
-    assert rendezvous.find(None, []) == ("home", [meeting().endpoint, *usual_endpoints("home")])
-    path.unlink()
-    assert rendezvous.local_sites() == []
-
-
-def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:
-    for ecology, site in (("home", "a"), ("home", "bb"), ("office", "ccc")):
-        rendezvous.announce(meeting(ecology, site))
-    assert [found.site for found in rendezvous.local_sites("home")] == ["a", "bb"]
-    assert rendezvous.find("office", []) == ("office", [meeting("office", "ccc").endpoint, *usual_endpoints("office")])
+from selfconf.rendezvous import usual_endpoints
+from selfconf.this_machine import LocalSite
+from tests.test_this_machine import meeting
 
 
 def test_of_several_ecologies_one_must_be_named() -> None:
-    rendezvous.announce(meeting("home"))
-    rendezvous.announce(meeting("office"))
+    this_machine.announce(meeting("home"))
+    this_machine.announce(meeting("office"))
     with pytest.raises(NetworkError, match="with ecology: home, office"):
         rendezvous.find(None, [])
 
@@ -73,61 +40,11 @@ def test_the_usual_endpoints_of_an_ecology_are_the_same_each_time_and_its_own() 
             assert 1024 < int(endpoint.rpartition(":")[2]) < 32768
 
 
-def test_a_turn_that_another_site_holds_is_waited_for_but_not_for_ever() -> None:
-    with rendezvous.turn() as mine:
-        assert mine
-        with rendezvous.turn(seconds=0.01) as theirs:
-            assert not theirs
-    with rendezvous.turn(seconds=0.0) as mine:
-        assert mine
-
-
 def test_an_endpoint_that_several_sites_share_is_found_once() -> None:
     shared = meeting(site="a")
-    rendezvous.announce(shared)
-    rendezvous.announce(LocalSite("home", "b", shared.endpoint, os.getpid(), relays=False))
+    this_machine.announce(shared)
+    this_machine.announce(LocalSite("home", "b", shared.endpoint, os.getpid(), relays=False))
     assert rendezvous.find("home", []) == ("home", [shared.endpoint, *usual_endpoints("home")])
-
-
-def test_a_site_whose_process_number_another_process_has_by_now_is_gone() -> None:
-    path = rendezvous.announce(meeting())
-    path.write_text(json.dumps({**json.loads(path.read_text()), "started": "1"}))
-    assert rendezvous.local_sites() == []
-    assert not path.exists()
-
-
-def test_a_site_that_does_not_say_when_its_process_began_is_known_by_its_number() -> None:
-    path = rendezvous.announce(meeting())
-    body = json.loads(path.read_text())
-    del body["started"]
-    path.write_text(json.dumps(body))
-    assert rendezvous.local_sites() == [meeting()]
-
-
-def test_a_file_that_is_older_than_the_process_of_its_number_is_that_of_another_process() -> None:
-    path = rendezvous.announce(meeting())
-    body = json.loads(path.read_text())
-    del body["started"]
-    path.write_text(json.dumps(body))
-    os.utime(path, (1e9, 1e9))
-    assert rendezvous.local_sites() == []
-    assert not path.exists()
-
-
-def test_a_site_whose_process_is_gone_is_passed_over_and_forgotten() -> None:
-    path = rendezvous.announce(meeting(process=dead_process()))
-    assert rendezvous.local_sites() == []
-    assert not path.exists()
-
-
-HUGE = '{"ecology": "home", "site": "x", "endpoint": "tcp/127.0.0.1:1", "process": 1000000000000000000000000000000}'
-
-
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", "7", '{"ecology": "home"}', '{"process": "x"}', HUGE])
-def test_a_file_that_is_no_meeting_is_passed_over(runtime_folder: Path, text: str) -> None:
-    (runtime_folder / "home@x.json").write_text(text)
-    rendezvous.announce(meeting())
-    assert rendezvous.local_sites() == [meeting()]
 
 
 def test_where_no_site_runs_it_is_said_what_to_start() -> None:
@@ -139,7 +56,7 @@ def test_where_no_site_runs_it_is_said_what_to_start() -> None:
 
 @pytest.mark.parametrize("connect", [[], ["tcp/127.0.0.1:1"]])
 def test_what_cannot_be_a_name_is_no_ecology(connect: list[str]) -> None:
-    rendezvous.announce(meeting())
+    this_machine.announce(meeting())
     for name in ("", "a/b"):
         with pytest.raises(AuthorError, match="cannot name an ecology"):
             rendezvous.find(name, connect)
@@ -165,62 +82,14 @@ def test_the_environment_says_where_the_ecology_is_unless_it_is_given(monkeypatc
 def test_an_environment_that_names_an_ecology_alone_has_its_sites_looked_for_here(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    rendezvous.announce(meeting("home"))
-    rendezvous.announce(meeting("office", "bb"))
+    this_machine.announce(meeting("home"))
+    this_machine.announce(meeting("office", "bb"))
     monkeypatch.setenv(rendezvous.ECOLOGY_VARIABLE, "office")
     monkeypatch.setenv(rendezvous.CONNECT_VARIABLE, "")
     assert rendezvous.find(None, []) == ("office", [meeting("office", "bb").endpoint, *usual_endpoints("office")])
     monkeypatch.setenv(rendezvous.ECOLOGY_VARIABLE, "")
     with pytest.raises(NetworkError, match="several"):
         rendezvous.find(None, [])
-
-
-def test_the_folder_is_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("SELFCONF_RUNTIME_DIR")
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
-    assert rendezvous.runtime_folder() == tmp_path / "selfconf"
-    rendezvous.announce(meeting())
-    assert (tmp_path / "selfconf").stat().st_mode & 0o077 == 0
-    monkeypatch.delenv("XDG_RUNTIME_DIR")
-    assert str(os.getuid()) in rendezvous.runtime_folder().name
-
-
-def test_a_folder_of_another_user_is_neither_written_nor_read(
-    runtime_folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    rendezvous.announce(meeting())
-    monkeypatch.setattr("os.getuid", lambda: runtime_folder.stat().st_uid + 1)
-    assert rendezvous.local_sites() == []
-    with pytest.raises(NetworkError, match="belongs to another user"):
-        rendezvous.announce(meeting())
-
-
-def test_the_file_is_plain_json(runtime_folder: Path) -> None:
-    body = json.loads(rendezvous.announce(meeting()).read_text())
-    process = {"process": os.getpid(), "started": start_time(os.getpid())}
-    assert body == {
-        "ecology": "home",
-        "site": "a",
-        "endpoint": "tcp/127.0.0.1:7001",
-        "relays": True,
-        "log": "",
-        **process,
-    }
-
-
-def test_the_name_of_a_living_site_is_taken() -> None:
-    rendezvous.announce(meeting(process=os.getppid()))
-    with pytest.raises(NetworkError, match="runs on this machine already"):
-        rendezvous.announce(meeting())
-
-
-def test_a_site_that_leaves_removes_no_file_of_another_process() -> None:
-    path = rendezvous.announce(meeting(process=os.getppid()))
-    rendezvous.leave(path)
-    assert path.is_file()
-    mine = rendezvous.announce(meeting(site="bb"))
-    rendezvous.leave(mine)
-    assert not mine.exists()
 
 
 def test_a_program_that_is_started_hears_of_the_ontologies_of_its_site(
@@ -246,92 +115,3 @@ def test_a_process_of_components_has_keys_that_speak_for_each_of_them(tmp_path: 
         rendezvous.component_credentials(tmp_path / "lamp", [lamp, bell])
     with pytest.raises(ProgrammerError, match="has to say which components it is"):
         rendezvous.component_credentials(authority.path, [])
-
-
-def test_a_name_that_is_claimed_is_free_again_when_it_is_released_or_its_process_ends(runtime_folder: Path) -> None:
-    program = (
-        "from selfconf.rendezvous import claim; claimed = claim('home', 'patrol', []); print(claimed.name); input()"
-    )
-    with subprocess.Popen(
-        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    ) as other:
-        assert other.stdout is not None
-        assert other.stdout.readline() == "patrol\n"
-        assert rendezvous.claim("home", "patrol", []) is None
-        with rendezvous.claim("office", "patrol", []) or pytest.fail("none"):
-            assert sorted(path.name for path in (runtime_folder / "tasks").iterdir()) == [
-                "home@patrol",
-                "office@patrol",
-            ]
-        other.kill()
-    claimed = rendezvous.claim("home", "patrol", [])
-    assert claimed is not None
-    assert rendezvous.claim("home", "patrol", []) is None
-    claimed.release()
-    claimed.release()
-    assert list((runtime_folder / "tasks").iterdir()) == []
-
-
-def names_of_suspended(ecology: str, *endpoints: str) -> list[str]:
-    """The names of the tasks that suspended programs run, as one sees them that has joined by some endpoints."""
-    return [task.name for task in rendezvous.suspended_tasks(ecology, endpoints)]
-
-
-def test_a_suspended_program_is_seen_by_those_that_have_joined_where_it_has_until_it_goes_on_or_ends(
-    runtime_folder: Path,
-) -> None:
-    (runtime_folder / "tasks" / "folder-of-a-site").mkdir(parents=True)
-    (runtime_folder / "tasks" / "home@half-written").write_text('{"ecology": "home"')
-    here, there, elsewhere = "tcp/127.0.0.1:7001", "tcp/127.0.0.1:7002", "tcp/127.0.0.1:7003"
-    with rendezvous.claim("home", "tidy", [here]) or pytest.fail("none"):  # which goes on
-        with suspended_run("home", "patrol", here, there) as program:
-            (task,) = rendezvous.suspended_tasks("home", [there, elsewhere])
-            assert (task.name, task.process) == ("patrol", program.pid)
-            assert str(task).startswith(f"process {program.pid} of this machine, which runs the task 'patrol', is susp")
-            assert names_of_suspended("home", elsewhere) == names_of_suspended("office", here) == []
-            program.send_signal(signal.SIGCONT)
-            assert os.WIFCONTINUED(os.waitpid(program.pid, os.WCONTINUED)[1])
-            assert names_of_suspended("home", here) == []
-        assert (runtime_folder / "tasks" / "home@patrol").exists()  # it was killed
-        assert names_of_suspended("home", here) == []
-
-
-def test_a_suspended_process_that_has_by_now_the_number_of_one_that_ran_a_task_is_another(runtime_folder: Path) -> None:
-    with suspended_run("home", "patrol", "tcp/127.0.0.1:7001"):
-        path = runtime_folder / "tasks" / "home@patrol"
-        path.write_text(json.dumps({**json.loads(path.read_text()), "started": "1"}))
-        assert names_of_suspended("home", "tcp/127.0.0.1:7001") == []
-
-
-def test_a_claim_that_is_refused_leaves_the_program_that_has_the_name_as_it_was_seen() -> None:
-    with suspended_run("home", "patrol", "tcp/127.0.0.1:7001"):
-        assert rendezvous.claim("home", "patrol", ["tcp/127.0.0.1:7002"]) is None
-        assert names_of_suspended("home", "tcp/127.0.0.1:7001") == ["patrol"]
-
-
-def test_a_claim_that_follows_one_of_a_program_that_was_killed_says_nothing_of_that(runtime_folder: Path) -> None:
-    path = runtime_folder / "tasks" / "home@patrol"
-    path.parent.mkdir()
-    path.write_text("x" * 1000)
-    with rendezvous.claim("home", "patrol", ["tcp/127.0.0.1:7001"]) or pytest.fail("none"):
-        assert json.loads(path.read_text())["process"] == os.getpid()
-
-
-def test_a_look_at_what_is_claimed_keeps_no_program_from_a_name(
-    runtime_folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The file of a program that was killed is read; any lock on it would be in the way of the next claim."""
-    with suspended_run("home", "patrol", "tcp/127.0.0.1:7001"):
-        pass
-    locked = list[object]()
-    monkeypatch.setattr(fcntl, "flock", lambda *given: locked.append(given))
-    rendezvous.suspended_tasks("home", ["tcp/127.0.0.1:7001"])
-    assert locked == []
-
-
-def test_where_nothing_can_be_written_every_name_can_be_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "file").write_text("")
-    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "file" / "runtime"))
-    for _ in range(2):
-        with rendezvous.claim("home", "patrol", []) or pytest.fail("none") as claimed:
-            assert claimed.name == "patrol"

@@ -36,7 +36,7 @@ from zenoh.handlers import Callback
 import selfconf as sc
 from benchmarks.live import world
 from benchmarks.machine import described, table
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.protocol.keys import Keys
 from selfconf.sdk import Host
 
@@ -129,7 +129,7 @@ def measure(components: int, sites: int) -> Measured:
         served = []
         for number, path in enumerate(world.write(folder, components, sites)):
             served.append(stack.enter_context(program("selfconf", "site", str(path), "--name", f"s{number}")))
-        until(PATIENCE, lambda: len(rendezvous.local_sites(ecology)) == sites)
+        until(PATIENCE, lambda: len(this_machine.local_sites(ecology)) == sites)
         up = time.monotonic() - began
         actors = {}
         for who, count in (("crowd", components), ("first", 0), ("second", 0), ("sink", 0)):

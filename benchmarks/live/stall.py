@@ -25,7 +25,7 @@ from pathlib import Path
 
 from benchmarks.live.__main__ import cost, program
 from benchmarks.machine import described, table
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.protocol.keys import Keys
 
@@ -72,7 +72,7 @@ def measure(sites: int, seconds: float) -> list[str]:
         for number in range(sites):
             served.append(stack.enter_context(program("selfconf", "site", str(folder), "--name", f"s{number}")))
             if not number:
-                while not rendezvous.local_sites(ecology) and time.monotonic() < began + PATIENCE:
+                while not this_machine.local_sites(ecology) and time.monotonic() < began + PATIENCE:
                     threading.Event().wait(LOOK)
         bus = client(rendezvous.find(ecology, [])[1])
         stack.callback(bus.close)

@@ -25,14 +25,14 @@ import random
 from collections.abc import Sequence
 from pathlib import Path
 
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.bus.port import Undo
 from selfconf.bus.zenoh_bus import ZenohBus, client, router
 from selfconf.bus.zenoh_relay import Hub, cut_connections
 from selfconf.bus.zenoh_session import Security
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys
-from selfconf.rendezvous import LocalSite
+from selfconf.this_machine import LocalSite
 
 log = logging.getLogger(__name__)
 
@@ -69,7 +69,7 @@ class Joining:
         connect: Sequence[str],
         security: Security | None = None,
     ) -> None:
-        """Opens the bus, in a turn (`rendezvous.turn`). Raises NetworkError."""
+        """Opens the bus, in a turn (`this_machine.turn`). Raises NetworkError."""
         self._ecology, self._name, self._security = ecology, name, security
         self._usual = rendezvous.usual_endpoints(ecology, secure=security is not None)
         relays = self._relays()
@@ -120,7 +120,7 @@ class Joining:
         """Write down for others on this machine where this site is reached. Raises NetworkError."""
         relays = bool(self.bus.endpoint)
         mine = LocalSite(self._ecology, self._name, self.endpoint, os.getpid(), relays=relays, log=self.log)
-        self._file = rendezvous.announce(mine)
+        self._file = this_machine.announce(mine)
 
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate, as long as this site relays, and whenever it does.
@@ -133,12 +133,12 @@ class Joining:
     def leave(self) -> None:
         """Take back what was written down."""
         if self._file is not None:
-            rendezvous.leave(self._file)
+            this_machine.leave(self._file)
             self._file = None
 
     def _relays(self) -> list[str]:
         """Where the other sites of this machine that relay are reached."""
-        others = rendezvous.local_sites(self._ecology)
+        others = this_machine.local_sites(self._ecology)
         return list(dict.fromkeys(other.endpoint for other in others if other.relays and other.site != self._name))
 
     def _opened(self, listen: str | None, relays: list[str]) -> ZenohBus:
@@ -170,7 +170,7 @@ class Joining:
         self.bus.later(STILL_MINE * (1 if self.bus.endpoint else STILL_HEARD), self._look_from_time_to_time)
         if self._file is None:
             return
-        if self.bus.endpoint and not rendezvous.relays(self._file):
+        if self.bus.endpoint and not this_machine.relays(self._file):
             self._look()
         elif not self._asking and (self.bus.endpoint or self.bus.link):
             self._ask_hub()
@@ -205,7 +205,7 @@ class Joining:
         """Open another hub in the place of one that has broken: where that was, if it lets go of its port."""
         before = self.bus.endpoint
         log.error("the hub at %s does not answer; opening another one", before)
-        with rendezvous.turn(seconds=0.0) as mine:
+        with this_machine.turn(seconds=0.0) as mine:
             if mine:
                 self.bus.relay_no_more()
                 self._relay_at(list(dict.fromkeys((before, *self._usual))), self._relays())
@@ -221,11 +221,11 @@ class Joining:
 
     def _in_order(self) -> bool:
         """Whether there is nothing to change; a turn is not taken then, as one that is stopped in it keeps it."""
-        return bool(self.bus.link) if not self.bus.endpoint else self._file is None or rendezvous.relays(self._file)
+        return bool(self.bus.link) if not self.bus.endpoint else self._file is None or this_machine.relays(self._file)
 
     def _looked_in_turn(self) -> bool:
         """Give or take the place of the one that relays, if it is this site's turn; whether it was."""
-        with rendezvous.turn(seconds=0.0) as mine:
+        with this_machine.turn(seconds=0.0) as mine:
             if mine and self.bus.endpoint:
                 self._give_place()
             elif mine and not self.bus.link:
@@ -234,7 +234,7 @@ class Joining:
 
     def _give_place(self) -> None:
         """Relay no more, if another site has taken the place meanwhile."""
-        mine = [site for site in rendezvous.local_sites(self._ecology) if site.site == self._name]
+        mine = [site for site in this_machine.local_sites(self._ecology) if site.site == self._name]
         if mine and not mine[0].relays:
             self.bus.relay_no_more()
             self._reached_at = next(iter(self._relays()), mine[0].endpoint)
@@ -254,9 +254,9 @@ class Joining:
                 hub = Hub(endpoint, self._security)
             except NetworkError:  # the port is taken, by one that hangs or by another program
                 continue
-            for other in rendezvous.local_sites(self._ecology):
+            for other in this_machine.local_sites(self._ecology):
                 if other.relays and other.endpoint in self._usual:
-                    rendezvous.announce_for(other, relays=False)
+                    this_machine.announce_for(other, relays=False)
             self.bus.relay(hub, [*(relay for relay in relays if relay not in self._usual), *self._elsewhere])
             self.announce()
             return

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.api.arguments import (
     Endpoints,
     Paths,
@@ -80,7 +80,7 @@ class LivingEcology(Ecology):
         self._membership = Membership(name, self.endpoints, credentials)
         self._bus = self._membership.connect()
         self._view = EcologyView(self._bus, name, self._membership.beliefs(), selects=True)
-        self._view.suspended_sites = partial(rendezvous.suspended_sites, name)
+        self._view.suspended_sites = partial(this_machine.suspended_sites, name)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self._synchronous = SynchronousBus(self._bus)

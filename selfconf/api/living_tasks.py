@@ -18,7 +18,7 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
 from selfconf.render import disobedience
-from selfconf.rendezvous import ClaimedName, LocalTask, claim, suspended_tasks
+from selfconf.this_machine import ClaimedName, LocalTask, claim, suspended_tasks
 
 COMING_TO_REST = 5.0
 """Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""

@@ -11,14 +11,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 
-from selfconf import files, rendezvous
+from selfconf import files, rendezvous, this_machine
 from selfconf.api.arguments import checked_text
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
 from selfconf.files import STDIN
 from selfconf.model.setting_names import setting
 from selfconf.protocol.keys import checked_name
-from selfconf.rendezvous import LocalSite
 from selfconf.termination import parent_environment
+from selfconf.this_machine import LocalSite
 
 SITE_STARTS = 20.0
 """How long, in seconds, a site may take to listen."""
@@ -113,7 +113,7 @@ class SiteProcess:
     def _listening(self, process: subprocess.Popen[bytes]) -> str:
         deadline = time.monotonic() + SITE_STARTS
         while time.monotonic() < deadline:
-            for site in rendezvous.local_sites(self.ecology):
+            for site in this_machine.local_sites(self.ecology):
                 if site.site == self.name:
                     return site.endpoint
             try:
@@ -136,7 +136,7 @@ def sites(ecology: str | None = None) -> tuple[LocalSite, ...]:
     """
     if ecology is not None:
         checked_name(checked_text(ecology, "the name of an ecology"), "an ecology")
-    return tuple(rendezvous.local_sites(ecology))
+    return tuple(this_machine.local_sites(ecology))
 
 
 def _of_authority(keys: Path | None) -> Path | None:

@@ -17,7 +17,8 @@ from selfconf.errors import NetworkError
 from selfconf.model.log_line import LogLine
 from selfconf.model.wording import one_line
 from selfconf.protocol.messages import LogPart, LogQuestion
-from selfconf.rendezvous import asked_for, local_sites
+from selfconf.rendezvous import asked_for
+from selfconf.this_machine import local_sites
 
 FOLLOW_PAUSE = 0.2
 """Seconds after which a log that is followed is looked at again: nothing tells when a file has grown."""

@@ -9,7 +9,7 @@ from functools import partial
 from types import TracebackType
 from typing import NamedTuple
 
-from selfconf import rendezvous
+from selfconf import this_machine
 from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.detached import AS_USUAL, TaskOptions, task_record
 from selfconf.api.living_tasks import LivingTasks
@@ -31,8 +31,8 @@ from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, task_name
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rendezvous import ClaimedName
 from selfconf.termination import Termination
+from selfconf.this_machine import ClaimedName
 
 TASKS_CALL = 0.5
 """Seconds that the other tasks may take to say their names, where none was given: one that hangs holds up no other."""
@@ -108,7 +108,7 @@ class Run:
             policy=options.policy,
             patient=wait,
             believed=membership.beliefs(),
-            suspended_sites=partial(rendezvous.suspended_sites, membership.ecology),
+            suspended_sites=partial(this_machine.suspended_sites, membership.ecology),
             priority=record.priority,
             upgrade=options.upgrade,
             aside=partial(self._work.work, owner=OF_TASK),

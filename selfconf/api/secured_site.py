@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from selfconf import rendezvous
+from selfconf import this_machine
 from selfconf.access import (
     AccessRules,
     Doorkeeper,
@@ -86,7 +86,7 @@ class SecuredSite:
         hub = GuardedHub(
             self._first,
             relays=lambda: joining.relays,
-            sites=lambda: (one.site for one in rendezvous.local_sites(ecology)),
+            sites=lambda: (one.site for one in this_machine.local_sites(ecology)),
             open_anew=lambda rules: joining.secure(self._security(rules)),
             refusals=self._refusals,
         )

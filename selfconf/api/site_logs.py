@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from selfconf import rendezvous
+from selfconf import this_machine
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.setting_names import setting
 from selfconf.protocol.messages import LogPart, LogQuestion
@@ -46,14 +46,14 @@ def names_of_log(path: Path) -> tuple[str, str]:
 
 
 def _folders(ecology: str | None) -> set[Path]:
-    sites = rendezvous.local_sites(ecology)
-    return {rendezvous.log_folder(), *(Path(site.log).parent for site in sites if site.log)}
+    sites = this_machine.local_sites(ecology)
+    return {this_machine.log_folder(), *(Path(site.log).parent for site in sites if site.log)}
 
 
 def _of_one_ecology(logs: list[Path]) -> list[Path]:
     """The logs of the only ecology that has some, or else of the only one of these that lives. Raises AuthorError."""
     named = {names_of_log(path)[0] for path in logs}
-    living = named & {site.ecology for site in rendezvous.local_sites()}
+    living = named & {site.ecology for site in this_machine.local_sites()}
     chosen = living if len(living) == 1 else named
     if len(chosen) > 1:
         names = ", ".join(sorted(chosen))

@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf import files, rendezvous
+from selfconf import files, rendezvous, this_machine
 from selfconf.api.arguments import option
 from selfconf.api.joining import Joining
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
@@ -90,7 +90,7 @@ def serve(
     listens to when it ends. Raises AuthorError and NetworkError.
     """
     program = _SiteProgram(options, complain)
-    with rendezvous.turn():  # one site at a time looks which others there are, or two would miss each other
+    with this_machine.turn():  # one site at a time looks which others there are, or two would miss each other
         program.open()
     program.tell_what_is_served()
     program.run(beside)
@@ -150,7 +150,7 @@ class _SiteProgram:
         )
         if secured is not None:
             secured.keep_door(self._site, self._joining, self._complain)
-        records = TaskFolder((options.state or rendezvous.runtime_folder() / "tasks") / f"{ecology}@{name}")
+        records = TaskFolder((options.state or this_machine.runtime_folder() / "tasks") / f"{ecology}@{name}")
         self._keeper = Keeper(self._bus, ecology, name, records, partial(_request_of, self._work, self._believed))
         self._joining.announce()
         self._bus.watch(self._site.keys.site_life(name, "*"), partial(_met, self._complain, self._site))
@@ -273,8 +273,8 @@ def _whose(life: str) -> str:
 def _log_path(folder: Path | None, ecology: str, name: str) -> Path:
     """The log of a site. In the folder of all sites of this user, those of sites that have ended become fewer."""
     if folder is None:
-        folder = rendezvous.log_folder()
-        forget_oldest(folder, {f"{site.ecology}@{site.site}.log" for site in rendezvous.local_sites()})
+        folder = this_machine.log_folder()
+        forget_oldest(folder, {f"{site.ecology}@{site.site}.log" for site in this_machine.local_sites()})
     return folder / f"{ecology}@{name}.log"
 
 

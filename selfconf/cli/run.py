@@ -161,17 +161,17 @@ def run(given: argparse.Namespace) -> int:
 
 def _lives(given: argparse.Namespace) -> bool:
     """Whether there are sites to run in, so that none has to be started for the advertisements of the project file."""
-    from selfconf import rendezvous
+    from selfconf import rendezvous, this_machine
 
     ecology, endpoints = rendezvous.asked_for(given.ecology, given.connect)
-    return bool(given.detach or endpoints or (ecology is not None and rendezvous.local_sites(ecology)))
+    return bool(given.detach or endpoints or (ecology is not None and this_machine.local_sites(ecology)))
 
 
 def _tell_of_others(given: argparse.Namespace) -> None:
     """Tell a user that gives advertisements, and so begins an ecology, of one that runs on this machine already."""
-    from selfconf import rendezvous
+    from selfconf import this_machine
 
-    others = sorted({site.ecology for site in rendezvous.local_sites()})
+    others = sorted({site.ecology for site in this_machine.local_sites()})
     if given.ads is not None and given.ecology is None and others:
         complain(
             f"this run begins an ecology of its own, and {others[0]} runs here already; to run there,"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf import rendezvous
+from selfconf import rendezvous, this_machine
 from selfconf.api import joining
 from selfconf.api.joining import Joining
 from selfconf.bus.zenoh_bus import client
@@ -30,7 +30,7 @@ class Machine:
 
     def join(self, name: str, listen: str | None = None, connect: tuple[str, ...] = ()) -> Joining:
         """Let a site join, and be seen."""
-        with rendezvous.turn():
+        with this_machine.turn():
             site = Joining("machine", name, listen, connect)
             site.announce()
         site.bus.announce(Keys("machine").site_life(name, "1"))

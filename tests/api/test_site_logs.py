@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf import rendezvous
+from selfconf import this_machine
 from selfconf.api.site_logs import local_log, names_of_log, site_logs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.messages import LogQuestion
@@ -27,8 +27,8 @@ def test_logs_are_found_where_they_are_usual_and_where_sites_that_run_say(runtim
     assert [path.name for path in site_logs(None)] == ["home@gone.log"]
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "home@here.log").touch()
-    rendezvous.announce(
-        rendezvous.LocalSite(
+    this_machine.announce(
+        this_machine.LocalSite(
             "home", "here", "tcp/127.0.0.1:1", os.getpid(), log=str(tmp_path / "own" / "home@here.log")
         )
     )
@@ -44,7 +44,7 @@ def test_of_several_ecologies_the_one_that_lives_is_meant_else_one_has_to_be_nam
         (runtime / "log" / f"{name}@x.log").touch()
     with pytest.raises(AuthorError, match="with ecology: home, lab"):
         site_logs(None)
-    rendezvous.announce(rendezvous.LocalSite("lab", "x", "tcp/127.0.0.1:1", os.getpid()))
+    this_machine.announce(this_machine.LocalSite("lab", "x", "tcp/127.0.0.1:1", os.getpid()))
     assert [path.name for path in site_logs(None)] == ["lab@x.log"]
 
 
