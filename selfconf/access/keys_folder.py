@@ -20,11 +20,10 @@ import fcntl
 import hashlib
 import os
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
-from typing import TypeVar
 
 from selfconf.access.certificates import (
     EVERY_HOST,
@@ -39,6 +38,14 @@ from selfconf.access.certificates import (
     revocations,
 )
 from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.access.private_files import (
+    check_private,
+    content,
+    make_private_folder,
+    named_in_errors,
+    read_file,
+    write_private,
+)
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import AuthorError, PeerError, reason
 
@@ -63,7 +70,7 @@ class KeysFolder:
             raise AuthorError(f"there is no folder {path}; make an authority with `selfconf keys init {path}`")
         self.authority = self._certificate(path / f"{_AUTHORITY}.pem")
         for key in (_AUTHORITY, _HOST_AUTHORITY, _OWN):
-            _private(path / f"{key}.key")
+            check_private(path / f"{key}.key")
 
     @classmethod
     def init(cls, path: Path) -> KeysFolder:
@@ -129,11 +136,11 @@ class KeysFolder:
         before = self.revoked()
         known = [one for one in self.issued() if one.serial in before and not self._expired(one)]
         listed = revocations(authority, key, [*known, *found])
-        _write_file(self.path / "revoked.pem", listed)
+        write_private(self.path / "revoked.pem", listed)
         for folder in dict.fromkeys(self._folders().values()):
             if self._is_of_mine(folder):
                 with suppress(OSError):  # `unaware` names the folder
-                    _write_file(folder / "revoked.pem", listed)
+                    write_private(folder / "revoked.pem", listed)
         return len(found)
 
     def aware(self) -> list[Path]:
@@ -157,7 +164,7 @@ class KeysFolder:
 
     def _has_list(self, folder: Path) -> bool:
         """Whether a folder has keys of this authority, and what it has revoked."""
-        return self._is_of_mine(folder) and _content(folder / "revoked.pem") == _content(self.path / "revoked.pem")
+        return self._is_of_mine(folder) and content(folder / "revoked.pem") == content(self.path / "revoked.pem")
 
     def _is_site(self, certificate: Certificate) -> bool:
         """Whether a certificate is that of a site, which is good until now."""
@@ -166,12 +173,12 @@ class KeysFolder:
 
     def _folders(self) -> dict[int, Path]:
         """Into which folder each certificate was written, by its serial."""
-        found = ((path.stem.rpartition("~")[2], _content(path)) for path in (self.path / "issued").glob("*.folder"))
+        found = ((path.stem.rpartition("~")[2], content(path)) for path in (self.path / "issued").glob("*.folder"))
         return {int(serial, 16): Path(os.fsdecode(folder)) for serial, folder in found if folder}
 
     def _is_of_mine(self, folder: Path) -> bool:
         """Whether a folder is there and has keys of this authority."""
-        return _content(folder / f"{_AUTHORITY}.pem") == _content(self.path / f"{_AUTHORITY}.pem")
+        return content(folder / f"{_AUTHORITY}.pem") == content(self.path / f"{_AUTHORITY}.pem")
 
     def issued(self) -> list[Certificate]:
         """The certificates that this authority has issued, by name and time."""
@@ -183,7 +190,7 @@ class KeysFolder:
         path = self.path / "revoked.pem"
         if not path.is_file():
             return frozenset()
-        return _of(path, lambda: read_revocations(_read(path), self.authority))
+        return named_in_errors(path, lambda: read_revocations(read_file(path), self.authority))
 
     # What holders do.
 
@@ -210,9 +217,9 @@ class KeysFolder:
         trusted = self.path / "trusted.pem"
         with self._turn():
             self._host_authority()
-            together = self.authority.pem + _read(self.path / f"{_HOST_AUTHORITY}.pem")
+            together = self.authority.pem + read_file(self.path / f"{_HOST_AUTHORITY}.pem")
             if not trusted.is_file() or trusted.read_bytes() != together:
-                _write_file(trusted, together)
+                write_private(trusted, together)
         return trusted
 
     def component(self, principal: Principal, also: Sequence[Principal] = ()) -> Path:
@@ -228,7 +235,7 @@ class KeysFolder:
                 mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
                 certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
                 _write_holder(folder, self.authority, certificate, mine)
-                _write_file(folder / f"{_HOST_AUTHORITY}.pem", authority.pem)
+                write_private(folder / f"{_HOST_AUTHORITY}.pem", authority.pem)
         return folder
 
     def _component_ends(self) -> datetime:
@@ -266,8 +273,8 @@ class KeysFolder:
             raise PeerError(f"the certificate of {certificate.common_name} was revoked")
         path = self.path / "admitted" / ecology / f"{_whose(certificate.principals)}.pem"
         if not self._has_later(path, certificate):
-            _made(path.parent)
-            _write_file(path, certificate.pem)
+            make_private_folder(path.parent)
+            write_private(path, certificate.pem)
         return certificate
 
     def _has_later(self, path: Path, certificate: Certificate) -> bool:
@@ -293,13 +300,13 @@ class KeysFolder:
         authority, authority_key = self._authority_pair()
         certificate = issue(authority, authority_key, principal, key.public_key(), hosts, days)
         try:
-            _made(self.path / "issued")
+            make_private_folder(self.path / "issued")
             noted = self.path / "issued" / f"{certificate.common_name}~{certificate.serial:x}.pem"
-            _write_file(noted, certificate.pem)
-            _write_file(noted.with_name(f"{noted.stem}.folder"), os.fsencode(folder.resolve()))
+            write_private(noted, certificate.pem)
+            write_private(noted.with_name(f"{noted.stem}.folder"), os.fsencode(folder.resolve()))
             _write_holder(folder, authority, certificate, key)
             if (self.path / "revoked.pem").is_file():
-                _write_file(folder / "revoked.pem", _read(self.path / "revoked.pem"))
+                write_private(folder / "revoked.pem", read_file(self.path / "revoked.pem"))
         except OSError as error:
             raise AuthorError(reason(error)) from None
         return certificate
@@ -332,7 +339,7 @@ class KeysFolder:
 
     def _pair(self, name: str) -> tuple[Certificate, Key]:
         path = self.path / f"{name}.key"
-        key = _of(path, lambda: read_key(_read(path)))
+        key = named_in_errors(path, lambda: read_key(read_file(path)))
         certificate = self._certificate(self.path / f"{name}.pem")
         if not certificate.belongs_to(key):
             raise AuthorError(f"{path} is not the key of {name}.pem beside it")
@@ -366,7 +373,7 @@ class KeysFolder:
         return "expired" in certificate.fault((self.authority,))
 
     def _certificate(self, path: Path) -> Certificate:
-        return _of(path, lambda: Certificate.read(_read(path)))
+        return named_in_errors(path, lambda: Certificate.read(read_file(path)))
 
     @contextmanager
     def _turn(self) -> Iterator[None]:
@@ -403,65 +410,11 @@ def _principal(certificate: Certificate, folder: Path) -> Principal:
 
 def _write_holder(folder: Path, authority: Certificate, certificate: Certificate, key: Key) -> None:
     """Write what a holder needs. The certificate comes last: a program that reads meanwhile finds a pair that fits."""
-    _made(folder)
-    _write_file(folder / f"{_AUTHORITY}.pem", authority.pem)
+    make_private_folder(folder)
+    write_private(folder / f"{_AUTHORITY}.pem", authority.pem)
     _write(folder / _OWN, certificate, key)
 
 
 def _write(path: Path, certificate: Certificate, key: Key) -> None:
-    _write_file(path.with_suffix(".key"), key_pem(key))
-    _write_file(path.with_suffix(".pem"), certificate.pem)
-
-
-def _write_file(path: Path, content: bytes) -> None:
-    """Write a file at once, readable by its owner alone."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    with os.fdopen(descriptor, "wb") as file:
-        file.write(content)
-    temporary.replace(path)
-
-
-def _made(folder: Path) -> None:
-    """Make a folder, and those above it that are not there, for its owner alone."""
-    for one in (*reversed(folder.parents), folder):
-        if not one.is_dir():
-            one.mkdir(mode=0o700, exist_ok=True)
-
-
-def _read(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise AuthorError(f"there is no {path.name} in {path.parent}; is it a folder of keys?") from None
-    except OSError as error:
-        raise AuthorError(reason(error)) from None
-
-
-def _content(path: Path) -> bytes:
-    """What a file holds; nothing if it is not there, or cannot be read."""
-    try:
-        return path.read_bytes()
-    except OSError:
-        return b""
-
-
-def _private(path: Path) -> None:
-    """Raise AuthorError for a key that others than its owner may read."""
-    if path.is_file() and path.stat().st_mode & 0o077:
-        raise AuthorError(f"others may read {path}, so it is no secret; say `chmod 600 {path}`, or make a new one")
-
-
-_Value = TypeVar("_Value")
-
-
-def _of(path: Path, read: Callable[[], _Value]) -> _Value:
-    """What is read from a file, with the file named in what goes wrong."""
-    try:
-        return read()
-    except PeerError as error:
-        raise AuthorError(str(error), file=str(path)) from None
-    except AuthorError as error:
-        if error.file is None and str(path.parent) not in error.message:
-            raise AuthorError(error.message, file=str(path)) from None
-        raise
+    write_private(path.with_suffix(".key"), key_pem(key))
+    write_private(path.with_suffix(".pem"), certificate.pem)
