@@ -205,7 +205,7 @@ def _action(name: str, goal: FieldTypes, result: FieldTypes, feedback: FieldType
 
 
 def complete_types(types: TypesByName, known: Iterable[str]) -> tuple[TypesByName, dict[str, str]]:
-    """Those of some types whose parts are all known or among them, and why each of the others is not.
+    """The types, among some, whose parts are all known or among them, and why each of the others is left out.
 
     A type that is made of itself is never complete.
     """

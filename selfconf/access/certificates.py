@@ -117,7 +117,7 @@ class Certificate:
 
     @property
     def principals(self) -> tuple[Principal, ...]:
-        """Its principals: the subject, and the components that share a process with it. Raises PeerError."""
+        """Its principals: the subject of the certificate, and components of the same process. Raises PeerError."""
         others = (name.removeprefix(_ALSO) for name in self._names(x509.UniformResourceIdentifier) if _ALSO in name)
         return (self.principal, *(Principal.of(name) for name in others))
 
@@ -149,7 +149,7 @@ class Certificate:
         return (*self._names(x509.DNSName), *self._names(x509.IPAddress))
 
     def _names(self, kind: type[Any]) -> list[str]:
-        """Its alternative names of a kind (RFC 5280, section 4.2.1.6)."""
+        """The alternative names of the certificate that are of one kind (RFC 5280, section 4.2.1.6)."""
         try:
             names = self.x509.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
         except (x509.ExtensionNotFound, ValueError):

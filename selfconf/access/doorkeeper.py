@@ -350,7 +350,7 @@ class Doorkeeper:
             judge()
 
     def _renew_certificates(self) -> None:
-        """Renew those of components, and have the hub show the certificate that lies in the folder now."""
+        """Renew the certificates of components, and have the hub show the site's own as it lies in the folder now."""
         try:
             changed = self._credentials.certificate.stat().st_mtime_ns
             self._folder.renew_components()

@@ -213,7 +213,7 @@ class KeysFolder:
         return (self.authority, *([self._certificate(host)] if host.is_file() else []))
 
     def hub_authorities(self) -> Path:
-        """Whose certificates the hub of a site on this host believes: those of the authority and of the host's own."""
+        """The file of the authorities that the hub of a site here believes: the ecology's, and that of this host."""
         trusted = self.path / "trusted.pem"
         with self._turn():
             self._host_authority()

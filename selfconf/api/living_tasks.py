@@ -298,7 +298,7 @@ class LivingTasks:
         return {component: why for (component, _), why in self._after_some_time(stopping).items()}
 
     def _after_some_time(self, asked: Iterable[tuple[IRI, str]]) -> dict[tuple[IRI, str], str]:
-        """Those that are still disobedient, of components and the tasks that they were released by, and how they are.
+        """The components that still disobey, each with the task that has released it, and how they are.
 
         Until all have obeyed, or the time for that is over.
         """

@@ -38,7 +38,7 @@ class Membership:
         return bus
 
     def beliefs(self) -> Beliefs | None:
-        """Whose disputed components are for this program, by its folder of keys; None without keys."""
+        """What says whose a disputed component is, by the folder of keys of this program; None without keys."""
         if self.credentials is None:
             return None
         from selfconf.access import believed  # what it needs is an extra

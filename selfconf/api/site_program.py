@@ -265,7 +265,7 @@ def _met(complain: Callable[[str], None], site: Site, key: str, alive: bool) -> 
 
 
 def _whose(life: str) -> str:
-    """Whose life it is, in words."""
+    """The words that say whose life it is."""
     parts = life.split(".", 2)
     return f"process {parts[1]} on host {parts[2]}" if len(parts) == 3 else f"life {life}"
 

@@ -79,7 +79,7 @@ def run(given: argparse.Namespace) -> int:
 
 
 def _absent(ecology: Ecology, components: Iterable[IRI]) -> frozenset[IRI]:
-    """Those of some components of the living ecology that no process runs, and that no site can start."""
+    """The components, among some of the living ecology, that no process runs, and that no site can start."""
     from selfconf.api.living import LivingEcology
 
     if not isinstance(ecology, LivingEcology):

@@ -59,7 +59,7 @@ class Terminal(io.TextIOBase):
         return self._stream.fileno()
 
     def isatty(self) -> bool:
-        """It does lead to a terminal."""
+        """Whether the stream leads to a terminal: it does."""
         return True
 
 

@@ -115,10 +115,10 @@ class Composer:
         return {problem.supply.recruits[number].component for number in recruits_that_matter(problem)}
 
     def usable(self, components: Set[IRI], refusal: Refusal) -> dict[IRI, tuple[IRI, ...]]:
-        """Those of some components without which the ecology that was partitioned last was refused, and that may help.
+        """The components, among some that the ecology which was refused last did not have, that may help.
 
-        Each with the roles that it may play, in their order: none for one that may only be recruited. A component of
-        roles that no reason speaks of leaves each of the reasons as it is.
+        Each comes with the roles that it may play, in their order: none for one that may only be recruited. A component
+        of roles that no reason speaks of leaves each of the reasons as it is.
         """
         roles: dict[IRI, tuple[IRI, ...]] = {}
         lacking = self._lacking(refusal)

@@ -42,7 +42,7 @@ class SourceDocument:
     octets: bytes
 
     def text(self) -> str:
-        """Its text, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
+        """The text of the document, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
         check_utf_8(self.octets, self.shown)
         return self.octets.removeprefix(BOM_UTF8).decode()
 

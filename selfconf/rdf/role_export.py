@@ -197,7 +197,7 @@ def _several(path: str, number: int) -> str:
 
 
 def _none(name: str, members: Iterable[Term]) -> str:
-    """That a value is none of some terms, as terms: 1 is not 1.0."""
+    """The condition that a value is none of some terms, as terms: 1 is not 1.0."""
     return " && ".join(f"!sameTerm({name}, {_term(member)})" for member in sorted(members, key=_term)) or "true"
 
 

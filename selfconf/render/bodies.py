@@ -83,7 +83,7 @@ def cost_body(optimum: Optimum, unknown: Iterable[IRI]) -> dict[str, Any]:
 
 
 def undecided_body(undecided: Undecided) -> dict[str, Any]:
-    """That there is no answer yet: a code and a sentence."""
+    """The words that there is no answer yet, as JSON: a code and a sentence."""
     return {"code": undecided.code, "message": str(undecided)}
 
 

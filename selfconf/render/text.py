@@ -26,8 +26,8 @@ MOST_LINES = 8
 """How many reasons, and how many near misses, a screen has room for."""
 
 
-def disobedience(component: str, why: str = "") -> str:
-    """That a component was turned off and does not come to rest, with how it is where that is known."""
+def disobedience(component: str, why: str) -> str:
+    """The sentence that a component was turned off and does not come to rest, with how it is where that is known."""
     return f"{component} was turned off and has not obeyed{f': {why}' if why else ''}"
 
 
@@ -87,7 +87,7 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
     return "\n".join(lines)
 
 
-def alternative_text(one: Alternative, chosen: Alternative | None, some_held: bool = False) -> str:
+def alternative_text(one: Alternative, chosen: Alternative | None, some_held: bool) -> str:
     """What speaks for a candidate of a role and against it, beside the one that is chosen.
 
     Where tasks hold some of the components, only the others are free for a configuration.
@@ -128,7 +128,7 @@ def _decimal(amount: Fraction) -> str:
 
 
 def undecided_text(undecided: Undecided, template: IRI, name: Name) -> str:
-    """That there is no answer yet, in one sentence."""
+    """The sentence that there is no answer yet."""
     return f"{name(template)} is {undecided}"
 
 

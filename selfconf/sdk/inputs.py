@@ -99,7 +99,7 @@ class InputFollower(Protocol):
 
 @immutable
 class Handover:
-    """That an input is to follow other outputs than before, and follows both until one of the new has issued a signal.
+    """The change of an input to other outputs: it follows the old and the new until one of the new has issued a signal.
 
     `due` is when it is looked next whether the new ones issue nothing although the old ones do.
     """

@@ -84,7 +84,7 @@ class Operations:
         fields: Mapping[IRI, SignalFields],
         callers: Callable[[str], frozenset[IRI]],
         malformed: Callable[[str], None],
-        read_value: Callable[[Any, str], Any] = lambda value, media: value,
+        read_value: Callable[[Any, str], Any],
     ) -> None:
         """`callers` says who may call an operation, by the name of its output.
 

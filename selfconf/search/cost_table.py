@@ -112,7 +112,7 @@ def _exact_costs(problem: Problem, running: Configuration | None) -> list[list[t
     ]
 
 
-def recruit_cost(problem: Problem, number: int, running: Configuration | None = None) -> tuple[Fraction, ...]:
+def recruit_cost(problem: Problem, number: int, running: Configuration | None) -> tuple[Fraction, ...]:
     """Return what a recruit, by number, costs level by level, with whether it is a newcomer before all others."""
     recruit = problem.supply.recruits[number]
     newcomer = running is not None and bool(running.assignments) and recruit.component not in running.recruits

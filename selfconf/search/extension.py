@@ -34,7 +34,7 @@ def solved(problem: Problem, playing: Playing, running: Configuration | None = N
 
 
 def with_further_players(
-    problem: Problem, configuration: Configuration, running: Configuration | None = None
+    problem: Problem, configuration: Configuration, running: Configuration | None
 ) -> Configuration:
     """Return a configuration that has its recruits, extended by every further candidate that fits.
 
@@ -134,7 +134,7 @@ def _add_fitting(
     playing: list[list[Candidate]],
     values: tuple[int, ...],
     candidates: Playing,
-    besides: Iterable[IRI] = (),
+    besides: Iterable[IRI],
 ) -> tuple[int, ...]:
     """Add every one of some candidates that fits, the first one first; return the values left to the variables.
 

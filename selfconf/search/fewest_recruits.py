@@ -116,7 +116,7 @@ class _Fewest:
         return self.met, True
 
     def _answer(self, assumed: list[int], budget: Budget) -> list[int] | Undecided | None:
-        """As few recruits that are enough, some of which are given; None if there are none."""
+        """Return the fewest recruits that are enough, some of which are given; None if no recruits are."""
         found = self._clauses.solve(assumed, budget)
         if isinstance(found, Undecided):
             return found

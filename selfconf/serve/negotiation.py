@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def acceptable(accept: str, offered: Sequence[str]) -> list[str]:
-    """Those of the offered media types that a client accepts, the best first; of equals the order offered counts.
+    """The media types, among those offered, that a client accepts, the best first; of equals the order offered counts.
 
     An empty header accepts everything.
     """

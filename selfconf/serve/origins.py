@@ -25,7 +25,7 @@ RESPONSE_HEADERS = "Link, Retry-After"
 class Origins:
     """The origins whose pages may ask; each is written as browsers send it, such as `https://yasgui.example`."""
 
-    def __init__(self, named: Collection[str] = ()) -> None:
+    def __init__(self, named: Collection[str]) -> None:
         self._named = frozenset(named)
 
     def refusal(self, headers: Mapping[str, str], path: str) -> str:

@@ -67,7 +67,7 @@ class ComponentProgram:
         folder: Path,
         environment: Mapping[str, str],
         printed: Callable[[], PrintedLines],
-        keys_of: Callable[[IRI], Path] | None = None,
+        keys_of: Callable[[IRI], Path] | None,
     ) -> None:
         """`printed` is where its lines go, `environment` is what it finds its ecology by.
 

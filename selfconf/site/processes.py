@@ -33,8 +33,8 @@ class ComponentProcesses:
         bus: Bus,
         keys: Keys,
         environment: Mapping[str, str] | None,
-        log_path: Path | None = None,
-        keys_of: Callable[[IRI], Path] | None = None,
+        log_path: Path | None,
+        keys_of: Callable[[IRI], Path] | None,
     ) -> None:
         """`environment` is what a started component finds its ecology by; None: no process is ever started.
 

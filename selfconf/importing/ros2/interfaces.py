@@ -87,7 +87,7 @@ class NodeInterface:
         return tuple(name for name, _ in self.qualities if name not in _QUALITIES and (name != "depth" or no_depth))
 
     def properties(self) -> tuple[tuple[IRI, Term], ...]:
-        """Its quality of service as statements about a port."""
+        """The quality of service of the interface as statements about a port."""
         said = dict(self.qualities)
         found: list[tuple[IRI, Term]] = [
             (ROS2[term], Literal(said[name])) for name, term in _QUALITIES.items() if said.get(name)

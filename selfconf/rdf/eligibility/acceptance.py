@@ -94,7 +94,7 @@ class Acceptance:
         )
 
     def _conforming(self, text: str, outputs: Sequence[Port], seen: SeenOutputs, in_time: bool) -> set[Port]:
-        """Those of some outputs that conform to a shape; none where it cannot be judged, which is noted."""
+        """The outputs, among some, that conform to a shape; none where it cannot be judged, which is noted."""
         shape = self._shape(text)
         if isinstance(shape, OutputShape):
             if not in_time:

@@ -119,7 +119,7 @@ _INNER = _SHAPES | SHAPES_OF_A_LIST
 
 
 def _constraining(document: Document, predicates: Iterable[IRI]) -> set[IRI]:
-    """Those of some predicates that constrain: SHACL's, and those of the document's own constraint components."""
+    """The predicates, among some, that constrain: SHACL's, and those of the document's own constraint components."""
     own = component_parameters(document)
     return {predicate for predicate in predicates if predicate in SH or predicate in own}
 

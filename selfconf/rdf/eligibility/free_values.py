@@ -93,7 +93,7 @@ class Suitable:
         self._known: dict[tuple[IRI, frozenset[Term]], frozenset[Term]] = {}
 
     def of(self, parameter: IRI, values: frozenset[Term]) -> frozenset[Term]:
-        """Those of some values that a parameter may have."""
+        """The values, among some, that a parameter may have."""
         known = self._known.get((parameter, values))
         if known is None:
             known = self._fitting(parameter, values)
@@ -103,12 +103,12 @@ class Suitable:
         return known
 
     def _fitting(self, parameter: IRI, values: frozenset[Term]) -> frozenset[Term]:
-        """Those of some values that conform to what a parameter says of its value."""
+        """The values, among some, that conform to what a parameter says of its value."""
         return suitable(self._parameters[parameter], values, self._document)
 
 
 Suiting = Callable[[IRI, frozenset[Term]], frozenset[Term]]
-"""Those of some values that a parameter may have."""
+"""Which values, among some, a parameter may have."""
 _NONE: frozenset[Term] = frozenset()
 
 

@@ -108,7 +108,7 @@ class OutputShape:
     def conforming(
         self, outputs: Sequence[Port], seen: SeenOutputs, not_judged: dict[Port, NotJudged] | None = None
     ) -> set[Port]:
-        """Those of some outputs that conform; those that cannot be judged are noted in `not_judged`.
+        """The outputs, among some, that conform; those that cannot be judged are noted in `not_judged`.
 
         Raises TemplateError where none can be judged, as then it is the shape that is at fault.
         """

@@ -243,7 +243,7 @@ class Partitioner:
         return passed
 
     def _issuing(self, role: CompiledRole, passed: list[Passed]) -> list[Passed]:
-        """Those of some advertisements that have ports of the types which the shape asks for, where pySHACL is asked.
+        """The advertisements, among some, with ports of the types that the shape asks for, where pySHACL is asked.
 
         A property that lies below those of ports may lead to further ports: then pySHACL decides.
         """

@@ -23,7 +23,7 @@ _SAYS_NOTHING = SHAPE_ANNOTATIONS | {RDF.type, SH.severity}
 
 
 class _Want(NamedTuple):
-    """That a port which a predicate links to is of one of some types."""
+    """What a shape wants of a port which a predicate links to: that it is of one of some types."""
 
     link: IRI
     types: Types
@@ -127,7 +127,7 @@ def _said(document: Document, predicate: IRI, value: Term, path: tuple[Term, ...
 
 
 def _classes(named: Iterable[Term]) -> Iterator[IRI]:
-    """Those of some terms that may be classes."""
+    """The terms, among some, that may be classes."""
     return (one for one in named if isinstance(one, IRI))
 
 

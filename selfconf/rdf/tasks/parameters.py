@@ -75,7 +75,7 @@ _PROBE = "urn:selfconf:probe"
 
 
 def misfits(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
-    """Those of some values that cannot stand for a parameter, each with the reason.
+    """The values, among some, that cannot stand for a parameter, each with the reason.
 
     A parameter is a shape for its value (`sh:nodeKind`, `sh:datatype`, `sh:in` ...). Values that pass the compiled
     tests of all its constraints conform; the others are judged by pySHACL. The reason is worded as for a property of a

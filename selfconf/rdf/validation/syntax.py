@@ -36,7 +36,7 @@ def hint(message: str) -> str | None:
 
 
 def telling(problems: Sequence[SyntaxProblem]) -> Iterator[SyntaxProblem]:
-    """Those of some problems that do not come of another: one for each prefix, and else the first of each line."""
+    """The problems, among some, that do not come of another: one for each prefix, and else the first of each line."""
     said: set[str] = set()
     lines: set[int] = set()
     for problem in problems:
