@@ -536,7 +536,8 @@ def test_a_closed_node_lives_no_more_serves_no_more_and_hears_no_more(net: Net, 
 
 
 def test_what_is_taken_back_or_put_after_the_end_does_nothing(net: Net, top: str) -> None:
-    node = net.node()
+    node, heard = net.node(), list[Sample]()
+    net.node().subscribe(f"{top}/pose", heard.append)
     undos = [
         node.announce(f"{top}/live/1"),
         node.subscribe(f"{top}/pose", lambda _: None),
@@ -550,6 +551,8 @@ def test_what_is_taken_back_or_put_after_the_end_does_nothing(net: Net, top: str
         undo()
     publisher.put(b"nobody")
     publisher.undeclare()
+    net.settle()
+    assert heard == []
 
 
 def test_a_node_that_reaches_the_network_is_linked_and_one_that_is_closed_is_not(net: Net) -> None:
