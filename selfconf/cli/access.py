@@ -62,8 +62,11 @@ def _believe(given: argparse.Namespace, site: str, component: str) -> int:
     folder = rendezvous.keys_folder(given.keys)
     if folder is None:
         raise AuthorError("whose sites shall believe it? give their folder of keys: --keys DIR")
-    believe(folder, IRI.unchecked(component.strip("<>")), site)
-    print(f"the sites of {folder} believe that {component} is that of site {site}")
+    iri = component.strip("<>")
+    if ":" not in iri:  # no ecology is asked, which would know of which component this is the local name
+        raise AuthorError(f"{component!r} is no IRI; name the component in full, as https://example.org/my-home#lamp")
+    believe(folder, IRI.unchecked(iri), site)
+    print(f"the sites of {folder} believe that {iri} is that of site {site}")
     return 0
 
 

@@ -117,6 +117,9 @@ def test_whose_a_component_is_is_noted(tmp_path: Path, capsys: pytest.CaptureFix
     said = run(capsys, "access", "--keys", str(tmp_path / "keys"), "--believe", "attic", "urn:lamp")
     assert said.code == 0
     assert believed(tmp_path / "keys") == {"urn:lamp": "attic"}
+    said = run(capsys, "access", "--keys", str(tmp_path / "keys"), "--believe", "attic", "lamp")
+    assert said.is_one_sentence("name the component in full")
+    assert believed(tmp_path / "keys") == {"urn:lamp": "attic"}
 
 
 def test_without_keys_there_is_nothing_to_show(
