@@ -19,6 +19,7 @@ Paths: TypeAlias = str | Path | Iterable[str | Path]
 Endpoints: TypeAlias = str | Iterable[str]
 """One endpoint, or several."""
 Choice = TypeVar("Choice", bound=Enum)
+_SECONDS_ASKED = f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}"
 
 
 def listed_paths(paths: Paths) -> list[str | Path]:
@@ -86,24 +87,30 @@ def checked_priority(priority: int) -> int:
 
 def steps_limit(steps: int | None) -> int | None:
     """The steps that a search may take, or None. Raises ProgrammerError for what is no number of steps."""
-    if steps is None:
-        return None
-    if isinstance(steps, bool) or not isinstance(steps, Integral) or steps < 1:
-        raise ProgrammerError(f"steps are a whole number above zero, or None for no limit, not {steps!r}")
-    return int(steps)
+    return None if steps is None else _count(steps, "steps are a whole number above zero, or None for no limit")
 
 
 def rows_limit(rows: int) -> int:
     """The rows that an answer may have. Raises ProgrammerError for what is no number of rows."""
-    if isinstance(rows, bool) or not isinstance(rows, Integral) or rows < 1:
-        raise ProgrammerError(f"rows are a whole number above zero, not {rows!r}")
-    return int(rows)
+    return _count(rows, "rows are a whole number above zero")
+
+
+def _count(number: int, asked: str) -> int:
+    """A whole number above zero. Raises ProgrammerError, with what was asked for, for anything else."""
+    if isinstance(number, bool) or not isinstance(number, Integral) or number < 1:
+        raise ProgrammerError(f"{asked}, not {number!r}")
+    return int(number)
 
 
 def answer_seconds(seconds: float) -> float:
     """The seconds that an answer may take. Raises ProgrammerError for what is no time, and for None."""
+    return _seconds(seconds, _SECONDS_ASKED)
+
+
+def _seconds(seconds: float, asked: str) -> float:
+    """Seconds that something may take. Raises ProgrammerError, with what was asked for, for anything else."""
     if not is_limit(seconds):
-        raise ProgrammerError(f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, not {seconds!r}")
+        raise ProgrammerError(f"{asked}, not {seconds!r}")
     return float(seconds)
 
 
@@ -116,13 +123,7 @@ def checked_moment(moment: float | None) -> float | None:
 
 def seconds_limit(seconds: float | None) -> float | None:
     """The seconds that a search may take, or None. Raises ProgrammerError for what is no time."""
-    if seconds is None:
-        return None
-    if not is_limit(seconds):
-        raise ProgrammerError(
-            f"seconds are a number above zero and at most {LONGEST_SECONDS:,.0f}, or None for no limit, not {seconds!r}"
-        )
-    return float(seconds)
+    return None if seconds is None else _seconds(seconds, f"{_SECONDS_ASKED}, or None for no limit")
 
 
 def checked_upgrade(seconds: float | None) -> float | None:
