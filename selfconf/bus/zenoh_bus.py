@@ -21,6 +21,7 @@ import logging
 import time
 import weakref
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import zenoh
@@ -323,7 +324,14 @@ class ZenohBus(Loop):
         receiver = Receiver(self, change)
 
         def listen(samples: Sequence[zenoh.Sample]) -> None:
-            receiver.received(*((str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT) for sample in samples))
+            told = []
+            for sample in samples:
+                life, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
+                if life in self._roll_calls.doubtful:
+                    self._roll_calls.confirm(life, alive, partial(receiver.received, (life, alive)))
+                else:
+                    told.append((life, alive))
+            receiver.received(*told)
 
         # A channel is looked at ten times a second; a callback for each of thousands would hold Zenoh's thread up.
         handler: Any = open_channel() if many else each(listen)

@@ -6,6 +6,11 @@ end may come before the session has said what it knows, which is lost then (Zeno
 watch had shown the life that was called, up to 10 came to nothing). It has said all when `get` has returned: if the
 answer has ended by then, the call is made again, which takes one more round trip.
 
+What comes too late goes astray: the session takes the first such token for another one, of the number 0. So a new watch
+may show that life when it has ended; and the next end of a token that a watch without history has not shown, which has
+that number too, comes as the end of this one (of 84 lives, 78 seemed to end). What watches show of such a life is
+*doubtful*, and the life is called first.
+
 All answers come by channels, as those can be asked whether they have ended: a callback would have to wait for Python's
 lock to say so, and `get` may have returned meanwhile.
 """
@@ -14,14 +19,25 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 from selfconf.bus.loop import Loop
 from selfconf.bus.reader_threads import ReaderThreads
 from selfconf.bus.zenoh_channels import READ_TOGETHER, at_hand, may_be_many, open_channel, read_together
 
-MOST_ROLL_CALLS = 6
+MOST_DOUBTFUL = 1000
+"""How many lives are noted as doubtful at most."""
+SECOND_ANSWER = 0.05
+"""Seconds after which a doubtful life is called again that has not answered: until a watch that begins has received
+all, the router answers nothing."""
+CONFIRMATION = 1.0
+"""Seconds that the answer to such a call may take."""
+BEFORE_AGAIN = 0.0002
+"""Seconds until a roll-call is made again; four times as long each time, as threads get in each other's way in bursts.
+"""
+MOST_ROLL_CALLS = 7
 """How often one roll-call is made at most."""
 MOST_ROLL_CALLS_OF_MANY = 2
 """How often where so many answer that it may have ended while they were read, if the session knows many."""
@@ -38,20 +54,40 @@ class RollCalls:
         self._reads_few = False
         self.knows_many = False
         """Whether a watch may have shown the session more lives than are read together."""
+        self.doubtful: set[str] = set()
+        """The lives of which a watch may show an end, or a beginning, that is none."""
 
     def call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
         """Ask which lives there are under a key; `done` hears of them on the thread of the loop."""
-        self._call(key, seconds, done, set(), 1)
+        self._call(key, seconds, done, [])
+
+    def confirm(self, key: str, alive: bool, confirmed: Callable[[], None]) -> None:
+        """Call `confirmed` if a doubtful life has begun, or ended, as a watch has shown; on the thread of the loop."""
+
+        def heard(keys: Sequence[str], again: bool = True) -> None:
+            if key in keys:
+                if alive:
+                    confirmed()
+                else:  # the token that had gone astray has ended
+                    self.doubtful.discard(key)
+            elif again:
+                self._loop.later(SECOND_ANSWER, lambda: self.call(key, CONFIRMATION, lambda last: heard(last, False)))
+            elif not alive:
+                confirmed()
+
+        self._loop.wake_up(lambda: self.call(key, CONFIRMATION, heard))
 
     def _call(
-        self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None], alive: set[str], calls: int
+        self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None], before: Sequence[set[str]]
     ) -> None:
-        """Make a call for the so-manieth time; `alive` is what came of the times before."""
+        """Make a call once more; `before` is what came of each time before, which ended too soon."""
         channel = self._session.liveliness().get(key, open_channel(), timeout=seconds)
         known, goes_on = at_hand(channel)
         most_calls = MOST_ROLL_CALLS
         if len(known) == READ_TOGETHER:  # a second call of ten thousand lives takes as long as the first
             most_calls = MOST_ROLL_CALLS_OF_MANY if self.knows_many else 1
+
+        alive: set[str] = set()
 
         def take(replies: Sequence[Any]) -> None:
             alive.update(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
@@ -60,16 +96,26 @@ class RollCalls:
             take(known)
             while some := read_together(channel):
                 take(some)
-            if goes_on or calls >= most_calls:
-                keys = tuple(sorted(alive))
+            if goes_on or len(before) + 1 >= most_calls:
+                keys = tuple(sorted(alive.union(*before)))
+                self._doubt(key for some in before for key in keys if key not in some)
                 self._loop.wake_up(lambda: done(keys))
             else:
-                self._loop.wake_up(lambda: self._call(key, seconds, done, alive, calls + 1))
+                again = partial(self._call, key, seconds, done, [*before, alive])
+                self._loop.wake_up(partial(self._later, BEFORE_AGAIN * 4 ** len(before), again))
 
         if may_be_many(key):
             self._readers.begin(read)
         else:
             self._read_in_turn(read)
+
+    def _later(self, seconds: float, call: Callable[[], None]) -> None:
+        self._loop.later(seconds, call)
+
+    def _doubt(self, lives: Iterable[str]) -> None:
+        for life in lives:
+            if len(self.doubtful) < MOST_DOUBTFUL:
+                self.doubtful.add(life)
 
     def _read_in_turn(self, read: Callable[[], None]) -> None:
         with self._lock:

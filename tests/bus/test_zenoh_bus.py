@@ -271,6 +271,30 @@ def test_a_roll_call_of_hundreds_and_a_watch_of_them_miss_nobody(zenoh_router: Z
     bus.close()
 
 
+def test_what_a_watch_tells_of_a_doubtful_life_is_asked_for_first(zenoh_router: ZenohBus, top: str) -> None:
+    one, bus = client([zenoh_router.endpoint]), client([zenoh_router.endpoint])
+    heard: list[tuple[str, bool]] = []
+    asked: list[str] = []
+    confirm = bus._roll_calls.confirm
+
+    def noted(key: str, alive: bool, confirmed: Callable[[], None]) -> None:
+        asked.append(key)
+        confirm(key, alive, confirmed)
+
+    bus._roll_calls.confirm = noted  # type: ignore[method-assign]  # it does the same, and notes it
+    bus._roll_calls.doubtful.add(f"{top}/b/live/1")
+    bus.watch(f"{top}/*/live/*", lambda key, alive: heard.append((key.removeprefix(f"{top}/"), alive)))
+    undo_others, undo = one.announce(f"{top}/a/live/1"), one.announce(f"{top}/b/live/1")
+    assert until(lambda: sorted(heard) == [("a/live/1", True), ("b/live/1", True)], one, bus)
+    undo()
+    undo_others()
+    assert until(lambda: len(heard) == 4, one, bus)
+    assert heard[2:] == [("a/live/1", False), ("b/live/1", False)], "the one that is asked for comes later"
+    assert asked == [f"{top}/b/live/1"] * 2
+    bus.close()
+    one.close()
+
+
 class Cable:
     """A TCP proxy to an endpoint, whose connections are cut at a word."""
 

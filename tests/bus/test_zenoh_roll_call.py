@@ -13,7 +13,7 @@ import zenoh
 from selfconf.bus.loop import Loop
 from selfconf.bus.reader_threads import ReaderThreads
 from selfconf.bus.zenoh_channels import READ_TOGETHER
-from selfconf.bus.zenoh_roll_call import MOST_ROLL_CALLS, MOST_ROLL_CALLS_OF_MANY, RollCalls
+from selfconf.bus.zenoh_roll_call import MOST_DOUBTFUL, MOST_ROLL_CALLS, MOST_ROLL_CALLS_OF_MANY, RollCalls
 
 
 class Answer:
@@ -132,3 +132,44 @@ def test_a_call_for_a_few_does_not_keep_one_for_many_waiting() -> None:
     assert caller.hear() == [("b/live/1",)]
     slow.may_end.set()
     assert caller.hear(2) == [("b/live/1",), ("a/live/1",)]
+
+
+LIFE = "a/live/1"
+
+
+def test_a_life_that_an_answer_has_left_out_and_the_next_has_not_is_doubtful() -> None:
+    caller = Caller(Answer(["a/live/2"], too_soon=True), Answer(["a/live/2"], [LIFE]))
+    caller.call()
+    assert caller.hear() == [(LIFE, "a/live/2")]
+    assert caller.calls.doubtful == {LIFE}
+
+
+@pytest.mark.parametrize(
+    ("answers", "alive", "is_so", "stays_doubtful"),
+    [
+        ([Answer([LIFE])], True, True, True),
+        ([Answer([LIFE])], False, False, False),
+        ([Answer([]), Answer([LIFE])], True, True, True),
+        ([Answer([]), Answer([LIFE])], False, False, False),
+        ([Answer([]), Answer([])], True, False, True),
+        ([Answer([]), Answer([])], False, True, True),
+    ],
+)
+def test_what_is_told_of_a_doubtful_life_is_believed_if_an_answer_confirms_it(
+    answers: list[Answer], alive: bool, is_so: bool, stays_doubtful: bool
+) -> None:
+    caller, confirmed = Caller(*answers), list[bool]()
+    caller.calls.doubtful.add(LIFE)
+    caller.calls.confirm(LIFE, alive, lambda: confirmed.append(alive))
+    for _ in range(30):
+        caller.loop.poll(0.01)
+    assert confirmed == [alive] * is_so
+    assert caller.calls.doubtful == ({LIFE} if stays_doubtful else set())
+
+
+def test_so_many_lives_are_doubtful_at_most() -> None:
+    crowd = [f"{number:04}/live/1" for number in range(MOST_DOUBTFUL + 1)]
+    caller = Caller(Answer([], too_soon=True), Answer([], crowd))
+    caller.call("*/live/*")
+    assert caller.hear() == [tuple(crowd)]
+    assert len(caller.calls.doubtful) == MOST_DOUBTFUL
