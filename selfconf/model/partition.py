@@ -7,6 +7,9 @@ Candidates can play together iff, for each variable, the conjunction of their ma
 
 No search may depend on which site answered first. So candidates are ordered by what they say of themselves
 (`candidate_order`); the order decides which configuration is the first.
+
+A component that one obstacle alone keeps out of a role is a `NearMiss`. `rdf.eligibility` finds those of which types,
+properties or ports are amiss, `composition.near_misses` those that feed nothing that is lacking, and ranks all of them.
 """
 
 from __future__ import annotations

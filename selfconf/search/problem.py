@@ -1,9 +1,10 @@
 """The configuration problem, and the rules that every strategy shares.
 
-*Given* roles in their order, for each role its candidates in theirs, and the interactions between roles; *wanted*
-as many distinct components per role as it asks for at least, so that every input of every component is matched by
-an output of a component that plays a role feeding it (component mutual compatibility rule, section 2.3 of the
-paper), unless it is optional, and so that each free parameter has a value that all of the components admit.
+*Given* roles in their order, for each role its candidates in theirs (`model.partition.candidate_order`), and the
+interactions between roles; *wanted* as many distinct components per role as it asks for at least, so that every input
+of every component is matched by an output of a component that plays a role feeding it (component mutual compatibility
+rule, section 2.3 of the paper), unless it is optional, and so that each free parameter has a value that all of the
+components admit.
 
 *Slots.* A role that asks for at least k components has k slots, which are the variables of a constraint satisfaction
 problem, the candidates being their values; a solution fills every slot. Solutions are compared slot by slot, in the
