@@ -23,9 +23,10 @@ from selfconf.api.component_states import ComponentState, component_states
 from selfconf.api.configurators import Configurators
 from selfconf.api.echo import HeardSignal, echo
 from selfconf.api.ecology import Ecology
-from selfconf.api.living_tasks import STATE_PATIENCE, LivingTask, LivingTasks
+from selfconf.api.living_tasks import LivingTask, LivingTasks
 from selfconf.api.membership import MEMBERS, Membership
 from selfconf.api.output_sources import follow_output
+from selfconf.api.released_components import STATE_PATIENCE, ReleasedComponents
 from selfconf.api.site_access import SiteAccess, site_accesses
 from selfconf.api.site_logs import LogSource
 from selfconf.api.synchronous_bus import SynchronousBus
@@ -85,6 +86,7 @@ class LivingEcology(Ecology):
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self._synchronous = SynchronousBus(self._bus)
         self._tasks = LivingTasks(self._synchronous, self._view.keys, self.endpoints)
+        self._released = ReleasedComponents(self._synchronous, self._view.keys)
         self._configurators = Configurators(self._synchronous, self._view.keys)
         try:
             if not any(self._sites_answer(pause) for pause in PAUSES):
@@ -169,7 +171,7 @@ class LivingEcology(Ecology):
 
         That takes some seconds where a component is stopping. A reader (`read.NAME`) sees none.
         """
-        return {} if self._membership.looks_on_only else self._tasks.out_of_control()
+        return {} if self._membership.looks_on_only else self._released.out_of_control()
 
     def _life(self, component: IRI) -> str | None:
         """The life of a component; those of a large ecology, which most readers do not need, are called now."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain, count
 
+from selfconf.api.released_components import ReleasedComponents
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.port import Replies
 from selfconf.discovery import namesakes
@@ -16,18 +17,12 @@ from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
-from selfconf.protocol.messages import CallAnswer, StateOf, Status, TaskRecord
+from selfconf.protocol.messages import Status, TaskRecord
 from selfconf.render import disobedience
 from selfconf.this_machine import ClaimedName, LocalTask, claim, suspended_tasks
 
-COMING_TO_REST = 5.0
-"""Seconds that components may take to obey after their task has ended: their sites end those that do not meanwhile."""
-STATE_PATIENCE = 1.0
-"""Seconds that the components may take to say how they are."""
 UNNUMBERED = 56
 """How many characters of a task's name stand before a number; with that they are 64 at most."""
-REST_CHECK = 0.1
-"""Seconds between two looks at components that have not obeyed yet."""
 
 
 @immutable
@@ -129,6 +124,7 @@ class LivingTasks:
         self.complaints: tuple[str, ...] = ()
         """What was wrong with the answers of configurators, as of the last question, and which sites have one name."""
         self._holding: list[SilentHolder] = []
+        self._released = ReleasedComponents(bus, keys)
 
     def running(self, by_components: bool = False) -> tuple[Status, ...]:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name.
@@ -156,7 +152,7 @@ class LivingTasks:
     def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:
         """What components are held by configurators that are not among some, sorted by the configurator's name."""
         found: dict[tuple[str, str], list[IRI]] = {}
-        for one in _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE_PATIENCE), self._keys):
+        for one in self._released.states():
             with suppress(PeerError):
                 if one.supervisor and (configurator := owner_of(one.supervisor)) not in known:
                     found.setdefault((configurator, one.task), []).append(one.component)
@@ -266,7 +262,7 @@ class LivingTasks:
             for gone in sorted(silent.difference(living, (one.configurator for one in holding))):
                 yield f"the configurator {gone!r} did not answer and is not seen any more; if suspended, it will go on"
         for one in holding:
-            act_on = self._after_some_time((component, one.task) for component in one.components)
+            act_on = self._released.still_acting((component, one.task) for component in one.components)
             at_rest = "they have come to rest, and if it was suspended, it takes them again when it goes on"
             yield f"{one}; {'they act on' if act_on else at_rest}"
 
@@ -284,44 +280,9 @@ class LivingTasks:
         return sorted(
             {
                 f"{disobedience(component.short, why)}; it is out of control until it is gone"
-                for (component, _), why in self._after_some_time(asked).items()
+                for (component, _), why in self._released.still_acting(asked).items()
             }
         )
-
-    def out_of_control(self) -> Mapping[IRI, str]:
-        """The components that were asked to stop and do not come to rest in time, sorted, and how each of them is.
-
-        Whether a task is left that knows of them or not: each component is asked. It takes time where one is stopping.
-        """
-        answers = _states(self._bus.ask(self._keys.any_call("state"), seconds=STATE_PATIENCE), self._keys)
-        stopping = {(one.component, "") for one in answers if one.stopping}
-        return {component: why for (component, _), why in self._after_some_time(stopping).items()}
-
-    def _after_some_time(self, asked: Iterable[tuple[IRI, str]]) -> dict[tuple[IRI, str], str]:
-        """The components that still disobey, each with the task that has released it, and how they are.
-
-        Until all have obeyed, or the time for that is over.
-        """
-        deadline = self._bus.now() + COMING_TO_REST
-        while (troubles := self._disobedient(asked)) and self._bus.now() < deadline:
-            asked = set(troubles)
-            self._bus.pause(REST_CHECK)
-        return troubles
-
-    def _disobedient(self, asked: Iterable[tuple[IRI, str]]) -> dict[tuple[IRI, str], str]:
-        """Of components and the tasks that they were released by, those that are not at rest, and how they are."""
-        pairs, keys = sorted(asked), self._keys
-        questions = [(keys.call(component, "state"), encode(StateOf(task))) for component, task in pairs]
-        troubles = {}
-        for (component, task), replies in zip(pairs, self._bus.ask_each(questions, STATE_PATIENCE), strict=True):
-            answers = _states(replies, keys)
-            acting = [one for one in answers if one.stopping or (one.active and one.task == task)]
-            if acting:
-                what = "its code has not come to rest" if acting[0].stopping else "it acts on"
-                troubles[component, task] = f"{what} ({acting[0].place})"
-            elif not answers and self._bus.living(keys.lives(component)):
-                troubles[component, task] = "it lives, but does not answer"
-        return troubles
 
     def _end_record(self, record: TaskRecord) -> None:
         self._keep(replace(record, revision=record.revision + 1, ended=True))
@@ -388,17 +349,6 @@ def _records(replies: Replies) -> list[TaskRecord]:
             if record.supersedes(newest.get(record.task)):
                 newest[record.task] = record
     return [record for record in newest.values() if not record.ended]
-
-
-def _states(replies: Replies, keys: Keys) -> list[CallAnswer]:
-    """What the lives of components have answered, each on its own key."""
-    found = []
-    for sample in replies.samples:
-        with suppress(PeerError):
-            answer = decode(sample.payload, CallAnswer)
-            if sample.key == keys.call(answer.component, "state"):
-                found.append(answer)
-    return found
 
 
 def _said_of_silent(configurator: str) -> str:

@@ -238,14 +238,6 @@ def test_a_component_that_does_not_obey_is_named_after_all_is_taken_down(
     assert tasks.asked.running() == ()
 
 
-def test_what_does_not_come_to_rest_is_out_of_control_also_without_a_task(tasks: Tasks) -> None:
-    lamp, stopping = IRI("urn:c#lamp"), replace(AT_REST, stopping=True)
-    tasks.component(DRIVE, stopping)
-    tasks.component(lamp, replace(stopping, component=lamp), replace(AT_REST, component=lamp))
-    tasks.component(IRI("urn:c#cap"), replace(AT_REST, component=IRI("urn:c#cap"), active=True, task="tidy~2"))
-    assert tasks.asked.out_of_control() == {DRIVE: "its code has not come to rest (process 7 on lab)"}
-
-
 def held_by(configurator: str, task: str) -> CallAnswer:
     """How the drive is that acts for a task."""
     return replace(AT_REST, active=True, task=task, supervisor=KEYS.configurator_life(configurator, "1"))
@@ -362,13 +354,6 @@ def test_what_another_configurator_holds_is_nothing_to_the_end_of_a_task(tasks: 
     tasks.configurator("c1", TIDY.task)
     tasks.component(DRIVE, held_by("c2", PATROL.task))
     assert tasks.asked.stop("tidy") == ("tidy",)
-
-
-def test_nothing_is_waited_for_where_nothing_is_stopping(tasks: Tasks) -> None:
-    tasks.component(DRIVE, AT_REST)
-    began = tasks.network.time
-    assert tasks.asked.out_of_control() == {}
-    assert tasks.network.time - began < 1.0
 
 
 def test_a_task_is_handed_over_once(tasks: Tasks) -> None:

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from selfconf.api import living_tasks
+from selfconf.api import released_components
 from selfconf.cli import status
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Status
@@ -58,7 +58,7 @@ main(Drive)
 def test_a_component_that_does_not_come_to_rest_is_listed_when_its_task_has_ended(
     home: Home, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(living_tasks, "COMING_TO_REST", 0.3)
+    monkeypatch.setattr(released_components, "COMING_TO_REST", 0.3)
     home.site("peis-home", "ads")
     home.components("sonar", "encoder", "tracker", "control")
     (home.folder / "stubborn.py").write_text(STUBBORN)
