@@ -161,7 +161,7 @@ class ZenohBus(Loop):
         self._direct: set[DirectReceiver] = set()
         self._readers = ReaderThreads()
         """The threads that read channels; none may be left when Python ends, or it ends with a crash."""
-        self._roll_calls = RollCalls(self, session, self._readers)
+        self._roll_calls = RollCalls(self, session, self._readers, lambda: bool(self.link))
         self._open = True
         self._turns = 0
         """How often this bus has gained or lost a hub: of a hub that was away for a moment the name is the same."""

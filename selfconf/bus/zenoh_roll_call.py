@@ -46,8 +46,9 @@ MOST_ROLL_CALLS_OF_MANY = 2
 class RollCalls:
     """The roll-calls of one session."""
 
-    def __init__(self, loop: Loop, session: Any, readers: ReaderThreads) -> None:
-        self._loop, self._session, self._readers = loop, session, readers
+    def __init__(self, loop: Loop, session: Any, readers: ReaderThreads, is_linked: Callable[[], bool]) -> None:
+        """`is_linked` says whether the session has a router, on any thread."""
+        self._loop, self._session, self._readers, self._is_linked = loop, session, readers, is_linked
         self._lock = threading.Lock()
         self._few: deque[Callable[[], None]] = deque()
         """What is to be read of calls for a few lives; one thread reads them in turn, as their router answers them."""
@@ -96,7 +97,7 @@ class RollCalls:
             take(known)
             while some := read_together(channel):
                 take(some)
-            if goes_on or len(before) + 1 >= most_calls:
+            if goes_on or len(before) + 1 >= most_calls or not self._is_linked():  # without a router all end at once
                 keys = tuple(sorted(alive.union(*before)))
                 self._doubt(key for some in before for key in keys if key not in some)
                 self._loop.wake_up(lambda: done(keys))

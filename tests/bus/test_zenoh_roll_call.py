@@ -61,7 +61,8 @@ class Caller:
 
     def __init__(self, *answers: Answer) -> None:
         self.session, self.loop, self.heard = Session(*answers), Loop(), list[tuple[str, ...]]()
-        self.calls = RollCalls(self.loop, self.session, ReaderThreads())
+        self.linked = True
+        self.calls = RollCalls(self.loop, self.session, ReaderThreads(), lambda: self.linked)
 
     def call(self, key: str = "a/live/*") -> None:
         """Make one."""
@@ -97,6 +98,14 @@ def test_a_call_whose_answers_all_end_at_once_is_not_made_for_ever() -> None:
     caller.call()
     assert caller.hear() == [()]
     assert caller.session.calls == MOST_ROLL_CALLS
+
+
+def test_a_call_without_a_router_is_made_once() -> None:
+    caller = Caller(Answer(["a/live/1"], too_soon=True))
+    caller.linked = False
+    caller.call()
+    assert caller.hear() == [("a/live/1",)]
+    assert caller.session.calls == 1
 
 
 @pytest.mark.parametrize(("knows_many", "calls"), [(True, MOST_ROLL_CALLS_OF_MANY), (False, 1)])
