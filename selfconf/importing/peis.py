@@ -16,7 +16,7 @@ from selfconf.importing.imported import ImportedComponent, ImportedDocument, Imp
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import absolute, stem
 from selfconf.importing.sources import SourceDocument
-from selfconf.model.profile import CALL_MARK
+from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.vocabulary import RDFS
 
@@ -174,8 +174,9 @@ def _ports(part: Part, source: SourceDocument, ledger: ImportLedger) -> Iterator
     seen: set[str] = set()
     for name, kind in _pairs(part, source, ledger):
         iri = absolute(kind)
-        if name in seen or name.endswith(CALL_MARK):
-            ledger.leave_out("ports", "another port of the component has their name, or it ends in ()", source)
+        if name in seen or not is_port_name(name):
+            reason = "another port of the component has their name, or it ends in () or has control characters"
+            ledger.leave_out("ports", reason, source)
             continue
         seen.add(name)
         if iri is None:

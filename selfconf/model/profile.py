@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Term
-from selfconf.model.wording import in_words
+from selfconf.model.wording import in_words, is_one_line
 
 
 @immutable
@@ -71,6 +71,14 @@ class Condition(NamedTuple):
 
 CALL_MARK = "()"
 """What the name of a port ends in that is an operation, and that of no other port."""
+
+
+def is_port_name(text: str) -> bool:
+    """Whether an author may give a port, an operation or an operational parameter this name.
+
+    It stands in keys and in lines for people, so it has no control characters, as messages hold no such names.
+    """
+    return text != "" and not text.endswith(CALL_MARK) and is_one_line(text)
 
 
 class Operation(IRI):

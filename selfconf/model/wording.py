@@ -18,7 +18,9 @@ LONGEST_REMARK = 4000
 # The controls of ASCII and Latin-1 but for tab and line feed, and those that change the direction of writing.
 _DIRECTION = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
 _STEERING = re.compile(f"[\x00-\x08\x0b-\x1f\x7f-\x9f{_DIRECTION}]")
-_STEERING_OR_BREAKING = re.compile(f"[\x00-\x1f\x7f-\x9f\u2028\u2029{_DIRECTION}]")
+STEERING_OR_BREAKING = f"\x00-\x1f\x7f-\x9f\u2028\u2029{_DIRECTION}"
+"""What no text has that stands in a line as it is, as a part of a class of characters of a regular expression."""
+_STEERING_OR_BREAKING = re.compile(f"[{STEERING_OR_BREAKING}]")
 
 
 def plain(text: str) -> str:

@@ -16,8 +16,9 @@ from decimal import Decimal
 
 from selfconf.model.immutable import immutable
 from selfconf.model.literal_values import BOOLEAN, TRUTH, number_of
-from selfconf.model.profile import CALL_MARK
+from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
+from selfconf.model.wording import STEERING_OR_BREAKING
 from selfconf.rdf.turtle import SKOLEM
 from selfconf.rdf.vocabulary import LABEL, RDF, RDFS, SC, SH, TYPE, UNIT, XSD
 
@@ -63,9 +64,9 @@ class ValueKind:
 # A literal with a language has the datatype rdf:langString, so a test for xsd:string refuses it.
 RESOURCE = ValueKind("an IRI", rf"<((?!{SKOLEM})[^<>]*)>", iri=_always)
 NAME_TEXT = ValueKind(
-    "a string that is not empty and does not end in ()",
-    r'"([^"\\]*[^"\\)])"',
-    literal=lambda lexical, datatype: datatype == STRING and lexical != "" and not lexical.endswith(CALL_MARK),
+    "a string that is not empty, has no control characters and does not end in ()",
+    rf'"([^"\\{STEERING_OR_BREAKING}]*[^"\\{STEERING_OR_BREAKING})])"',
+    literal=lambda lexical, datatype: datatype == STRING and is_port_name(lexical),
 )
 COMMAND_LINE = ValueKind(
     "a string that is not blank, without a language",

@@ -14,6 +14,7 @@ from selfconf.model.profile import (
     Place,
     Ports,
     Profile,
+    is_port_name,
     needed_operation,
     offered_operation,
     shared_ports,
@@ -34,6 +35,15 @@ def test_ports_are_found_by_name_and_inputs_are_no_outputs() -> None:
     assert profile.output("pose") is pose
     assert profile.output("where") is None
     assert [port.name for port in profile.inputs] == ["where"]
+
+
+@pytest.mark.parametrize(
+    ("name", "may_be"),
+    [("pose", True), ("set.velocity", True), (" /ö *😀", True), ("a()b", True), ("", False), ("f()", False)]
+    + [(f"a{control}b", False) for control in "\n\t\x00\x9f\u2028\u202e"],
+)
+def test_a_port_has_a_name_that_messages_can_hold(name: str, may_be: bool) -> None:
+    assert is_port_name(name) is may_be
 
 
 def test_operations_are_ports_that_are_told_apart_by_their_names() -> None:

@@ -17,6 +17,7 @@ from selfconf import library
 from selfconf.model import literal_values as numbers
 from selfconf.model import term as model
 from selfconf.model.profile import Profile
+from selfconf.model.wording import STEERING_OR_BREAKING
 from selfconf.rdf.advertisements import read_advertisements, reader
 from selfconf.rdf.permitted_fields import (
     ACCEPTED_SHAPE,
@@ -72,7 +73,12 @@ TARGETS: dict[Node, tuple[Subject, ...]] = {
 """What the node shapes of the file speak of, by the class or the property that makes it their target."""
 ASKED: dict[int, set[tuple[str, object]]] = {
     id(RESOURCE): {("nodeKind", SH.IRI)},
-    id(NAME_TEXT): {("datatype", XSD.string), ("minLength", 1), ("pattern", "([^)]|(^|[^(])[)])$")},
+    id(NAME_TEXT): {
+        ("datatype", XSD.string),
+        ("minLength", 1),
+        ("pattern", "([^)]|(^|[^(])[)])$"),
+        ("not", frozenset((("pattern", f"[{STEERING_OR_BREAKING}]"),))),
+    },
     id(COMMAND_LINE): {("datatype", XSD.string), ("pattern", r"\S")},
     id(NUMBER): {("node", URIRef(SHAPES.Number))},
     id(POSITIVE): {("node", URIRef(SHAPES.Number)), ("minExclusive", 0)},
@@ -141,6 +147,8 @@ def constraints(shape: Node) -> Iterator[tuple[str, object]]:
             word = str(predicate).removeprefix(str(SH))
             if word == "in":
                 yield word, tuple(Collection(SHAPE, value))
+            elif word == "not":
+                yield word, frozenset(constraints(value))
             elif word == "or":
                 yield word, frozenset(frozenset(constraints(each)) for each in Collection(SHAPE, value))
             else:
@@ -262,6 +270,8 @@ SHAREABLE, OPTIONAL = (
     next(place for place in PLACES if place[0].predicate == field) for field in (SC.shareable, SC.optional)
 )
 
+PORT_NAME_PLACE = next(place for place in PLACES if place[0].predicate == SC.name)
+
 
 @given(st.sampled_from(PLACES), VALUES)
 @example(PLACES[4], '"1_000"^^xsd:integer')
@@ -269,6 +279,8 @@ SHAREABLE, OPTIONAL = (
 @example(SHAREABLE, '"1"^^xsd:boolean')
 @example(SHAREABLE, '"TRUE"^^xsd:boolean')
 @example(OPTIONAL, '"0"^^xsd:boolean')
+@example(PORT_NAME_PLACE, r'"a\tb"')
+@example(PORT_NAME_PLACE, r'"a\u202Eb"')
 def test_shape_and_careful_reader_agree_on_any_value_anywhere(place: tuple[Field, str], value: str) -> None:
     text = PREFIXES + place[1].replace("VALUE", f"<{place[0].predicate}> {value}")
     broken, refused = verdicts(text)
@@ -285,7 +297,7 @@ def test_what_the_fast_loader_recognises_is_of_the_kind(kind: ValueKind) -> None
     pattern = re.compile(kind.turtle)
     samples = [
         "<urn:a>", f"<{UNIT.HZ}>", f"<{UNIT.SEC}>", "<urn:selfconf:blank:x>", '"a"', '" "', '"a()"', '"a)"',
-        '""', '"\\n"',
+        '""', '"\\n"', '"a\u202eb"', '"a\u0085"',
         "0", "0.0", "00", "7",
         "-7", "+7",
         "2.5", "1e3", "1234567890", ".5", '"a"@en', "true",

@@ -22,7 +22,7 @@ from selfconf.importing.ros2.interfaces import (
     node_class,
 )
 from selfconf.importing.sources import SourceDocument
-from selfconf.model.profile import CALL_MARK
+from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.ros_definitions import FEEDBACK_MESSAGE, GOAL, REQUEST, RESPONSE, RESULT
 
@@ -129,8 +129,11 @@ class NodeReader:
         found: dict[tuple[object, str], NodeInterface] = {}
         for each in interfaces:
             group = (each.kind.is_source, each.kind in (InterfaceKind.PUBLISHER, InterfaceKind.SUBSCRIBER))
-            if not each.name or each.name.endswith(CALL_MARK) or (group, each.name) in found:
-                reason = "two interfaces of one node that do the same have one name, or one has none, or ends in ()"
+            if not is_port_name(each.name) or (group, each.name) in found:
+                reason = (
+                    "two interfaces of one node that do the same have one name, or one has none, ends in (), or has"
+                    " control characters"
+                )
                 self.ledger.leave_out("interfaces", reason, self.source)
             else:
                 found[group, each.name] = each

@@ -18,7 +18,7 @@ from selfconf.importing.units import unit_of
 from selfconf.importing.wot.contexts import TermMeanings
 from selfconf.importing.wot.json_text import one_or_several
 from selfconf.importing.wot.own_terms import stated_rate
-from selfconf.model.profile import CALL_MARK
+from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI
 from selfconf.rdf.vocabulary import SC, XSD
 
@@ -107,8 +107,8 @@ class AffordanceReader:
             self._leave_out(f"{kind} that are no object", "a description has them by their names")
             return
         for name, affordance in found.items():
-            if not name or name.endswith(CALL_MARK) or not isinstance(affordance, dict):
-                reason = "a port or operation has a name, which does not end in ()"
+            if not is_port_name(name) or not isinstance(affordance, dict):
+                reason = "a port or operation has a name, which has no control characters and does not end in ()"
                 self._leave_out(f"{kind} without a name, or that are no object", reason)
                 continue
             for member, (what, why) in _UNUSED.items():

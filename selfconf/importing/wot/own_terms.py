@@ -12,7 +12,7 @@ from selfconf.importing.imported import DescribedValue, ImportedOperation, Impor
 from selfconf.importing.wot.contexts import TermMeanings
 from selfconf.importing.wot.json_text import one_or_several
 from selfconf.importing.wot.json_values import terms_of
-from selfconf.model.profile import CALL_MARK
+from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.vocabulary import SC
 
@@ -61,7 +61,7 @@ class OwnTerms:
         for node in one_or_several(self._members.get(member)):
             said = _by_meaning(node, self._meanings) if isinstance(node, dict) else {}
             name = said.get(SC.name)
-            if not isinstance(name, str) or not name or name.endswith(CALL_MARK) or name in taken:
+            if not isinstance(name, str) or not is_port_name(name) or name in taken:
                 self.unread += 1
                 continue
             taken.add(name)

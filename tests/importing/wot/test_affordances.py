@@ -39,6 +39,13 @@ def test_a_property_is_an_output_and_an_input_that_may_stay_unfed() -> None:
     ]
 
 
+@pytest.mark.parametrize("name", ["", "f()", "a\tb", "a\u202eb"])
+def test_what_has_a_name_that_no_port_has_is_left_out(name: str) -> None:
+    reading = Reading(properties={name: {}, "t": {}})
+    assert {port.name for _, port in reading.ports} == {"t"}
+    assert reading.left_out["properties without a name, or that are no object"] == 1
+
+
 @pytest.mark.parametrize(
     ("affordance", "kinds"),
     [

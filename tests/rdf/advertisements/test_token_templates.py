@@ -30,6 +30,8 @@ STRINGS = st.sampled_from(
         "_:x",
         "é",
         "\t",
+        "x()",
+        "\u202ex",
         "s7310001",
         "<https://w3id.org/selfconf#name> ",
     )
