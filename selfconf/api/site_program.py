@@ -37,7 +37,7 @@ from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.render import count
-from selfconf.site import Shelf, Site, forget_oldest
+from selfconf.site import ProcessSettings, Shelf, Site, forget_oldest
 from selfconf.termination import Termination
 
 if TYPE_CHECKING:
@@ -141,10 +141,12 @@ class _SiteProgram:
             ecology,
             name,
             shelf,
-            rendezvous.environment(ecology, " ".join(self._joining.endpoints), options.ontologies),
-            log_path,
+            ProcessSettings(
+                rendezvous.environment(ecology, " ".join(self._joining.endpoints), options.ontologies),
+                log_path,
+                None if secured is None else secured.keys_of,
+            ),
             f"{secrets.token_hex(4)}.{os.getpid()}.{_HOST}",
-            None if secured is None else secured.keys_of,
             self._is_open_to_all,
             changed=self._composites.refresh,
         )

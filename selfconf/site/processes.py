@@ -12,6 +12,7 @@ from pathlib import Path
 
 from selfconf.bus.port import Bus
 from selfconf.errors import PeerError
+from selfconf.model.immutable import immutable
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
@@ -25,24 +26,26 @@ Started = tuple[Path, str]
 """What is started once: a command, in the folder of the advertisement that has it."""
 
 
+@immutable
+class ProcessSettings:
+    """How a site starts the processes of its components."""
+
+    environment: Mapping[str, str] | None = None
+    """What a component finds its ecology by; None: no process is ever started."""
+    log_path: Path | None = None
+    """The file that keeps what components print; None: it is only shown."""
+    keys_of: Callable[[IRI], Path] | None = None
+    """Makes the folder of keys of a process, by the component that stands for it; None: there are no keys."""
+
+
+NONE_STARTED = ProcessSettings()
+
+
 class ComponentProcesses:
     """The processes that one site has started, by component."""
 
-    def __init__(
-        self,
-        bus: Bus,
-        keys: Keys,
-        environment: Mapping[str, str] | None,
-        log_path: Path | None,
-        keys_of: Callable[[IRI], Path] | None,
-    ) -> None:
-        """`environment` is what a started component finds its ecology by; None: no process is ever started.
-
-        `log_path` is the file that keeps what components print; None: it is only shown. `keys_of` makes the folder of
-        keys of a process, by the component that stands for it; None: there are no keys.
-        """
-        self._keys_of = keys_of
-        self._bus, self._keys, self._environment, self._log_path = bus, keys, environment, log_path
+    def __init__(self, bus: Bus, keys: Keys, settings: ProcessSettings) -> None:
+        self._bus, self._keys, self._settings = bus, keys, settings
         self._programs: dict[Started, ComponentProgram] = {}
         self._printed: PrintedLines | None = None
         self._closed = False
@@ -56,7 +59,8 @@ class ComponentProcesses:
         lost, if that is why it is started.
         """
         component, started = profile.component, started_once(profile)
-        if started is None or self._environment is None:
+        environment = self._settings.environment
+        if started is None or environment is None:
             raise cannot_start(component)
         if self._closed:
             raise PeerError("this site is ending")
@@ -66,7 +70,7 @@ class ComponentProcesses:
         if program is None:
             folder, command = started
             program = ComponentProgram(
-                self._bus, self._keys, command, folder, self._environment, self._printing, self._keys_of
+                self._bus, self._keys, command, folder, environment, self._printing, self._settings.keys_of
             )
             self._programs[started] = program
             if self._closed:  # after it is known: either it is closed here, or by `close`
@@ -113,7 +117,8 @@ class ComponentProcesses:
     def _printing(self) -> PrintedLines:
         """The reader of what the processes print, from the first process on."""
         if self._printed is None:
-            self._printed = PrintedLines(None if self._log_path is None else LogFile(self._log_path))
+            path = self._settings.log_path
+            self._printed = PrintedLines(None if path is None else LogFile(path))
         return self._printed
 
 

@@ -10,7 +10,6 @@ import logging
 import secrets
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import NamedTuple
 
 from selfconf.bus.port import Bus, Request, Urgency
@@ -22,7 +21,15 @@ from selfconf.protocol.messages import End, Known, LogQuestion, Page, Wake
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import ntriples
 from selfconf.site.kept_log import MOST_LOG_LINES, log_part
-from selfconf.site.processes import ComponentProcesses, Started, cannot_start, programs_of, started_once
+from selfconf.site.processes import (
+    NONE_STARTED,
+    ComponentProcesses,
+    ProcessSettings,
+    Started,
+    cannot_start,
+    programs_of,
+    started_once,
+)
 from selfconf.site.shelf import Shelf
 
 log = logging.getLogger(__name__)
@@ -56,22 +63,18 @@ class Site:
         ecology: str,
         name: str,
         shelf: Shelf,
-        environment: Mapping[str, str] | None = None,
-        log_path: Path | None = None,
+        settings: ProcessSettings = NONE_STARTED,
         life: str = "",
-        keys_of: Callable[[IRI], Path] | None = None,
         insecure: bool = False,
         changed: Callable[[Mapping[IRI, Advertisement]], None] = lambda advertisements: None,
     ) -> None:
-        """`environment` is what a started component finds its ecology by; None: this site starts none.
+        """`insecure` is in the answer to each question: the site listens beyond its host without keys.
 
-        `log_path` is the file that keeps what components print; None: it is only shown. `keys_of` makes the folder of
-        keys of the process of a component; None: there are no keys. `insecure` is in the answer to each question: the
-        site listens beyond its host without keys. `changed` hears what is on the shelf, now and when that is another.
+        `changed` hears what is on the shelf, now and when that is another.
         """
         self.bus, self.keys, self.name, self.shelf = bus, Keys(ecology), checked_name(name, "a site"), shelf
-        self.processes = ComponentProcesses(bus, self.keys, environment, log_path, keys_of)
-        self._log_path, self._insecure = log_path, insecure
+        self.processes = ComponentProcesses(bus, self.keys, settings)
+        self._log_path, self._insecure = settings.log_path, insecure
         self.life = life or secrets.token_hex(4)
         """Which life of the site this is: another site may have its name."""
         self.programs: dict[IRI, IRI] = {}

@@ -11,7 +11,7 @@ from pathlib import Path
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies
 from selfconf.protocol.keys import Keys
-from selfconf.site import Shelf, Site
+from selfconf.site import ProcessSettings, Shelf, Site
 from tests.lab import PREFIXES, iri
 
 KEYS = Keys("lab")
@@ -22,7 +22,7 @@ def serve(
     network: Network, folder: Path, environment: dict[str, str] | None = None, log_path: Path | None = None
 ) -> Site:
     """A site over a folder."""
-    return Site(network.node(), "lab", "home", Shelf([folder], lambda _: None), environment, log_path)
+    return Site(network.node(), "lab", "home", Shelf([folder], lambda _: None), ProcessSettings(environment, log_path))
 
 
 def ask(network: Network, key: str, payload: bytes = b"") -> Replies:
