@@ -5,6 +5,8 @@ is the wanted one or equivalent to it, *plug-in* if it lies below it, *subsumes*
 third. `likeness` tells within a degree how far apart they are: of all classes above either of them, themselves
 included, the share that is above both (semantic cotopy, Maedche and Staab 2002; it is the extended Jaccard coefficient
 of their unfolded concepts in OWLS-MX). Each degree has a band of its own: no overlap comes before a subsumption.
+
+Near misses are ranked by this. Whether an output feeds an input does not depend on it: that is `Hierarchy.pairs`.
 """
 
 from __future__ import annotations
