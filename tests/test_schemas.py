@@ -16,8 +16,9 @@ from referencing import Registry, Resource
 
 from docs import json_schemas
 from selfconf import Ecology, library
-from selfconf.cli import run, status
+from selfconf.cli import status
 from selfconf.cli.main import COMMANDS, main
+from selfconf.cli.run_lines import json_lines
 from selfconf.configurator import Phase
 from selfconf.configurator.events import Call
 from selfconf.model import run_event
@@ -370,7 +371,7 @@ def test_every_event_of_a_run_keeps_to_the_schema(act: str, outcomes: dict[str, 
 
 def test_a_line_of_a_run_is_the_body_of_its_event(capsys: pytest.CaptureFixture[str]) -> None:
     event = run_event.EcologyAsked(time=2.0)
-    run.json_lines(event)
+    json_lines(event)
     assert json.loads(capsys.readouterr().out) == event_body(event)
 
 

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
-import queue
 import sys
-import threading
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from selfconf.cli.options import (
     add_budget_arguments,
@@ -28,8 +25,8 @@ from selfconf.cli.options import (
     one_ecology,
     task_of,
 )
-from selfconf.cli.run_lines import TextLines
-from selfconf.cli.terminal import complain, silence
+from selfconf.cli.run_lines import LinePrinter, TextLines, json_lines
+from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, NetworkError, reason
 
 if TYPE_CHECKING:
@@ -37,7 +34,6 @@ if TYPE_CHECKING:
     from selfconf.api.local_site import SiteProcess
     from selfconf.api.run import Run
     from selfconf.api.task import TaskSpecification
-    from selfconf.model.run_event import RunEvent
     from selfconf.model.term import IRI
     from selfconf.rdf.advertisements import Advertisement
 
@@ -276,48 +272,3 @@ def _explain(running: Run, task: TaskSpecification, told: Collection[IRI]) -> No
         )
     if any(not loss.busy for loss in losses):
         complain("run again when what is lost can act (start it if it ended), or run with --wait, which goes on then")
-
-
-class LinePrinter:
-    """Reports events on a thread of its own: a terminal that is held must not hold up the task."""
-
-    END = 2.0
-    """Seconds for which the lines that are left are waited for at the end."""
-
-    def __init__(self, report: Callable[[RunEvent], None], stream: TextIO, broken: Callable[[], None]) -> None:
-        """The report of an event is written to the stream; `broken` is called when that cannot be."""
-        self._report, self._stream, self._broken = report, stream, broken
-        self.trouble: OSError | None = None
-        """Why a line could not be written; None also where only the reader of the lines has gone."""
-        self._events: queue.SimpleQueue[RunEvent | None] = queue.SimpleQueue()
-        self._thread = threading.Thread(target=self._print, daemon=True, name="lines")
-        self._thread.start()
-
-    def put(self, event: RunEvent) -> None:
-        """Report an event, soon."""
-        self._events.put(event)
-
-    def end(self) -> None:
-        """Report what is left, unless that takes too long."""
-        self._events.put(None)
-        self._thread.join(self.END)
-
-    def _print(self) -> None:
-        while (event := self._events.get()) is not None:
-            try:
-                self._report(event)
-            except OSError as error:  # the reader of the lines is gone, or the disk is full: end rather than run unseen
-                silence(self._stream)
-                if isinstance(error, BrokenPipeError):  # the reader that has gone may have read both
-                    silence(sys.stderr)
-                else:
-                    self.trouble = error
-                self._broken()
-                return
-
-
-def json_lines(event: RunEvent) -> None:
-    """Reports an event to programs: a JSON object on a line of stdout. Raises OSError if it cannot be written."""
-    from selfconf.render.run_events import event_body
-
-    print(json.dumps(event_body(event)), flush=True)

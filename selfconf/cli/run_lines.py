@@ -1,11 +1,19 @@
-"""What `selfconf run` tells people: a line on stderr for each event, and nothing twice."""
+"""The lines of `selfconf run`: for people on stderr, one for each event and nothing twice; for programs JSON on stdout.
+
+They are printed by a thread of their own.
+"""
 
 from __future__ import annotations
 
+import json
+import queue
 import sys
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
+
+from selfconf.cli.terminal import silence
 
 if TYPE_CHECKING:
     from selfconf.api.task import TaskSpecification
@@ -99,3 +107,48 @@ class TextLines:
             yield f"{event.time - self._began:9.3f} s  {said}"
         if hint:
             yield f"{'':11}  {hint}"
+
+
+class LinePrinter:
+    """Reports events on a thread of its own: a terminal that is held must not hold up the task."""
+
+    END = 2.0
+    """Seconds for which the lines that are left are waited for at the end."""
+
+    def __init__(self, report: Callable[[RunEvent], None], stream: TextIO, broken: Callable[[], None]) -> None:
+        """The report of an event is written to the stream; `broken` is called when that cannot be."""
+        self._report, self._stream, self._broken = report, stream, broken
+        self.trouble: OSError | None = None
+        """Why a line could not be written; None also where only the reader of the lines has gone."""
+        self._events: queue.SimpleQueue[RunEvent | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._print, daemon=True, name="lines")
+        self._thread.start()
+
+    def put(self, event: RunEvent) -> None:
+        """Report an event, soon."""
+        self._events.put(event)
+
+    def end(self) -> None:
+        """Report what is left, unless that takes too long."""
+        self._events.put(None)
+        self._thread.join(self.END)
+
+    def _print(self) -> None:
+        while (event := self._events.get()) is not None:
+            try:
+                self._report(event)
+            except OSError as error:  # the reader of the lines is gone, or the disk is full: end rather than run unseen
+                silence(self._stream)
+                if isinstance(error, BrokenPipeError):  # the reader that has gone may have read both
+                    silence(sys.stderr)
+                else:
+                    self.trouble = error
+                self._broken()
+                return
+
+
+def json_lines(event: RunEvent) -> None:
+    """Reports an event to programs: a JSON object on a line of stdout. Raises OSError if it cannot be written."""
+    from selfconf.render.run_events import event_body
+
+    print(json.dumps(event_body(event)), flush=True)

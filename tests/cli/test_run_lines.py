@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +11,8 @@ from pathlib import Path
 import pytest
 
 import selfconf as sc
-from selfconf.cli.run_lines import TextLines
+from selfconf.cli import run_lines
+from selfconf.cli.run_lines import LinePrinter, TextLines
 from selfconf.model.configuration import Assignment, Configuration
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.run_event import (
@@ -76,3 +79,35 @@ def test_a_failure_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
 def test_what_is_out_of_control_at_the_end_is_named(capsys: pytest.CaptureFixture[str], end: RunEvent) -> None:
     lines = told(capsys, [*LOOK[:3], end])
     assert "  out of control: <urn:c:screen> was turned off and has not obeyed" in lines
+
+
+def test_all_events_are_reported_in_order_before_the_end() -> None:
+    reported: list[RunEvent] = []
+    printer = LinePrinter(reported.append, sys.stderr, lambda: None)
+    for event in LOOK:
+        printer.put(event)
+    printer.end()
+    assert (reported, printer.trouble) == (LOOK, None)
+
+
+@pytest.mark.parametrize(
+    "trouble", [OSError(errno.ENOSPC, "full"), BrokenPipeError()], ids=["full disk", "gone reader"]
+)
+def test_lines_that_cannot_be_written_end_the_run_and_a_reader_that_has_gone_is_no_trouble(
+    trouble: OSError, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    silenced: list[object] = []
+    broken: list[bool] = []
+    monkeypatch.setattr(run_lines, "silence", silenced.append)
+
+    def report(event: RunEvent) -> None:
+        raise trouble
+
+    printer = LinePrinter(report, sys.stdout, lambda: broken.append(True))
+    printer.put(LOOK[0])
+    printer.put(LOOK[1])
+    printer.end()
+    gone = isinstance(trouble, BrokenPipeError)
+    assert broken == [True]
+    assert silenced == [sys.stdout, *[sys.stderr] * gone]
+    assert printer.trouble is (None if gone else trouble)
