@@ -7,10 +7,12 @@
 2. Matching fails: Hall's set of roles.
 3. Groups of options that exclude each other are fewer than the slots that draw on them: these roles, and the needs from
    which the groups follow.
-4. Otherwise the clause-learning engine names assumptions that cannot hold together (an unsatisfiable core), again and
+4. Needs of which no component supplies two have fewer slots to supply them than they are: these needs, and the roles
+   whose components cannot do without.
+5. Otherwise the clause-learning engine names assumptions that cannot hold together (an unsatisfiable core), again and
    again with one of them left out, until each is needed.
 
-What else 1 to 3 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component
+What else 1 to 4 give is made irreducible by QuickXplain (Junker, AAAI 2004), unless Hall's set lacks one component
 only: then the rest is possible without any one of its roles. So is the set of all constraints where there is no such
 engine: a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains of n.
 Each is decided on a subproblem with only these constraints in force, which is small when they are few.
@@ -29,11 +31,14 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines import (
     ClauseSolver,
     HallSet,
+    Undersupply,
+    counted_needs,
     exclusive_groups,
     first_solution,
     hall_set,
     smallest_core,
     solver_available,
+    supplied,
 )
 from selfconf.search.reduction import (
     Constraint,
@@ -70,6 +75,8 @@ class FeasibilityOracle:
         self._size = sum(len(kind.needs) + len(kind.supports) for kind in given.kinds())
         self.complete = True
         """False once a question was left open: then what remains may be reducible."""
+        self.single = False
+        """Whether needs are counted that only roles of one slot each may supply."""
 
     def feasible(self, constraints: Iterable[Constraint]) -> bool | Undecided:
         """Return whether constraints can hold together, all others being dropped."""
@@ -80,6 +87,8 @@ class FeasibilityOracle:
         self.readings.spend(self._size)
         part = subproblem(self.given, wanted)
         if part.wiped_out() is not None or (distinct and self._hall_set(part, wanted)):
+            return False
+        if isinstance(supplied(part, counted_needs(part, self.single)), Undersupply):
             return False
         aided = solver_available()
         self.budget.spend(len(wanted) + sum(map(len, part.options)))
@@ -150,9 +159,21 @@ def core(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
         # What arc consistency removed before may have needed an input that a role outside feeds.
         if oracle.feasible(together) is False:
             return oracle.irreducible(together)
+    for oracle.single in (False, True):
+        short = supplied(consistent_part, counted_needs(consistent_part, oracle.single))
+        if isinstance(short, Undersupply):
+            # As above, other needs may have had a part in this; then all constraints are looked at.
+            together = (*filter(_is_played, all_of(given)), *map(Fed, sorted(short.needs)))
+            if oracle.feasible(together) is False:
+                return oracle.irreducible(together)
+    oracle.single = False
     if not solver_available():
         return oracle.irreducible(all_of(given))
     return _core_by_deletion(oracle)
+
+
+def _is_played(constraint: Constraint) -> bool:
+    return isinstance(constraint, Played)
 
 
 def _among(given: ReducedProblem, roles: Collection[int]) -> tuple[Constraint, ...]:

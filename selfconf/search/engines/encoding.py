@@ -14,6 +14,10 @@ issue, and not about candidates one by one.
 which that follows; and what counting the groups has proved is added. With patience, counting may be left, to be gone on
 with (`Encoding.count`) when the clauses turn out to be hard without.
 
+*Limits.* Of the options that supply none of some needs, though they fill a slot for these, no more play than there are
+slots to spare (`need_counting`): a bound, left out with guards as well. Needs that only roles of one slot each may
+supply are counted when the clauses turn out to be hard.
+
 *Order.* Where only the least solution is asked for, or any, interchangeable roles are played in order (`symmetry`).
 
 *Guards.* Each constraint may have a literal that puts it in force, to be assumed: the solver then names assumptions
@@ -24,13 +28,14 @@ constraints in force never make less possible. There are no groups then, as each
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.search.engines.exclusion import ExclusiveGroups, exclusive_groups
+from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.symmetry import interchangeable
-from selfconf.search.reduction import Constraint, Distinct, Fed, Played, ReducedProblem, Shared
+from selfconf.search.reduction import Constraint, Distinct, Fed, Limit, Played, ReducedProblem, Shared
 
 
 class AtMost(NamedTuple):
@@ -84,6 +89,8 @@ class Encoding:
         self._needs(groups.stated)
         self._values()
         self._groups(groups)
+        if not guarded:
+            self._limits(reduced.limits)
         if ordered:
             for first, second in interchangeable(reduced):
                 self._ascending(self.plays[first], self.plays[second])
@@ -243,12 +250,43 @@ class Encoding:
             before = reached
 
     def count(self) -> list[list[int]]:
-        """Add what follows from counting groups that have not been counted yet, and return it."""
+        """Add what follows from counting groups and needs that have not been counted yet, and return the clauses."""
         before, after = len(self.statements), self._exclusive.all_counted()
         if after is not self._exclusive:
             self._exclusive = after
             self._counted(after)
+        self._count_needs()
         return [statement for statement in self.statements[before:] if isinstance(statement, list)]
+
+    def _count_needs(self) -> None:
+        """Add what follows from counting needs that roles of one slot may supply."""
+        counted = counted_needs(self.reduced, single=True)
+        left = supplied(self.reduced, counted)
+        if isinstance(left, Undersupply):
+            self.statements += [[self.literal()], [-self.top]]
+            return
+        for literals, options, kept in zip(self.plays, self.reduced.options, left.options, strict=True):
+            numbers = {option.number for option in kept} if len(kept) < len(options) else None
+            self.statements += [
+                [-literal]
+                for literal, option in zip(literals, options, strict=True)
+                if numbers is not None and option.number not in numbers
+            ]
+        self._limits(limits(self.reduced, counted))
+
+    def _limits(self, known: Iterable[Limit]) -> None:
+        """Write how many of some options may play."""
+        for limit in known:
+            some = [
+                literal
+                for role in sorted({role for role, _ in limit.options})
+                for literal, option in zip(self.plays[role], self.reduced.options[role], strict=True)
+                if (role, option.number) in limit.options
+            ]
+            if limit.most > 0:
+                self._at_most(some, limit.most)
+            else:
+                self.statements += [[-literal] for literal in some]
 
     def _groups(self, known: ExclusiveGroups) -> None:
         options = [literal for literals in self.plays for literal in literals]

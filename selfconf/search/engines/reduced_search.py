@@ -3,17 +3,19 @@
 The slots are filled in order, and each takes its options in order, so that the first solution met is the least. A
 partial solution is left (forward checking) as soon as a need of an option in it can no longer be supported: no option
 chosen supports it, and no slot left has an option that does; and, where roles share candidates, as soon as the slots
-left cannot all have a component of their own. There is no recursion: ten thousand roles are ten thousand slots deep.
+left cannot all have a component of their own; and, with needs that are counted (`need_counting`), as soon as there are
+fewer slots left for some of them than these are. There is no recursion: ten thousand roles are ten thousand slots deep.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.engines.matching import MaintainedMatching
+from selfconf.search.engines.need_counting import CountedNeeds
 from selfconf.search.reduction import Option, ReducedProblem
 
 OPTION_HEADROOM = 32
@@ -29,12 +31,16 @@ def first_solution(
     distinct: bool = True,
     matching: MaintainedMatching[IRI] | None = None,
     pace: float | None = None,
+    counted: Sequence[CountedNeeds] = (),
 ) -> list[Option] | Undecided | None:
     """Return the least solution, one option per slot; None if there is none; Undecided when the steps are used up.
 
     With a pace, it is undecided as soon as more steps were taken than that for each option of the slots reached.
     """
-    return next(ReducedSearch(reduced, distinct, matching).solutions(budget, pace), None)
+    search = (
+        CountingSearch(reduced, counted, distinct, matching) if counted else ReducedSearch(reduced, distinct, matching)
+    )
+    return next(search.solutions(budget, pace), None)
 
 
 class ReducedSearch:
@@ -156,3 +162,49 @@ class ReducedSearch:
             self.needed[need] -= 1
         for need in option.kind.supports:
             self.supports[need] -= 1
+
+
+class CountingSearch(ReducedSearch):
+    """A depth-first search that leaves as many slots as there are needs not supplied yet, of those that are counted."""
+
+    def __init__(
+        self,
+        reduced: ReducedProblem,
+        counted: Sequence[CountedNeeds],
+        distinct: bool = True,
+        matching: MaintainedMatching[IRI] | None = None,
+    ) -> None:
+        super().__init__(reduced, distinct, matching)
+        self.spare = [some.spare for some in counted]
+        """For each part of the needs how many slots may still be filled without supplying one more."""
+        self._part = {role: part for part, some in enumerate(counted) for role in some.slots}
+        self._counted = {need for some in counted for need in some.needs}
+        self._wasted: list[int | None] = []
+        """For each slot filled the part of the needs of which it supplies none that was not supplied before."""
+
+    def push(self, place: int, option: Option) -> bool:
+        """Put an option into a slot, unless no solution has it there beside the options chosen so far."""
+        if not super().push(place, option):
+            return False
+        part = self._part.get(option.kind.role)
+        if part is not None:
+            supports = self.supports
+            for need in option.kind.supports:
+                if supports[need] == 1 and need in self._counted:
+                    part = None
+                    break
+        if part is not None:
+            self.spare[part] -= 1
+        self._wasted.append(part)
+        if part is not None and self.spare[part] < 0:
+            self.pop()
+            return False
+        return True
+
+    def pop(self) -> None:
+        """Take the last option out again."""
+        if len(self._wasted) == len(self.chosen):  # else it was never counted
+            part = self._wasted.pop()
+            if part is not None:
+                self.spare[part] += 1
+        super().pop()

@@ -4,6 +4,7 @@
 * An `Option` is a candidate that a slot may take. It belongs to an `InterchangeabilityClass`, which its `signature`
   decides. A `Need` is a signal that an input must get; those of a problem are its `Needs`,
   and those of a `NeedScope` may be fed by the same links.
+* A `Limit` says of some options how many play at most.
 * `in_order` has the options of each role in the order of its candidates.
 * `assigned` gives the candidates for each role that chosen options stand for.
 * `with_recruits` is a problem whose recruits are options as well, those of one role more that has no slots, without a
@@ -36,6 +37,7 @@ from selfconf.search.reduction.recruit_options import (
 )
 from selfconf.search.reduction.reduced_problem import (
     InterchangeabilityClass,
+    Limit,
     Option,
     ReducedProblem,
     assigned,
@@ -50,6 +52,7 @@ __all__ = [
     "Fed",
     "InterchangeabilityClass",
     "LazyReduction",
+    "Limit",
     "Need",
     "NeedScope",
     "Needs",

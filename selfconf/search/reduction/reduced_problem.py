@@ -14,7 +14,7 @@ domain of the variable, and a need is a constraint between the slots of a role a
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Set
 from dataclasses import replace
 from operator import attrgetter
 from typing import NamedTuple
@@ -68,6 +68,13 @@ class Removal(NamedTuple):
     variable: int | None = None
 
 
+class Limit(NamedTuple):
+    """Options, by their roles and numbers, of which no more than a number play in any solution."""
+
+    options: Set[tuple[int, int]]
+    most: int
+
+
 @immutable
 class ReducedProblem:
     """Options for each role, the needs by number, and the removals by which arc consistency made the options fewer."""
@@ -79,6 +86,8 @@ class ReducedProblem:
     values: tuple[int, ...]
     """The values that each variable may have before any slot is filled, as a mask."""
     removals: tuple[Removal, ...] = ()
+    limits: tuple[Limit, ...] = ()
+    """What is known of all solutions beside."""
 
     def wiped_out(self) -> int | None:
         """Return the first role with fewer options than slots, if there is one: then there is no solution."""

@@ -40,12 +40,16 @@ from selfconf.search.engines import (
     CandidateSearch,
     HallSet,
     MaintainedMatching,
+    Undersupply,
     any_by_clauses,
+    counted_needs,
     exclusive_groups,
     first_solution,
     least_by_clauses,
+    limits,
     probed,
     solver_available,
+    supplied,
     unmatchable,
     value_cases,
 )
@@ -162,6 +166,17 @@ def least_of(
     chosen = first_solution(remaining, budget, matching=matching, pace=REDUCED_PACE)
     if not isinstance(chosen, Undecided) or budget.steps == 0:
         return chosen
+    counted = counted_needs(remaining)
+    if counted:
+        supplying = supplied(remaining, counted)
+        if isinstance(supplying, Undersupply):
+            return None
+        if supplying is not remaining:
+            return least_of(supplying, budget, by_clauses)
+        chosen = first_solution(remaining, budget, matching=matching, pace=REDUCED_PACE, counted=counted)
+        if not isinstance(chosen, Undecided) or budget.steps == 0:
+            return chosen
+        remaining = replace(remaining, limits=limits(remaining, counted))
     if matching is not None:
         # Only now, as it costs about as much as a matching, and an easy search needs none of it.
         excluded = unmatchable(remaining.slots, components)
@@ -183,7 +198,9 @@ def _by_clauses(given: ReducedProblem, budget: Budget, by_clauses: Engine) -> li
     components = given.components()
     shared = len(set[IRI]().union(*components)) < sum(map(len, components))
     matching = MaintainedMatching(given.slots, components) if shared else None
-    return None if exclusive_groups(given).impossible else first_solution(given, budget, matching=matching)
+    if exclusive_groups(given).impossible:
+        return None
+    return first_solution(given, budget, matching=matching, counted=counted_needs(given))
 
 
 def _least_of_cases(cases: list[ReducedProblem], budget: Budget, by_clauses: Engine) -> list[Option] | Undecided | None:
