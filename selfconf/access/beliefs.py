@@ -1,4 +1,7 @@
-"""Whose a component is that several sites advertise: what a person has said, kept beside the keys of a host."""
+"""Whose a component is that several sites advertise: what a person has said, kept beside the keys of a host.
+
+Where no person has said whose, it belongs to no site, but that on its own host a site goes on with its own.
+"""
 
 from __future__ import annotations
 
@@ -25,6 +28,28 @@ def believed(folder: Path) -> Mapping[IRI, str]:
     if not isinstance(said, dict) or not all(isinstance(site, str) for site in said.values()):
         raise AuthorError("is no object of components, each with the name of a site", file=str(path))
     return {IRI.unchecked(component): site for component, site in said.items()}
+
+
+def claims(
+    advertised: Mapping[str, frozenset[IRI]], decided: Mapping[IRI, str], here: str
+) -> tuple[dict[str, frozenset[IRI]], dict[IRI, list[str]]]:
+    """Return which components belong to each of some sites, of which one is `here`, and which are disputed by which.
+
+    `advertised` is what each site advertises, `decided` the site that is believed for a component.
+    """
+    claiming: dict[IRI, list[str]] = {}
+    for site, components in sorted(advertised.items()):
+        for component in components:
+            claiming.setdefault(component, []).append(site)
+    disputed = {c: sites for c, sites in claiming.items() if len(sites) > 1 and decided.get(c) not in sites}
+
+    def belongs(component: IRI, site: str) -> bool:
+        if component in disputed:
+            return site == here
+        return len(claiming[component]) == 1 or decided[component] == site
+
+    owned = {site: frozenset(c for c in some if belongs(c, site)) for site, some in advertised.items()}
+    return owned, disputed
 
 
 def believe(folder: Path, component: IRI, site: str) -> None:

@@ -15,7 +15,7 @@ import logging
 from collections.abc import Callable, Iterable, Mapping
 from typing import TypeGuard
 
-from selfconf.access.beliefs import believed
+from selfconf.access.beliefs import believed, claims
 from selfconf.access.certificates import Certificate
 from selfconf.access.expiry import CertificateWatch
 from selfconf.access.keys_folder import KeysFolder
@@ -259,28 +259,15 @@ class Doorkeeper:
         return rules_of(self._keys.ecology, self._name, processes, others, shown)
 
     def _undisputed(self, advertised: Mapping[str, frozenset[IRI]]) -> dict[str, frozenset[IRI]]:
-        """The components that each site speaks for."""
-        sites: dict[IRI, list[str]] = {}
-        for site, components in sorted(advertised.items()):
-            for component in components:
-                sites.setdefault(component, []).append(site)
-        decided = believed(self._folder.path)
-        disputed = {c: claim for c, claim in sites.items() if len(claim) > 1 and decided.get(c) not in claim}
+        """The components that each site speaks for; complains of those that have become disputed."""
+        owned, disputed = claims(advertised, believed(self._folder.path), here=self._name)
         for component in sorted(disputed.keys() - self._disputed):
             self._complain(
                 f"{component} is advertised by the sites {' and '.join(disputed[component])}; it belongs to none until"
                 f" you say to which: selfconf access --believe SITE {component}"
             )
         self._disputed = frozenset(disputed)
-        return {
-            site: frozenset(c for c in components if self._is_whose(c, site, sites[c], decided))
-            for site, components in advertised.items()
-        }
-
-    def _is_whose(self, component: IRI, site: str, claim: list[str], decided: Mapping[IRI, str]) -> bool:
-        if len(claim) == 1:
-            return True
-        return decided[component] == site if decided.get(component) in claim else site == self._name
+        return owned
 
     def _renew_rules(self) -> None:
         """Have the hub opened anew if who may do what has changed."""

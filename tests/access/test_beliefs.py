@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from selfconf.access.beliefs import FILE, believe, believed
+from selfconf.access.beliefs import FILE, believe, believed, claims
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
 
@@ -29,3 +30,23 @@ def test_what_cannot_be_read_is_named(content: str, tmp_path: Path) -> None:
 def test_what_cannot_be_written_is_named(tmp_path: Path) -> None:
     with pytest.raises(AuthorError, match="cannot be written"):
         believe(tmp_path / "nowhere", IRI("urn:lamp"), "attic")
+
+
+LAMP, BELL = IRI("urn:lamp"), IRI("urn:bell")
+
+
+@pytest.mark.parametrize(
+    ("decided", "owned", "disputed"),
+    [
+        ({}, {"attic": {LAMP, BELL}, "cellar": set()}, {LAMP: ["attic", "cellar"]}),
+        ({LAMP: "cellar"}, {"attic": {BELL}, "cellar": {LAMP}}, {}),
+        ({LAMP: "attic", BELL: "cellar"}, {"attic": {LAMP, BELL}, "cellar": set()}, {}),
+        ({LAMP: "garage"}, {"attic": {LAMP, BELL}, "cellar": set()}, {LAMP: ["attic", "cellar"]}),
+    ],
+    ids=["nothing is said", "it is the other's", "it is one's own", "it is that of a site without it"],
+)
+def test_of_two_sites_with_one_component_the_believed_one_has_it_or_on_its_own_host_each(
+    decided: Mapping[IRI, str], owned: Mapping[str, set[IRI]], disputed: Mapping[IRI, list[str]]
+) -> None:
+    advertised = {"attic": frozenset((LAMP, BELL)), "cellar": frozenset((LAMP,))}
+    assert claims(advertised, decided, here="attic") == (owned, disputed)
