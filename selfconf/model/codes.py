@@ -704,8 +704,9 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
-        "SC-L20", "A role that asks for no component feeds another, or is fed.",
-        "Components of a role with sc:minCount 0 join where they feed or are fed.",
+        "SC-L20", "A role that may stay unplayed feeds another, or is fed.",
+        "Components of a role with sc:minCount 0 join where they feed or are fed. A role that is joined to no other is"
+        " played by all that are eligible, up to its sc:maxCount: a sc:feeds was probably forgotten.",
         ":radio a sc:Template ; sc:roles ( :source :sink ) .\n"
         ":source a sc:Role ; sh:class rob:Tuner .\n:sink a sc:Role ; sh:class rob:Speaker ; sc:minCount 0 .",
         f"{_PAIR}\n:sink sc:minCount 0 .",

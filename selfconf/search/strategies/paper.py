@@ -39,6 +39,8 @@ def algorithm_1(problem: Problem, steps: int | None = None) -> Configuration | U
     """Return what Algorithm 1 returns, or None where that is FAIL; a step is a partial configuration."""
     if problem.valueless:
         return None  # a role that has to be played would set a parameter to nothing
+    if any(role.minimum > len(of) for role, of in zip(problem.roles, problem.candidates, strict=True)):
+        return None  # no configuration is complete; the slots of a sc:minCount of 18 digits would fill the memory
     slots = [position for position, role in enumerate(problem.roles) for _ in range(role.minimum)]
     queue: dict[Partial, None] = {tuple(None for _ in slots): None}
     taken = 0

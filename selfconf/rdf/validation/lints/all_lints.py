@@ -15,10 +15,10 @@ from selfconf.rdf.validation.lints.templates import (
     impossible_roles,
     queried_parameters,
     typed_roles,
+    unjoined_optional_roles,
     unlisted_parameters,
     unlisted_roles,
     unused_parameters,
-    useless_optional_roles,
 )
 from selfconf.rdf.validation.lints.terms import (
     literals_for_iris,
@@ -61,7 +61,7 @@ TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     impossible_roles,
     idle_loops,
     starving_inputs,
-    useless_optional_roles,
+    unjoined_optional_roles,
     incommensurable_units,
     unmet_shapes,
 )

@@ -28,16 +28,16 @@ def unlisted_roles(file: LintedFile) -> Iterator[Diagnostic]:
         yield at(file.positions, file.offset(role), "SC-L09", message)
 
 
-def useless_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
-    """Roles that ask for no component (`sc:minCount 0`) and that no interaction joins to another."""
+def unjoined_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
+    """Roles that may stay unplayed (`sc:minCount 0`) and that no interaction joins to another."""
     graph = file.graph
     feeding = {*graph.subjects(URIRef(SC.feeds)), *graph.objects(None, URIRef(SC["from"]))}
     fed = {*graph.objects(None, URIRef(SC.feeds)), *graph.objects(None, URIRef(SC.to))}
     for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - feeding - fed:
         for least in graph.objects(role, URIRef(SC.minCount)):
             if isinstance(least, Literal) and least.value == 0:
-                message = "This role asks for no component, feeds none and is fed by none, so it has no effect."
-                hint = "Say which role it feeds (sc:feeds), or ask for a component."
+                message = "This role may stay unplayed, and what plays it feeds no role and is fed by none."
+                hint = "Say which role it feeds (sc:feeds), unless its components act by themselves."
                 offset = file.positions.triples[role, URIRef(SC.minCount), least].predicate
                 yield at(file.positions, offset, "SC-L20", message, hint=hint)
 
