@@ -212,8 +212,8 @@ def test_a_notebook_shows_a_configuration_as_a_diagram_and_a_refusal_as_text(
 
 HOSTILE = """@prefix sc: <https://w3id.org/selfconf#> .
 @prefix : <x:> .
-<x:a&b'c> a sc:Component, :K ; sc:hasOutput [ sc:name "<script>\\u001b[2J\\u202e" ; sc:signalType :S ] ; :p "no" .
-<x:d> a sc:Component, :L ; sc:hasInput [ sc:name "a\\nb" ; sc:signalType :S ] ; :p "<b>\\u001b]0;x\\u0007" .
+<x:a&b'c> a sc:Component, :K ; sc:hasOutput [ sc:name "<script>" ; sc:signalType :S ] ; :p "\\u001b[2J\\u202e" .
+<x:d> a sc:Component, :L ; sc:hasInput [ sc:name "a" ; sc:signalType :S ] ; :p "<b>\\u001b]0;x\\u0007" .
 """
 TASK = """@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <x:> .
 :t a sc:Template ; sc:roles ( :r :s ) .
