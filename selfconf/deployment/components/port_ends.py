@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from selfconf.configurator import Caller, Callers
@@ -73,7 +74,9 @@ class PortEnds:
         """A wire with the longest pause that the output's advertisement promises."""
         found = self._ecology.discovery.found.get(wire.component)
         output = found.advertisement.profile.output(wire.output) if found else None
-        return Wire(wire.component, wire.output, 1 / output.rate) if output and output.rate else wire
+        period = 1 / output.rate if output and output.rate else math.inf
+        # A rate such as 1e-310 Hz promises nothing that a float can hold: the consumer would be lost by refusing it.
+        return Wire(wire.component, wire.output, period) if 0 < period < math.inf else wire
 
     def callers(self, connected: Callers) -> dict[str, tuple[IRI, ...]]:
         """The components behind those that may call each operation."""

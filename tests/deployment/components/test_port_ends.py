@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from selfconf.configurator import Caller
 from selfconf.deployment import Outside
 from selfconf.deployment.components import PortEnds
@@ -27,8 +29,9 @@ def test_the_output_of_a_component_is_its_own_end(lab: Lab) -> None:
     assert found.callers({"show()": (Caller(CAMERA, "show()"),)}) == {"show()": (CAMERA,)}
 
 
-def test_a_promised_rate_is_the_longest_pause_of_a_wire(tmp_path: Path) -> None:
-    rate = "sc:rate [ sc:value 4 ; sc:unit unit:HZ ] ;"
+@pytest.mark.parametrize(("value", "period"), [("4", 0.25), ("1e-310", None)])
+def test_a_promised_rate_is_the_longest_pause_of_a_wire(tmp_path: Path, value: str, period: float | None) -> None:
+    rate = f"sc:rate [ sc:value {value} ; sc:unit unit:HZ ] ;"
     rated = ADVERTISEMENTS["tracker"].replace('sc:name "pose" ;', f'sc:name "pose" ; {rate}')
     lab = Lab(tmp_path, advertised={**ADVERTISEMENTS, "tracker": rated})
     lab.navigation()
@@ -36,7 +39,7 @@ def test_a_promised_rate_is_the_longest_pause_of_a_wire(tmp_path: Path) -> None:
     assert lab.running(agent)
     tracker, odometry = iri("person-tracker"), iri("absolute-odometry")
     found = PortEnds(agent.ecology, None).wires({"in": (Wire(tracker, "pose"), Wire(odometry, "pose"))})
-    assert found == {"in": (Wire(tracker, "pose", 0.25), Wire(odometry, "pose"))}
+    assert found == {"in": (Wire(tracker, "pose", period), Wire(odometry, "pose"))}
 
 
 def test_what_stands_behind_a_composite_is_in_its_place(lab: Lab) -> None:
