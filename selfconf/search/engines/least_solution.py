@@ -161,7 +161,8 @@ class _Descent:
         self.beside.append(stack.enter_context(Rival(encoding, self.slots, self.least)))
         if crowding is not None:
             self.advance(first, TWO_AT_A_TIME)
-            crowding.begin(first.clauses.interrupt)
+            if not self.finished:
+                crowding.begin(first.clauses.interrupt)
         self.advance(first, None)
 
     def _take_turns(self, first: Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack) -> None:

@@ -6,8 +6,9 @@ inputs can be fed at all, as who issues the licences does: with each of its opti
 and each part may be too few. Clause learning refutes such a choice in exponential time, counting by cases.
 
 *What is kept.* This is singleton consistency (Debruyne and Bessiere, IJCAI 1997) with arc consistency and Hall's
-condition: an option is removed if, with no other one in its slot, a role has no option left, or some slots have fewer
-components than they need. Such an option is in no solution, so that every solution stays, and with them the least.
+condition, of components and of needs that are counted (`need_counting`): an option is removed if, with no other one in
+its slot, a role has no option left, some slots have fewer components than they need, or some needs fewer slots. Such an
+option is in no solution, so that every solution stays, and with them the least.
 
 *Cost.* A pass over all needs and supports for each option of a role that others need, while there are few of these.
 """
@@ -18,6 +19,7 @@ from collections import Counter
 from dataclasses import replace
 
 from selfconf.search.engines.matching import hall_set
+from selfconf.search.engines.need_counting import Undersupply, counted_needs, supplied
 from selfconf.search.reduction import Option, ReducedProblem, pruned
 
 MOST_PROBED = 20_000
@@ -46,7 +48,11 @@ def probed(given: ReducedProblem) -> ReducedProblem:
 def _fits(given: ReducedProblem) -> bool:
     """Return whether arc consistency leaves each role options, and all slots enough components."""
     left = pruned(given)
-    return left.wiped_out() is None and hall_set(left.slots, left.components()) is None
+    return (
+        left.wiped_out() is None
+        and hall_set(left.slots, left.components()) is None
+        and not isinstance(supplied(left, counted_needs(left)), Undersupply)
+    )
 
 
 def _with_only(given: ReducedProblem, role: int, options: tuple[Option, ...]) -> ReducedProblem:

@@ -28,6 +28,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import reduce
+from operator import or_
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate
@@ -55,7 +57,7 @@ from selfconf.search.engines import (
 )
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, pruned, reduced
+from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, in_order, pruned, reduced
 
 Engine = Callable[[ReducedProblem, Budget], list[Option] | Undecided | None]
 
@@ -204,17 +206,45 @@ def _by_clauses(given: ReducedProblem, budget: Budget, by_clauses: Engine) -> li
 
 
 def _least_of_cases(cases: list[ReducedProblem], budget: Budget, by_clauses: Engine) -> list[Option] | Undecided | None:
-    """Return the least solution of a problem, given all its cases by the values of free parameters."""
+    """Return the least solution of a problem, given all its cases by the values of free parameters.
+
+    Cases that only clause learning decides are decided together: what it learns in one of them it knows in the others,
+    and where one has a solution, of the others only lesser ones matter.
+    """
     found: list[list[Option]] = []
+    left: list[ReducedProblem] = []
     for case in cases:
-        chosen = least_of(case, budget, by_clauses)
-        if isinstance(chosen, Undecided):
-            return chosen
-        if chosen is not None:
+        chosen = least_of(case, budget, _left_open if solver_available() else by_clauses)
+        if chosen is not None and not isinstance(chosen, Undecided):
             found.append(chosen)
             if by_clauses is any_by_clauses:
-                break
+                return chosen
+        elif chosen is not None:
+            left.append(case)
+            if budget.steps == 0 or not solver_available():
+                return chosen
+    if left:
+        several = len(left) > 1
+        chosen = by_clauses(_together(left), budget) if several else least_of(left[0], budget, by_clauses)
+        if isinstance(chosen, Undecided):
+            return chosen
+        found += [] if chosen is None else [chosen]
     return min(found, key=_numbers, default=None)
+
+
+def _left_open(_: ReducedProblem, __: Budget) -> Undecided:
+    """Stand in for clause learning where that is to come later."""
+    return Undecided(0)
+
+
+def _together(cases: list[ReducedProblem]) -> ReducedProblem:
+    """Return a problem that has all solutions of some of its cases."""
+    merged = [
+        {option.number: option for case in cases for option in case.options[role]}
+        for role in range(len(cases[0].options))
+    ]
+    values = tuple(reduce(or_, some) for some in zip(*(case.values for case in cases), strict=True))
+    return in_order(replace(cases[0], options=tuple(tuple(some.values()) for some in merged), values=values, limits=()))
 
 
 def _numbers(chosen: list[Option]) -> list[int]:

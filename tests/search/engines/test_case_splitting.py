@@ -18,6 +18,7 @@ from selfconf.search.engines import any_by_clauses, case_splitting, hall_set, le
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
 from selfconf.search.strategies import first, solution
+from tests.search.comparison import numbers
 from tests.search.oracle import World
 from tests.search.worlds import agreement, iri, problems, rivalries
 
@@ -68,13 +69,13 @@ def test_the_least_solution_of_all_is_that_of_some_case(problem: Problem) -> Non
 
 def by_hand(problem: Problem) -> list[list[int]] | None:
     """The least solution of a problem of roles for one component each, by trying all."""
-    for numbers in product(*(range(len(some)) for some in problem.candidates)):
-        players = [some[k] for some, k in zip(problem.candidates, numbers, strict=True)]
+    for places in product(*(range(len(some)) for some in problem.candidates)):
+        players = [some[k] for some, k in zip(problem.candidates, places, strict=True)]
         agreed = [ANY_VALUE] * len(problem.variables)
         for one in players:
             agreed = [left & mask for left, mask in zip(agreed, one.admits, strict=True)]
         if len({one.profile.component for one in players}) == len(players) and all(agreed):
-            return [[number] for number in numbers]
+            return [[place] for place in places]
     return None
 
 
@@ -88,8 +89,45 @@ def test_roles_that_draw_on_one_pool_get_the_least_solution(
     problem = depots(4, 1, 9, 3, 0.5, seed, parameters)
     found, expected = solution(LazyReduction(problem), Budget(None)), by_hand(problem)
     assert not isinstance(found, Undecided)
-    numbers = found and [[problem.candidates[role].index(one) for one in some] for role, some in enumerate(found)]
-    assert numbers == expected
+    places = found and [[problem.candidates[role].index(one) for one in some] for role, some in enumerate(found)]
+    assert places == expected
+
+
+def bound_depots(seed: int) -> Problem:
+    """As `depots`, where each person also wants a signal of a role beside the own one, and issues two."""
+    rng = random.Random(seed)
+    variable = Variable(iri("site"), tuple(iri(f"s{k}") for k in range(4)))
+    pool = [
+        Candidate(
+            profile(f"p{k:03}", [rng.randrange(4)], rng.sample(range(4), 2)),
+            (ANY_VALUE if rng.random() < 0.2 else sum(1 << v for v in rng.sample(range(4), 2)),),
+        )
+        for k in range(20)
+    ]
+    edges = sorted({(a, b) for b in range(5) for a in rng.sample(range(5), 2) if a != b})
+    return counted([[one for one in pool if rng.random() < 0.5] for _ in range(5)], [2] * 5, edges, (variable,))
+
+
+def test_cases_that_clause_learning_has_to_decide_are_decided_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(first, "CANDIDATE_STEPS", 0)
+    monkeypatch.setattr(first, "REDUCED_PACE", 0.0)
+    merged: list[list[ReducedProblem]] = []
+    together = first._together
+
+    def noted(cases: list[ReducedProblem]) -> ReducedProblem:
+        merged.append(cases)
+        return together(cases)
+
+    monkeypatch.setattr(first, "_together", noted)
+    for seed in range(40):
+        problem = bound_depots(seed)
+        found = solution(LazyReduction(problem), Budget(None))
+        assert not isinstance(found, Undecided)
+        undivided = numbers(least_by_clauses(pruned(reduced(problem)), Budget(None)))
+        assert undivided == (
+            found and [problem.candidates[role].index(one) for role, some in enumerate(found) for one in some]
+        )
+    assert len(merged) > 3
 
 
 @pytest.mark.parametrize("seed", range(4))
