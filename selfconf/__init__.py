@@ -16,9 +16,7 @@ of what they answer with, as `PartitionTable` and the events of a run. A compone
 tried without a network by `selfconf.testing`.
 """
 
-from typing import TYPE_CHECKING
-
-from selfconf.late_names import late_names
+from selfconf.late_names import TYPE_CHECKING, late_names
 
 if TYPE_CHECKING:
     from selfconf.api.answer import configure

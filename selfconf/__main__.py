@@ -16,7 +16,10 @@ def main() -> int:
         from selfconf.cli.main import main as run
 
         return run()
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, RuntimeError) as error:
+        # Until 3.12 Python makes a RuntimeError of what interrupts it while it names the attributes of a new class.
+        if not isinstance(error, KeyboardInterrupt) and not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
         print("selfconf: interrupted", file=sys.stderr)
         return 130
     finally:

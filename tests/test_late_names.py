@@ -5,8 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 
 import pytest
+
+from selfconf.__main__ import main as command_line
+from selfconf.cli import main as program
+
+ROOT = Path(__file__).resolve().parents[1]
 
 
 @pytest.mark.parametrize(
@@ -29,3 +35,20 @@ def test_a_name_is_loaded_when_it_is_first_used_and_not_before(package: str, nam
 def test_a_name_that_a_package_has_not_is_an_attribute_error(package: str) -> None:
     with pytest.raises(AttributeError, match=f"^module '{package}' has no attribute 'nothing'$"):
         _ = import_module(package).nothing
+
+
+def test_a_command_is_there_to_be_interrupted_before_anything_large_is_loaded() -> None:
+    look = "import sys; before = set(sys.modules); import selfconf.__main__; print(*sorted(set(sys.modules) - before))"
+    loaded = subprocess.run([sys.executable, "-S", "-c", look], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert set(loaded.stdout.split()) <= {"__future__", "gc", "selfconf", "selfconf.__main__", "selfconf.late_names"}
+
+
+def test_what_interrupts_python_as_it_makes_a_class_is_no_traceback(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted() -> int:
+        raise RuntimeError("Error calling __set_name__") from KeyboardInterrupt()
+
+    monkeypatch.setattr(program, "main", interrupted)
+    assert command_line() == 130
+    assert capsys.readouterr().err == "selfconf: interrupted\n"
