@@ -320,7 +320,9 @@ class InputSubscription:
 
         That is the life that has issued it, or another signal, and so on.
         """
-        if self._ended or self.lost or self._shows(self._life):
+        waiting = self._queue.newest()  # the code may be busy, as in `started`
+        stamp = self._stamp_of(waiting) if waiting is not None else None
+        if self._ended or self.lost or self._shows(self._life if stamp is None else stamp.life):
             return
         if self._heard_at > heard:
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))

@@ -51,6 +51,11 @@ class SignalQueue:
             self._bytes -= _size(sample)
             return sample
 
+    def newest(self) -> Sample | None:
+        """The newest signal that waits; None if there is none."""
+        with self._lock:
+            return self._waiting[-1] if self._waiting else None
+
     def keep(self, newest: int) -> None:
         """Forget all but so many of the newest signals; these do not count as dropped."""
         with self._lock:

@@ -32,6 +32,9 @@ BROKEN_ONCE = {
     "what stood by acts already for another task": Recipe(316, LATCHED),
     "an actuator loses sight of what feeds it for a moment": Recipe(823, LATCHED),
     "what feeds an actuator is out of sight, and in sight again at once": Recipe(2094, LATCHED, busy=True),
+    "a signal waits for code that starts, and its source is seen late": Recipe(
+        12007301, LATCHED, busy=True, large=True
+    ),
     "an actuator that was cut off is reserved anew, and its source acts for another task": Recipe(
         9554465, LATCHED, large=True
     ),

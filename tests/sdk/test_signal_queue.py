@@ -63,3 +63,12 @@ def test_what_is_said_of_a_signal_takes_room_as_well() -> None:
     for _ in range(3):
         queue.append(Sample("k", b"", bytes(EVENT_BYTES // 2)))
     assert (queue.dropped, len(queue)) == (1, 2)
+
+
+def test_the_newest_that_waits_is_seen_and_waits_on() -> None:
+    queue, _ = filled(None, 1, 2)
+    newest = queue.newest()
+    assert newest is not None
+    assert len(newest.payload) == 2
+    assert waiting(queue) == [1, 2]
+    assert queue.newest() is None
