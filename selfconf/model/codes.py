@@ -106,7 +106,7 @@ CODES: tuple[Code, ...] = (
         "SC-A01", "A component has an IRI.",
         "Other files and other sites speak of it by its IRI; a blank node has no name outside its file.",
         "[] a sc:Component, rob:Tuner .", f"{_TUNER} .",
-        ("ComponentIri",),
+        ("ComponentIri", "ComponentIriText"),
     ),
     Code(
         "SC-A02", "What has ports or parameters is a sc:Component.",

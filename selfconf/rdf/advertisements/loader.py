@@ -20,6 +20,7 @@ from typing import Any
 
 from selfconf.model.profile import Input, OperationalParameter, Output, Place, Ports, Profile, shared_ports
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.wording import is_one_line
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement, MalformedAdvertisement, about, property_order
@@ -284,6 +285,7 @@ def read_advertisements(
             and unlike
             and (not suspects or suspects.isdisjoint(said))
             and not subject.startswith(blank)
+            and (subject.isascii() or is_one_line(subject))
         ):
             found.append(LoadedAdvertisement(IRI.unchecked(subject[1:-1]), types, tuple(said), origin))
             said.clear()
@@ -330,6 +332,7 @@ def _plain(subject: str, statements: Collection[Statement], known: StatementTabl
     types = [statement.types for statement in statements if statement.slot is TYPE]
     return (
         not subject.startswith(f"<{SKOLEM}")
+        and is_one_line(subject)
         and len(types) == 1
         and len(types[0]) > 1
         and len({statement.slot for statement in statements}) == len(statements)

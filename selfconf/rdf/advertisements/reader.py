@@ -23,6 +23,7 @@ from selfconf.model.profile import (
     shared_ports,
 )
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.wording import is_one_line
 from selfconf.rdf.advertisements.accepted_shapes import ShapeNotAccepted, accepted_shape
 from selfconf.rdf.advertisements.advertisement import (
     Advertisement,
@@ -106,6 +107,9 @@ class _Reader:
     def profile(self) -> Profile | None:
         if not isinstance(self.component, IRI):
             self.problems.append("a component needs an IRI, so that others can speak of it")
+            return None
+        if not is_one_line(self.component):  # RFC 3987, section 4.1, forbids them, and messages hold no such names
+            self.problems.append("the IRI of a component has no characters that turn the direction of writing")
             return None
         statements = self.document.statements[self.component]
         types = self._types()

@@ -18,6 +18,7 @@ import pyoxigraph as ox
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.unit_dimension import meant_unit
+from selfconf.model.wording import is_one_line
 from selfconf.rdf.permitted_fields import COMPONENT, Field, Subject
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE
 
@@ -123,7 +124,7 @@ def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.
         and SC.template not in found.used  # a composite has that or a command
         and SC.accepts not in found.used  # a shape that says nothing is none
         and all(_harmless(properties) and advertisements.rated(properties) for properties in statements.values())
-        and all(advertisements.clear(component) for component in found.components)
+        and all(is_one_line(component) and advertisements.clear(component) for component in found.components)
         and _owned(statements)
         and _of_one_unit(statements)
     )

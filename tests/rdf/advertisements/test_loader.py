@@ -199,6 +199,15 @@ def test_a_component_that_is_a_blank_node_is_left_out_with_a_label_and_without()
         assert [one.problems for one in bad] == [("a component needs an IRI, so that others can speak of it",)]
 
 
+def test_a_component_whose_iri_turns_the_direction_of_writing_is_left_out() -> None:
+    others = " ".join(f"<urn:x:b{number}> {GOOD} ." for number in range(6))
+    good, bad = loader.read_advertisements(f"{PREFIXES} {others} <urn:x:b\u202e> {GOOD} .".encode(), "a.ttl")
+    assert len(good) == 6
+    assert [one.problems for one in bad] == [
+        ("the IRI of a component has no characters that turn the direction of writing",)
+    ]
+
+
 def test_oxigraph_writes_a_subject_as_the_fast_loader_expects_it() -> None:
     text = "<s:a> a <s:T> , <s:U> ; <s:p> 'x\ty ;\\n\\t' , [ <s:q> 1 ; <s:r> [ <s:q> 2 ] ] ."
     parser = ox.parse(text, format=ox.RdfFormat.TURTLE)
