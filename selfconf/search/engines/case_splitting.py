@@ -55,13 +55,18 @@ def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProbl
 
 
 def _values(given: ReducedProblem, variable: int) -> list[int]:
-    """Return masks of one value each that a variable may still have, in order; none if it may have any other value."""
-    common = given.values[variable]
+    """Return masks of one value each that a variable may still have, in order.
+
+    Where it may have a value that no option states, the last one stands for all of these.
+    """
+    common, stated = given.values[variable], 0
     for role in dict.fromkeys(given.slots):
-        masks = [option.kind.admits[variable] for option in given.options[role]]
+        masks = {option.kind.admits[variable] for option in given.options[role]}
+        stated = max(stated, *((mask if mask >= 0 else ~mask).bit_length() for mask in masks), 0)
         if ANY_VALUE not in masks:
             common &= reduce(or_, masks, 0)
-    return [1 << bit for bit in range(common.bit_length()) if common >> bit & 1] if common > 0 else []
+    width = common.bit_length() if common >= 0 else stated + 1 if stated else 0
+    return [1 << bit for bit in range(width) if common >> bit & 1]
 
 
 def _with_value(given: ReducedProblem, variable: int, value: int) -> ReducedProblem:

@@ -93,7 +93,7 @@ def test_roles_that_draw_on_one_pool_get_the_least_solution(
     assert places == expected
 
 
-def bound_depots(seed: int) -> Problem:
+def bound_depots(seed: int, roles: int = 5, asked: int = 2, people: int = 20) -> Problem:
     """As `depots`, where each person also wants a signal of a role beside the own one, and issues two."""
     rng = random.Random(seed)
     variable = Variable(iri("site"), tuple(iri(f"s{k}") for k in range(4)))
@@ -102,10 +102,12 @@ def bound_depots(seed: int) -> Problem:
             profile(f"p{k:03}", [rng.randrange(4)], rng.sample(range(4), 2)),
             (ANY_VALUE if rng.random() < 0.2 else sum(1 << v for v in rng.sample(range(4), 2)),),
         )
-        for k in range(20)
+        for k in range(people)
     ]
-    edges = sorted({(a, b) for b in range(5) for a in rng.sample(range(5), 2) if a != b})
-    return counted([[one for one in pool if rng.random() < 0.5] for _ in range(5)], [2] * 5, edges, (variable,))
+    edges = sorted({(a, b) for b in range(roles) for a in rng.sample(range(roles), 2) if a != b})
+    return counted(
+        [[one for one in pool if rng.random() < 0.5] for _ in range(roles)], [asked] * roles, edges, (variable,)
+    )
 
 
 def test_cases_that_clause_learning_has_to_decide_are_decided_together(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,10 +165,26 @@ def test_what_has_too_many_values_is_left_as_it_is(monkeypatch: pytest.MonkeyPat
     assert value_cases(before) is None
 
 
-def test_a_parameter_that_may_have_any_other_value_has_no_cases() -> None:
+def test_all_values_that_no_option_states_are_one_case() -> None:
     variable = Variable(iri("site"), (iri("s"), iri("t")))
     pool = [Candidate(profile(f"p{number}"), (ANY_VALUE if number else ~1,)) for number in range(4)]
+    cases = value_cases(pruned(reduced(counted([pool, pool], [1, 1], [], (variable,)))))
+    assert cases
+    assert [case.values for case in cases] == [(1,), (2,)]
+    assert [len(case.options[0]) for case in cases] == [2, 3]
+
+
+def test_a_parameter_of_which_no_option_states_a_value_has_no_cases() -> None:
+    variable = Variable(iri("site"), (iri("s"), iri("t")))
+    pool = [Candidate(profile(f"p{number}"), (ANY_VALUE,)) for number in range(4)]
     assert value_cases(pruned(reduced(counted([pool, pool], [1, 1], [], (variable,))))) is None
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_persons_who_work_anywhere_do_not_hide_the_sites_that_leave_too_few(seed: int) -> None:
+    """One instance of this kind was undecided after half a minute."""
+    problem = bound_depots(seed, roles=8, asked=3, people=60)
+    assert not isinstance(solution(LazyReduction(problem), Budget(20_000)), Undecided)
 
 
 def test_no_case_is_left_out_that_has_a_solution() -> None:
