@@ -18,6 +18,7 @@ from selfconf.model.profile import (
 )
 from selfconf.model.template import Interaction, Role, TemplatePort
 from selfconf.model.term import IRI, STRING, Literal, Term
+from selfconf.rdf.permitted_fields import NAME_TEXT
 from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
@@ -127,8 +128,9 @@ class _PortReader(DocumentReader):
                         raise self.mistake(misplaced(value, predicate), node, predicate, value)
                 what = f"a sc:{link.short} of the template {worded(template)}"
                 name = self.only(node, SC.name, f"{what} has exactly one sc:name, a string")
-                if not isinstance(name, Literal) or not name.lexical or name.lexical.endswith(CALL_MARK):
-                    raise self.mistake(f"{what} has exactly one sc:name, a string", node, SC.name, name)
+                if not isinstance(name, Literal) or not NAME_TEXT.allows(name):
+                    problem = f"{what} has exactly one sc:name, {NAME_TEXT.words}"
+                    raise self.mistake(problem, node, SC.name, name)
                 if name.lexical in names:
                     problem = f"{what} is called {name.lexical!r}, and another one as well"
                     raise self.mistake(problem, template, link, node)

@@ -131,6 +131,8 @@ def test_operations_and_what_is_said_of_units_are_read_as_a_component_has_them()
         ("sc:hasOutput [ sc:signalType :Image ; sc:of :eye ]", "has exactly one sc:name"),
         ('sc:hasOutput [ sc:name "" ; sc:signalType :Image ; sc:of :eye ]', "has exactly one sc:name"),
         ('sc:hasOutput [ sc:name "a()" ; sc:signalType :Image ; sc:of :eye ]', "has exactly one sc:name"),
+        ('sc:hasOutput [ sc:name "a\\tb" ; sc:signalType :Image ; sc:of :eye ]', "has exactly one sc:name"),
+        ('sc:hasOutput [ sc:name "bild"@de ; sc:signalType :Image ; sc:of :eye ]', "has exactly one sc:name, a string"),
         ('sc:hasOutput [ sc:name "a" ; sc:signalType :Image ]', "is that of exactly one role, sc:of"),
         ('sc:hasOutput [ sc:name "a" ; sc:signalType :Image ; sc:of :ear ]', "which is no role of the template"),
         ('sc:hasOutput [ sc:name "a" ; sc:of :eye ]', "has signal types, which are IRIs"),
