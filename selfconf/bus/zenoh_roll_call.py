@@ -28,7 +28,7 @@ from selfconf.bus.reader_threads import ReaderThreads
 from selfconf.bus.zenoh_channels import READ_TOGETHER, at_hand, may_be_many, open_channel, read_together
 
 MOST_DOUBTFUL = 1000
-"""How many lives are noted as doubtful at most."""
+"""How many lives are noted as doubtful at most; then each that comes drives out the oldest one."""
 SECOND_ANSWER = 0.05
 """Seconds after which a doubtful life is called again that has not answered: until a watch that begins has received
 all, the router answers nothing."""
@@ -55,8 +55,8 @@ class RollCalls:
         self._reads_few = False
         self.knows_many = False
         """Whether a watch may have shown the session more lives than are read together."""
-        self.doubtful: set[str] = set()
-        """The lives of which a watch may show an end, or a beginning, that is none."""
+        self.doubtful: dict[str, None] = {}
+        """The lives of which a watch may show an end, or a beginning, that is none; the oldest first."""
 
     def call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
         """Ask which lives there are under a key; `done` hears of them on the thread of the loop."""
@@ -70,7 +70,8 @@ class RollCalls:
                 if alive:
                     confirmed()
                 else:  # the token that had gone astray has ended
-                    self.doubtful.discard(key)
+                    with self._lock:
+                        self.doubtful.pop(key, None)
             elif again:
                 self._loop.later(SECOND_ANSWER, lambda: self.call(key, CONFIRMATION, lambda last: heard(last, False)))
             elif not alive:
@@ -114,16 +115,23 @@ class RollCalls:
         self._loop.later(seconds, call)
 
     def _doubt(self, lives: Iterable[str]) -> None:
-        for life in lives:
-            if len(self.doubtful) < MOST_DOUBTFUL:
-                self.doubtful.add(life)
+        with self._lock:
+            for life in lives:
+                self.doubtful[life] = None
+                if len(self.doubtful) > MOST_DOUBTFUL:
+                    del self.doubtful[next(iter(self.doubtful))]
 
     def _read_in_turn(self, read: Callable[[], None]) -> None:
         with self._lock:
             self._few.append(read)
             begins, self._reads_few = not self._reads_few, True
         if begins:
-            self._readers.begin(self._read_few)
+            try:
+                self._readers.begin(self._read_few)
+            except RuntimeError:  # the next call tries again, and its thread reads this one as well
+                with self._lock:
+                    self._reads_few = False
+                raise
 
     def _read_few(self) -> None:
         while True:

@@ -282,7 +282,7 @@ def test_what_a_watch_tells_of_a_doubtful_life_is_asked_for_first(zenoh_router: 
         confirm(key, alive, confirmed)
 
     bus._roll_calls.confirm = noted  # type: ignore[method-assign]  # it does the same, and notes it
-    bus._roll_calls.doubtful.add(f"{top}/b/live/1")
+    bus._roll_calls.doubtful[f"{top}/b/live/1"] = None
     bus.watch(f"{top}/*/live/*", lambda key, alive: heard.append((key.removeprefix(f"{top}/"), alive)))
     undo_others, undo = one.announce(f"{top}/a/live/1"), one.announce(f"{top}/b/live/1")
     # A watch that has only just begun may show a life twice.

@@ -150,7 +150,7 @@ def test_a_life_that_an_answer_has_left_out_and_the_next_has_not_is_doubtful() -
     caller = Caller(Answer(["a/live/2"], too_soon=True), Answer(["a/live/2"], [LIFE]))
     caller.call()
     assert caller.hear() == [(LIFE, "a/live/2")]
-    assert caller.calls.doubtful == {LIFE}
+    assert list(caller.calls.doubtful) == [LIFE]
 
 
 @pytest.mark.parametrize(
@@ -168,17 +168,33 @@ def test_what_is_told_of_a_doubtful_life_is_believed_if_an_answer_confirms_it(
     answers: list[Answer], alive: bool, is_so: bool, stays_doubtful: bool
 ) -> None:
     caller, confirmed = Caller(*answers), list[bool]()
-    caller.calls.doubtful.add(LIFE)
+    caller.calls.doubtful[LIFE] = None
     caller.calls.confirm(LIFE, alive, lambda: confirmed.append(alive))
     for _ in range(30):
         caller.loop.poll(0.01)
     assert confirmed == [alive] * is_so
-    assert caller.calls.doubtful == ({LIFE} if stays_doubtful else set())
+    assert list(caller.calls.doubtful) == [LIFE] * stays_doubtful
 
 
-def test_so_many_lives_are_doubtful_at_most() -> None:
-    crowd = [f"{number:04}/live/1" for number in range(MOST_DOUBTFUL + 1)]
-    caller = Caller(Answer([], too_soon=True), Answer([], crowd))
+def test_so_many_lives_are_doubtful_at_most_and_these_are_the_last() -> None:
+    crowd = [f"{number:04}/live/1" for number in range(MOST_DOUBTFUL)]
+    caller = Caller(Answer([], too_soon=True), Answer([], crowd), Answer([], too_soon=True), Answer([], [LIFE]))
     caller.call("*/live/*")
     assert caller.hear() == [tuple(crowd)]
-    assert len(caller.calls.doubtful) == MOST_DOUBTFUL
+    assert list(caller.calls.doubtful) == crowd
+    caller.call()
+    assert caller.hear(2)[1:] == [(LIFE,)]
+    assert list(caller.calls.doubtful) == [*crowd[1:], LIFE]
+
+
+def test_a_call_for_which_no_thread_can_be_started_is_answered_with_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    def cannot_start(thread: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    caller = Caller(Answer(["a/live/1"]), Answer(["a/live/2"]))
+    with monkeypatch.context() as full:
+        full.setattr(threading.Thread, "start", cannot_start)
+        with pytest.raises(RuntimeError, match="can't start new thread"):
+            caller.call()
+    caller.call()
+    assert caller.hear(2) == [("a/live/1",), ("a/live/2",)]
