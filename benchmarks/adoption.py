@@ -125,7 +125,9 @@ class KeptTask:
 
     def replaces(self) -> bool:
         """Whether a component that fails is replaced."""
-        failing = next(name for name in ("tracker", "odometry") if self._acts(name)())
+        tracks, follows = self._acts("tracker"), self._acts("odometry")
+        _need(self.ecology.until(lambda: tracks() or follows(), PATIENCE), "one of the two acts")
+        failing = "tracker" if tracks() else "odometry"
         other = {"tracker": "odometry", "odometry": "tracker"}[failing]
         process = self.ecology.witnesses.process_of(failing)
         assert process is not None
