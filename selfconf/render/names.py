@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from selfconf.model.curie import LOCAL_NAME
+from selfconf.model.curie import is_local_name
 from selfconf.model.term import IRI, Literal, Term
 
 
@@ -20,7 +20,7 @@ class Names:
         if isinstance(term, Literal):
             return term.turtle(self)
         for prefix, base in self._prefixes:
-            if term.startswith(base) and LOCAL_NAME.fullmatch(term[len(base) :]):
+            if term.startswith(base) and is_local_name(term[len(base) :]):
                 return f"{prefix}:{term[len(base) :]}"
         return f"<{term}>" if isinstance(term, IRI) else str(term)
 

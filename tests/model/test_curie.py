@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
 
-from selfconf.model.curie import LOCAL_NAME, PREFIX
+from selfconf.model.curie import is_local_name, is_prefix
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle import parse
 
@@ -15,23 +13,23 @@ BASE = "https://example.org/home#"
 
 @pytest.mark.parametrize("local", ["clock", "a.b", "a-b", "_x", "0", "xß", "камера", "時計", "a..b", "x·y", "е́"])
 def test_a_local_name_of_any_script_is_read_as_it_was_meant(local: str) -> None:
-    assert LOCAL_NAME.fullmatch(local)
+    assert is_local_name(local)
     ((subject, _, _),) = parse(f"@prefix : <{BASE}> . :{local} a <urn:t> .", "a.ttl").triples()
     assert subject == IRI(BASE + local)
 
 
 @pytest.mark.parametrize("local", ["", "-x", "x.", ".x", "a b", "µm", "m²", "x½", "ª", "a:b", "a/b", "\u0301x", "·"])
 def test_what_a_parser_does_not_read_as_it_stands_is_no_local_name(local: str) -> None:
-    assert not LOCAL_NAME.fullmatch(local)
+    assert not is_local_name(local)
 
 
 @pytest.mark.parametrize("prefix", ["", "ex", "дом", "a.b-1"])
 def test_a_prefix_may_be_empty_or_of_any_script(prefix: str) -> None:
-    assert re.fullmatch(PREFIX, prefix)
+    assert is_prefix(prefix)
     ((subject, _, _),) = parse(f"@prefix {prefix}: <{BASE}> . {prefix}:x a <urn:t> .", "a.ttl").triples()
     assert subject == IRI(BASE + "x")
 
 
 @pytest.mark.parametrize("prefix", ["_", "1a", "a.", "-a", "µ"])
 def test_what_no_parser_reads_before_a_colon_is_no_prefix(prefix: str) -> None:
-    assert not re.fullmatch(PREFIX, prefix)
+    assert not is_prefix(prefix)

@@ -11,7 +11,7 @@ from functools import partial
 import pyoxigraph as ox
 
 from selfconf.errors import BindingError
-from selfconf.model.curie import LOCAL_NAME, PREFIX
+from selfconf.model.curie import is_local_name, is_prefix
 from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -24,7 +24,7 @@ from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, XSD
 
-_CURIE = re.compile(rf"({PREFIX}):[^\s\"'<>()]*")
+_LOCAL_PART = re.compile(r"[^\s\"'<>()]*")
 _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
 _PLAIN = {
     STRING: re.compile(r"(?s).*"),
@@ -45,8 +45,8 @@ def read_term(text: str, prefixes: Mapping[str, str]) -> Term:
     words = text.strip()
     if _NUMBER_OR_BOOLEAN.fullmatch(words) or words[:1] in ("<", '"', "'"):
         return _turtle_term(words, prefixes)
-    if _CURIE.fullmatch(words):
-        prefix = words.partition(":")[0]
+    prefix, colon, name = words.partition(":")
+    if colon and is_prefix(prefix) and _LOCAL_PART.fullmatch(name):
         if prefix in prefixes:
             return _turtle_term(words, prefixes)
         if prefix in ("http", "https", "urn", "file", "mailto", "tag"):
@@ -235,7 +235,7 @@ def _meant(parameter: Parameter, value: Term, document: Document) -> Literal | N
 def _curie(iri: IRI, prefixes: Mapping[str, str]) -> str:
     """An IRI as the command line takes it."""
     for name, base in prefixes.items():
-        if iri.startswith(base) and LOCAL_NAME.fullmatch(iri[len(base) :]):
+        if iri.startswith(base) and is_local_name(iri[len(base) :]):
             return f"{name}:{iri[len(base) :]}"
     return f"<{iri}>"
 

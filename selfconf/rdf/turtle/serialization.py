@@ -11,7 +11,7 @@ from typing import overload
 
 import pyoxigraph as ox
 
-from selfconf.model.curie import LOCAL_NAME
+from selfconf.model.curie import is_local_name
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.turtle.document import Triple
 from selfconf.rdf.vocabulary import LABEL, PROV, ROB, SC, TYPE, XSD
@@ -128,7 +128,7 @@ class _Writer:
 
     def _name(self, iri: IRI) -> str:
         for prefix, base in self._prefixes:
-            if iri.startswith(base) and LOCAL_NAME.fullmatch(iri[len(base) :]):
+            if iri.startswith(base) and is_local_name(iri[len(base) :]):
                 self.used.add(prefix)
                 return f"{prefix}:{iri[len(base) :]}"
         return f"<{iri}>"
