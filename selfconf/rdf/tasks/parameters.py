@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, ShapeViolated
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, STRING, Literal, Term, sort_key
+from selfconf.model.wording import is_one_line
 from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.tasks.roles import mentions
@@ -42,8 +43,10 @@ class _ParameterReader(DocumentReader):
             if not isinstance(value, IRI):
                 raise self.mistake("a parameter of a template needs an IRI", template, SC.parameter, value)
             name = self.only(value, SC.name, f"the parameter {worded(value)} needs exactly one sc:name")
-            if not isinstance(name, Literal) or name.datatype != STRING or not _WORD.fullmatch(name.lexical):
-                problem = f"the sc:name of the parameter {worded(value)} is one word, a string"
+            if not isinstance(name, Literal) or name.datatype != STRING or not _is_word(name.lexical):
+                problem = (
+                    f"the sc:name of the parameter {worded(value)} is one word, a string without control characters"
+                )
                 raise self.mistake(problem, value, SC.name, name)
             if name.lexical in named:
                 raise self.mistake(f"two parameters have the name {name.lexical!r}", value, SC.name, name)
@@ -68,6 +71,11 @@ class _ParameterReader(DocumentReader):
         datatypes = self.document.values(parameter, SH.datatype)
         datatype = value.datatype if isinstance(value, Literal) else None
         return all(isinstance(value, kind) for kind in kinds) and all(datatype == wanted for wanted in datatypes)
+
+
+def _is_word(text: str) -> bool:
+    """Whether a text can name a parameter; messages hold no name with control characters."""
+    return _WORD.fullmatch(text) is not None and is_one_line(text)
 
 
 _PROBE = "urn:selfconf:probe"
