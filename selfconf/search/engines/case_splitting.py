@@ -57,7 +57,8 @@ def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProbl
 def _values(given: ReducedProblem, variable: int) -> list[int]:
     """Return masks of one value each that a variable may still have, in order.
 
-    Where it may have a value that no option states, the last one stands for all of these.
+    Where it may have a value that no option states, the last one stands for all of these; where no option states any,
+    the only mask is of all that it may have.
     """
     common, stated = given.values[variable], 0
     for role in dict.fromkeys(given.slots):
@@ -65,7 +66,9 @@ def _values(given: ReducedProblem, variable: int) -> list[int]:
         stated = max(stated, *((mask if mask >= 0 else ~mask).bit_length() for mask in masks), 0)
         if ANY_VALUE not in masks:
             common &= reduce(or_, masks, 0)
-    width = common.bit_length() if common >= 0 else stated + 1 if stated else 0
+    if common < 0 and not stated:
+        return [common]
+    width = common.bit_length() if common >= 0 else stated + 1
     return [1 << bit for bit in range(width) if common >> bit & 1]
 
 

@@ -180,6 +180,17 @@ def test_a_parameter_of_which_no_option_states_a_value_has_no_cases() -> None:
     assert value_cases(pruned(reduced(counted([pool, pool], [1, 1], [], (variable,))))) is None
 
 
+def test_a_case_in_which_no_option_states_a_value_of_another_parameter_is_one() -> None:
+    """With the first option goes the only statement about the second parameter."""
+    variables = tuple(Variable(iri(name), (iri("s0"), iri("s1"))) for name in ("site", "shift"))
+    pool = [Candidate(profile("p0"), (0b01, ~0b01)), Candidate(profile("p1"), (0b10, ANY_VALUE))]
+    free_of_all = [Candidate(one.profile, (ANY_VALUE, ANY_VALUE)) for one in pool]
+    problem = counted([pool, free_of_all], [1, 1], [], variables)
+    cases = value_cases(pruned(reduced(problem)))
+    assert cases is not None
+    assert [[one.number for one in case.options[0]] for case in cases] == [[0], [1]]
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_persons_who_work_anywhere_do_not_hide_the_sites_that_leave_too_few(seed: int) -> None:
     """One instance of this kind was undecided after half a minute."""
