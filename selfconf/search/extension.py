@@ -73,20 +73,19 @@ def _connected_extension(
     The first of the `preferred` candidates come before all others; the components `besides` may not play.
     """
     asked = {candidate.profile.component for role in playing for candidate in role}
-    every, judged = preferred, set[tuple[int, IRI]]()
+    every, left_out = preferred, False
     while True:
         extended, values = [list(role) for role in playing], problem.values_of(playing)
         for candidates in preferred:
             values = _add_fitting(problem, extended, values, candidates, besides)
         found = problem.configuration(extended, values)
         idle = {(role, component) for role, component in _idle(problem, found) if component not in asked}
-        players = {(role, c.profile.component) for role, some in enumerate(extended) for c in some}
         if idle:
-            judged |= players
+            left_out = True
             preferred = [_without(idle, candidates) for candidates in preferred]  # in another role they may be of use
-        elif judged and not players <= judged:
-            # What was connected to none may be connected to what has joined since.
-            playing, preferred, judged = extended, every, set()
+        elif left_out and extended != [list(role) for role in playing]:
+            # What was connected to none may be connected to what has joined, or to others that were left out.
+            playing, preferred, left_out = extended, every, False
         else:
             return found
 

@@ -26,7 +26,10 @@ def solvable(problem: Problem) -> bool:
 def choices(problem: Problem) -> list[Counter[int]]:
     """What may be asked for of the optional roles that feed others, the fewest first, then by their order."""
     optional = [k for k, role in enumerate(problem.roles) if role.minimum == 0 and problem.sinks[k]]
-    most = [min(len(problem.candidates[k]), problem.roles[k].maximum or 99) for k in optional]
+    rooms = [problem.roles[k].maximum for k in optional]
+    most = [
+        min(len(problem.candidates[k]), 99 if room is None else room) for k, room in zip(optional, rooms, strict=True)
+    ]
     counts = (dict(zip(optional, some, strict=True)) for some in product(*(range(n + 1) for n in most)))
     return sorted((+Counter(some) for some in counts), key=lambda some: (some.total(), sorted(some.elements())))
 

@@ -86,6 +86,20 @@ def test_what_was_connected_to_nobody_joins_once_another_has_joined_that_it_feed
     assert answer == World(given_.task, given_.partition, given_.hierarchy).first()
 
 
+def test_what_was_left_out_while_another_took_a_place_joins_when_that_is_gone() -> None:
+    """In the first turn `plain` is of no use as a camera, in the second as a view, in whose turn `back` feeds none."""
+    plain, front, back = component("plain"), component("front", outputs="p:Pose"), component("back", outputs="p:Pose")
+    given = problem(
+        {"camera": [front, plain, back], "view": [plain, component("screen", "p:Pose")]},
+        "camera>view",
+        counts={"camera": (1, 2), "view": (0, 1)},
+    )
+    found = first.search(given)
+    assert isinstance(found, Configuration)
+    assert [[one.short for one in a.components] for a in found.assignments] == [["front", "back"], ["screen"]]
+    assert found == World(given.task, given.partition, given.hierarchy).first()
+
+
 def test_once_all_roles_are_full_no_further_candidate_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     # Each extra that joins is of no use, and leaves its place to the next: only the last one feeds the cap.
     extras = [*(component(f"idle{k:03}", outputs="b:Bump") for k in range(200)), component("useful", outputs="p:Pose")]
