@@ -88,9 +88,19 @@ def _with_one_more(
 def _lacked(
     lacking: Counter[int], choices: Sequence[Sequence[tuple[Output, ...]]], effort: RelaxationEffort
 ) -> list[Added]:
-    """Return additions for what each role lacks by itself; all that are for one role issue the same."""
-    ways = itertools.product(*([(role, outputs) for outputs in choices[role]] for role in lacking))
-    return [Counter({one: lacking[one[0]] for one in chosen}) for chosen in effort.first_of(ways, TRIALS)]
+    """Return additions for what each role lacks by itself, first those in which all for one role issue the same."""
+    of_roles = (
+        tuple(effort.first_of(_alike_and_mixed(role, count, choices[role]), TRIALS)) for role, count in lacking.items()
+    )
+    return [sum(some, Added()) for some in effort.first_of(itertools.product(*of_roles), TRIALS)]
+
+
+def _alike_and_mixed(role: int, count: int, choices: Sequence[tuple[Output, ...]]) -> Iterator[Added]:
+    """Yield the ways to add so many components for one role."""
+    yield from (Counter({(role, outputs): count}) for outputs in choices)
+    for some in itertools.combinations_with_replacement(choices, count):
+        if some[0] != some[-1]:
+            yield Counter((role, outputs) for outputs in some)
 
 
 def _lacking(problem: Problem) -> Counter[int] | None:

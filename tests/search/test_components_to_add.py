@@ -46,6 +46,15 @@ def test_an_output_that_is_asked_for_by_name_has_one_signal() -> None:
     assert words == ["add one more component for the role a and one more component for the role b"]
 
 
+def test_two_that_are_lacking_for_one_role_may_issue_different_signals_by_one_output() -> None:
+    given_ = problem({"a": [], "b": [component("b1", "x:X y:Y")]}, "a.out>b", {"a": (2, 2)})
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    added = [one for one in with_relaxations(given_, refused).repairs if isinstance(one, AddComponents)]
+    each = "one more component for the role a that issues {} by the output 'out'"
+    assert str(added[0]) == f"add {each.format('X')} and {each.format('Y')}"
+
+
 def test_what_has_to_leave_by_an_output_says_so() -> None:
     given_ = problem(
         {"a": [], "b": [component("b1", "x:X y:Y")], "c": []},
