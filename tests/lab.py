@@ -280,6 +280,15 @@ class Lab:
         agent.start()
         return agent
 
+    def repaired(self) -> TaskRunner:
+        """The configurator of the paper's task after it has lost the tracker, and odometry has taken over."""
+        self.navigation()
+        agent = self.agent()
+        self.running(agent)
+        self.components["tracker"].fail("lost")
+        self.let_pass(1.0)
+        return agent
+
     def until(self, condition: Callable[[], bool], seconds: float = 30.0) -> bool:
         """Let simulated time pass until something holds; whether it does."""
         return self.network.run(condition, seconds)

@@ -18,11 +18,7 @@ CONFIGURATION = b"<urn:a> a <https://w3id.org/selfconf#Configuration> ."
 def lab(tmp_path: Path) -> Lab:
     """A laboratory in which a task is deployed whose tracker was lost."""
     lab = Lab(tmp_path)
-    lab.navigation()
-    agent = lab.agent()
-    lab.running(agent)
-    lab.components["tracker"].fail("lost")
-    lab.let_pass(1.0)
+    lab.repaired()
     return lab
 
 

@@ -15,11 +15,7 @@ from tests.lab import Lab, iri
 
 def test_roles_connections_parameters_and_what_was_passed_over_are_read(tmp_path: Path) -> None:
     lab = Lab(tmp_path)
-    lab.navigation()
-    agent = lab.agent()
-    lab.running(agent)
-    lab.components["tracker"].fail("lost")
-    lab.let_pass(1.0)
+    agent = lab.repaired()
     body = deployed_body(parse(agent._record.turtle(), "cfg"))
     assert body is not None
     (position,) = (role for role in body["roles"] if role["role"] == iri("position"))
