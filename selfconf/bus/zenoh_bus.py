@@ -331,7 +331,8 @@ class ZenohBus(Loop):
                     self._roll_calls.confirm(life, alive, partial(receiver.received, (life, alive)))
                 else:
                     told.append((life, alive))
-            receiver.received(*told)
+            if told:
+                receiver.received(*told)
 
         # A channel is looked at ten times a second; a callback for each of thousands would hold Zenoh's thread up.
         handler: Any = open_channel() if many else each(listen)
