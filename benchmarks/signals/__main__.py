@@ -3,7 +3,8 @@
     python -m benchmarks.signals [--smoke] [--write]
 
 Five processes on one machine: a router, a source and a sink of the SDK, which are connected by calls as a configurator
-makes them, and a source and a sink that do no more than put, subscribe, and write and read JSON where selfconf does.
+makes them, and a source and a sink that do no more than put, subscribe, and write and read JSON where selfconf does,
+by the same library.
 Both pairs go through the router, with the same quality of service, and take turns.
 
     signals/s   that arrive while the source issues them as fast as it can, the median of all rounds

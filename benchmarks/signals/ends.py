@@ -15,6 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import orjson
 import zenoh
 
 from selfconf.bus.zenoh_bus import client
@@ -144,13 +145,13 @@ def bare_end(role: str, endpoint: str) -> None:
         }
 
         def emit(form: str, signal: Any, number: int) -> None:
-            payload = json.dumps(signal, separators=(",", ":")).encode() if form == "JSON" else signal
+            payload = orjson.dumps(signal) if form == "JSON" else signal
             publishers[form].put(payload, attachment=b"%d" % number)
 
         obey(SourceEnd(emit))
     else:
         end = SinkEnd()
-        readers: dict[str, Callable[[bytes], Any]] = {"JSON": json.loads, "bytes": len}
+        readers: dict[str, Callable[[bytes], Any]] = {"JSON": orjson.loads, "bytes": len}
         held = [session.declare_subscriber(f"{KEY}/{form}", reader(end, read)) for form, read in readers.items()]
         obey(end)
         held.clear()
