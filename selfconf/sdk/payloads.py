@@ -73,6 +73,8 @@ _DIGITS = bytes.maketrans(b"123456789", b"000000000")
 """Makes every digit a zero."""
 _LONG, _LONG_NEGATIVE = b"0" * 20, b"-" + b"0" * 19
 """What whole numbers beyond 64 bits have in them once their digits are zeros: orjson reads these as doubles."""
+_LONGEST = b"0" * 19
+"""The most digits of a whole number of which 64 bits hold every one; both of the above have them in them."""
 
 
 class UnsayableError(Exception):
@@ -105,7 +107,8 @@ def as_json(value: Any) -> bytes:
         said = orjson.dumps(value, None, _PLAIN_TYPES)
     except orjson.JSONEncodeError:
         said = b""
-    if not said or b"null" in said:  # which NaN and infinity are to orjson
+    # NaN and infinity are null to orjson; in numbers a single letter is looked for in a tenth of the time of the word.
+    if not said or (b"u" in said and b"null" in said):
         try:
             said = _WRITER.encode(value).encode()
         except (TypeError, ValueError, RecursionError) as error:
@@ -138,7 +141,7 @@ def read_payload(payload: bytes, raw: bool, encoding: SignalEncoding) -> Any:
 def _read_json(payload: bytes) -> Any:
     """The value that JSON says. Raises ValueError, and RecursionError where it is nested too deeply."""
     zeros = payload.translate(_DIGITS)
-    if _LONG not in zeros and _LONG_NEGATIVE not in zeros:
+    if _LONGEST not in zeros or (_LONG not in zeros and _LONG_NEGATIVE not in zeros):
         try:
             return orjson.loads(payload)
         except orjson.JSONDecodeError:

@@ -169,6 +169,12 @@ def test_a_value_has_a_problem_if_and_only_if_a_field_of_it_is_wrong(
     assert problem is None or repr(wrong[0]) in problem
 
 
+@given(st.lists(st.one_of(st.floats(), st.sampled_from([sys.float_info.max, -sys.float_info.max])), max_size=6))
+def test_doubles_are_right_where_each_is_finite_whatever_their_sum_is(values: list[float]) -> None:
+    problem = SCAN.problem({"ranges": values, "max_range": 4.0})
+    assert (problem is None) == all(map(math.isfinite, values))
+
+
 @given(FIELDS, VALUES)
 def test_what_is_right_stays_right_on_the_way(fields: list[SignalField], value: dict[str, Any]) -> None:
     checked = SignalFields(IRI("urn:S"), tuple(fields))
