@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from selfconf.model.literal_values import truth
 from selfconf.model.signal_fields import SignalField, SignalFields
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document
@@ -16,7 +17,6 @@ from selfconf.rdf.vocabulary import FIRST, RDFS, REST, ROB
 
 SAYING = (ROB.field, ROB.fieldName, ROB.datatype, ROB.repeated, ROB.optional, RDFS.subClassOf, FIRST, REST)
 """The predicates of the statements that are looked at; of others a document need not know."""
-_TRUE = ("true", "1")
 
 
 def fields_of(documents: Sequence[Document], signal: IRI) -> SignalFields | None:
@@ -48,10 +48,5 @@ def _field(document: Document, node: Term) -> SignalField | None:
     name, datatype = document.value(node, ROB.fieldName), document.value(node, ROB.datatype)
     if not isinstance(name, Literal) or not isinstance(datatype, IRI):
         return None
-    optional, repeated = (_says(document, node, predicate) for predicate in (ROB.optional, ROB.repeated))
+    optional, repeated = (truth(document.value(node, says)) is True for says in (ROB.optional, ROB.repeated))
     return SignalField(name.lexical, datatype, not optional, repeated)
-
-
-def _says(document: Document, node: Term, predicate: IRI) -> bool:
-    value = document.value(node, predicate)
-    return isinstance(value, Literal) and value.lexical in _TRUE
