@@ -8,7 +8,8 @@ language, is read as every message is.
 from __future__ import annotations
 
 import json
-import re
+
+import orjson
 
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
@@ -17,8 +18,8 @@ from selfconf.protocol.messages import SignalEncoding, Stamp
 RAW = b"raw"
 """What stands before the stamp of a signal that is bytes and not JSON."""
 _LAST = ("sequence", "time")
-_END = re.compile(rb'(0|[1-9]\d{0,17}),"time":((?:0|[1-9]\d{0,17})(?:\.\d{1,20})?(?:[eE][-+]?\d{1,3})?)\}')
-"""How a stamp ends that is read quickly: numbers as JSON writes them, which `int` and `float` read as JSON does."""
+_MOST = 10**18
+"""The number of a signal whose stamp is read quickly is below this."""
 _JSON = json.JSONEncoder(separators=(",", ":"))
 PLAIN = SignalEncoding()
 """The encoding of JSON, and of bytes of which nothing is said."""
@@ -55,12 +56,23 @@ class StampReader:
     def read(self, attachment: bytes) -> tuple[bool, Stamp]:
         """Whether a signal is bytes and not JSON, and its stamp. Raises PeerError for what is no stamp."""
         beginning, _, end = attachment.partition(b',"sequence":')
-        last = _END.fullmatch(end)
+        last = _number_and_time(end)
         known, raw, said = self._known
         if last is not None and beginning == known:
-            return raw, Stamp(said.component, said.life, int(last[1]), float(last[2]), said.encoding)
+            return raw, Stamp(said.component, said.life, *last, said.encoding)
         raw = attachment.startswith(RAW)
         stamp = decode(attachment[len(RAW) :] if raw else attachment, Stamp)
         if last is not None:
             self._known = beginning, raw, stamp
         return raw, stamp
+
+
+def _number_and_time(end: bytes) -> tuple[int, float] | None:
+    """What the end of a stamp says, from the number on; None if it is not these two as a writer writes them."""
+    try:
+        last = orjson.loads(b'{"sequence":' + end)
+    except orjson.JSONDecodeError:
+        return None
+    number, time = last["sequence"], last.get("time")
+    plain = len(last) == 2 and type(number) is int and type(time) is float and 0 <= number < _MOST
+    return (number, time) if plain else None

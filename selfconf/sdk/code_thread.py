@@ -48,8 +48,10 @@ class CodeThread:
         self._signals: deque[Action] = deque()
         self._in_rush = False
         """Whether the last action did not have to be waited for, or not for long."""
-        self._more: queue.SimpleQueue[None] = queue.SimpleQueue()
-        """An entry for each action that waits, put after it, and for each time that the thread is to look around."""
+        self._asleep = False
+        """Whether the thread is about to wait, or waits, and nothing has woken it yet."""
+        self._woken: queue.SimpleQueue[None] = queue.SimpleQueue()
+        """An entry for each time that the thread is to look around."""
 
     def call(self, action: Action) -> None:
         """Run what a call or the end of a supervision asks for; before any signal that waits."""
@@ -64,11 +66,13 @@ class CodeThread:
             action()
             return
         actions.append(action)
-        self._more.put(None)
+        if self._asleep:  # looked at after the action is there, as the thread looks for actions after it is set
+            self._asleep = False
+            self._woken.put(None)
 
     def wake_up(self) -> None:
         """Let the thread that polls look whether to go on. May be called from any thread."""
-        self._more.put(None)
+        self._woken.put(None)
 
     def limited(self, owner: object, what: str, limit: float, action: Callable[[], _Result]) -> _Result:
         """Return what code of a component returns that may take so many seconds; `watch` sees it meanwhile."""
@@ -100,13 +104,24 @@ class CodeThread:
 
     def _next(self, seconds: float) -> Action | None:
         """What is next, waited for so long; None if there is nothing, or the thread was woken."""
-        if self._in_rush and seconds > 0 and not self._calls and not self._signals:
-            time.sleep(RUSH)  # for no condition: meanwhile more actions come, to be run together
-        began = time.monotonic()
-        try:
-            self._more.get(seconds > 0, seconds or None)
-        except queue.Empty:
-            return None
-        self._in_rush = time.monotonic() - began < RUSH
+        if self._calls or self._signals:
+            self._in_rush = True
+        elif seconds > 0:
+            if self._in_rush:
+                time.sleep(RUSH)  # for no condition: meanwhile more actions come, to be run together
+            began = time.monotonic()
+            self._wait(seconds)
+            self._in_rush = time.monotonic() - began < RUSH
         actions = self._calls or self._signals
         return actions.popleft() if actions else None
+
+    def _wait(self, seconds: float) -> None:
+        """Wait until there is an action, or the thread is woken; not longer than that."""
+        self._asleep = True
+        try:
+            if not (self._calls or self._signals):
+                self._woken.get(timeout=seconds)
+        except queue.Empty:
+            pass
+        finally:
+            self._asleep = False

@@ -49,6 +49,32 @@ def test_it_waits_for_the_first_thing_to_do_and_may_be_woken() -> None:
     assert not thread.is_alive()
 
 
+def test_whatever_several_threads_hand_over_runs_in_their_order_though_it_goes_to_sleep_in_between() -> None:
+    code = CodeThread(inline=False)
+    ran: dict[tuple[int, int], None] = {}
+    all_ran = threading.Event()
+    count = 300
+
+    def hand_over(who: int) -> None:
+        for number in range(count):
+            code.signal(lambda number=number: ran.update({(who, number): None}))  # type: ignore[misc]  # a default binds it
+            while number % 10 == 0 and (who, number) not in ran and not all_ran.is_set():
+                all_ran.wait(0.0001)  # until it has run, so that the thread sleeps again and again
+
+    thread = threading.Thread(target=code.run, args=(all_ran.is_set,))
+    thread.start()
+    others = [threading.Thread(target=hand_over, args=(who,)) for who in range(3)]
+    for one in others:
+        one.start()
+    for one in others:
+        one.join(20.0)
+    code.signal(all_ran.set)
+    assert all_ran.wait(5.0)
+    thread.join(5.0)
+    for who in range(3):
+        assert [number for one, number in ran if one == who] == list(range(count))
+
+
 def test_code_that_has_not_returned_in_its_time_is_seen_by_another_thread_and_only_that() -> None:
     code = CodeThread(inline=False)
     begun, end = threading.Event(), threading.Event()
