@@ -250,6 +250,8 @@ COMPONENT = Subject(
     SC.Component,
 )
 
+OF_COMPONENT = COMPONENT.predicates - {TYPE}
+"""What only a component says of itself, and of its ports a template."""
 PORTS = tuple(COMPONENT[link] for link in (SC.hasInput, SC.hasOutput, SC.hasParameter))
 """The fields of a component that lead to what most components have: inputs, outputs, operational parameters."""
 

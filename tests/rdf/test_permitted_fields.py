@@ -35,6 +35,7 @@ from selfconf.rdf.permitted_fields import (
     NEEDED_OPERATION,
     NODE,
     NUMBER,
+    OF_COMPONENT,
     OPERATION,
     OUTPUT,
     PARAMETER,
@@ -202,7 +203,7 @@ def test_what_says_what_only_a_component_says_has_to_be_declared_one() -> None:
         for shape in ("ComponentTyped", "PortsTyped")
         for predicate in SHAPE.objects(URIRef(SHAPES[shape]), SH.targetSubjectsOf)
     }
-    assert targets == reader.FIELDS
+    assert targets == OF_COMPONENT
 
 
 def test_the_number_of_a_cost_is_the_number_of_an_advertisement() -> None:

@@ -32,7 +32,7 @@ from selfconf.rdf.advertisements.statement_table import (
     StatementTable,
     bracketed,
 )
-from selfconf.rdf.permitted_fields import LINKS, NEXT, SETTINGS, SHAPE_LINKS
+from selfconf.rdf.permitted_fields import LINKS, NEXT, OF_COMPONENT, SETTINGS, SHAPE_LINKS
 from selfconf.rdf.turtle import SKOLEM, Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
 
@@ -41,7 +41,7 @@ _NAME, _PREDICATE = attrgetter("name"), attrgetter("predicate")
 _SETTINGS = {f"<{predicate}>": setting.member for predicate, setting in SETTINGS.items()}
 _GROUNDING = f"<{SC.grounding}>"
 _LINKS = LINKS | SHAPE_LINKS
-_FIELDS = {f"<{predicate}>" for predicate in advertisements.FIELDS}
+_FIELDS = {f"<{predicate}>" for predicate in OF_COMPONENT}
 _NONE: frozenset[IRI] = frozenset()
 
 

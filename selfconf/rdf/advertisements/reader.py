@@ -37,6 +37,7 @@ from selfconf.rdf.permitted_fields import (
     COMPONENT,
     INPUT,
     NEEDED_OPERATION,
+    OF_COMPONENT,
     OUTPUT,
     PARAMETER_TYPE,
     PORT_NAME,
@@ -56,10 +57,9 @@ _COUNTERPARTS = {
     SC.hasOutput: ("an output", "an input"),
     SC.hasOperation: ("an operation that is offered", "one that is needed"),
     SC.needsOperation: ("an operation that is needed", "one that is offered"),
+    SC.hasParameter: ("an operational parameter", ""),
 }
 """What a link leads to, and what says what it may not say."""
-FIELDS = COMPONENT.predicates - {TYPE}
-"""What only a component says of itself, and of its ports a template."""
 UNDECLARED = ("it has ports, parameters, a preference or a grounding, and is not declared a sc:Component",)
 """What is wrong with what says such things and is no component."""
 
@@ -83,7 +83,7 @@ def read_document(document: Document) -> tuple[list[Advertisement], list[Malform
 
 def _undeclared(document: Document) -> Iterator[Node]:
     """What speaks as a component does, and is declared neither that nor a template; no part of something else."""
-    found = [subject for subject, said in document.statements.items() if any(one in FIELDS for one, _ in said)]
+    found = [subject for subject, said in document.statements.items() if any(one in OF_COMPONENT for one, _ in said)]
     found = [one for one in found if not {SC.Component, SC.Template} & set(document.values(one, TYPE))]
     parts = {value for _, _, value in document.triples() if isinstance(value, BlankNode)} if found else set()
     return (subject for subject in found if subject not in parts)
@@ -165,13 +165,16 @@ class _Reader:
             yield name.lexical, node
 
     def _look_for_misplaced(self, link: Field, node: Term, name: str) -> None:
-        """Note what only a port of the other direction says."""
+        """Note what only a port of the other direction says, or only a component."""
+        here, there = _COUNTERPARTS[link.predicate]
+        if SC.Component not in self.document.values(node, TYPE):
+            for predicate, _ in self.document.about(node):
+                if predicate in OF_COMPONENT:
+                    self._problem(f"only a component has a {_word(predicate)}, and {name!r} is {here}")
         for field in link.into.fields:
             if field.most == 0 and self.document.values(node, field.predicate):
-                here, there = _COUNTERPARTS[link.predicate]
-                if field.predicate == SC.accepts:
-                    there = "an input"
-                self._problem(f"only {there} has a {_word(field.predicate)}, and {name!r} is {here}")
+                owner = "an input" if field.predicate == SC.accepts else there
+                self._problem(f"only {owner} has a {_word(field.predicate)}, and {name!r} is {here}")
 
     def _parameter_type(self, name: str, node: Term) -> IRI | None:
         type_ = self._required(node, PARAMETER_TYPE)

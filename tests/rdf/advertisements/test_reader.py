@@ -282,10 +282,34 @@ def test_what_speaks_as_a_component_does_and_is_declared_none_is_left_out_and_na
 def test_the_ports_of_a_template_and_what_a_port_says_need_no_component() -> None:
     text = """
         :t a sc:Template ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ; sc:of :r ] .
-        :a a sc:Component, :L ; sc:hasInput :in , _:in . :in sc:name "i" . _:in sc:name "j" ; sc:preference 1 .
+        :a a sc:Component, :L ; sc:hasInput :in , _:in . :in sc:name "i" . _:in sc:name "j" ; :colour 1 .
     """
     assert len(read(text)[0]) == len(loader.read_advertisements((PREFIXES + text).encode(), "a.ttl")[0]) == 1
     assert read(text)[1] == loader.read_advertisements((PREFIXES + text).encode(), "a.ttl")[1] == []
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "sc:hasInput [ sc:name 'i' ; sc:signalType :S ; sc:preference 5 ]",
+        "sc:hasOutput [ sc:preference 5 ; sc:name 'i' ; sc:signalType :S ]",
+        "sc:hasParameter [ sc:name 'i' ; sc:parameterType :P ; sc:shareable true ]",
+        "sc:hasParameter [ sc:name 'i' ; sc:parameterType :P ; sc:hasParameter :q ]",
+        "sc:hasOperation [ sc:name 'i' ; sc:restarts 1 ]",
+        "sc:needsOperation [ sc:name 'i' ; sc:grounding [ sc:command 'go' ] ]",
+        "sc:hasInput _:i . _:i sc:name 'i' ; sc:deadline [ sc:value 1 ; sc:unit unit:SEC ]",
+    ],
+)
+def test_what_a_port_says_that_only_a_component_says_keeps_its_component_out(said: str) -> None:
+    text = f"{PREFIXES} :c a sc:Component, :L ; {said} . :a a sc:Component, :L ."
+    for good, bad in (
+        advertisements.read_document(turtle.parse(text, "a.ttl")),
+        loader.read_advertisements(text.encode(), "a.ttl"),
+    ):
+        assert [one.component for one in good] == [iri("a")]
+        assert [one.component for one in bad] == [iri("c")]
+        ((problem,),) = [one.problems for one in bad]
+        assert problem.startswith("only a component has a sc:")
 
 
 def test_what_a_grounding_with_a_name_says_is_read() -> None:
