@@ -24,8 +24,9 @@ log = logging.getLogger(__name__)
 
 def sample_of(sample: zenoh.Sample) -> Sample:
     """What Zenoh has received, as a value of our own."""
-    attachment = bytes(sample.attachment) if sample.attachment is not None else b""
-    return Sample(str(sample.key_expr), bytes(sample.payload), attachment)
+    attachment = sample.attachment
+    beside = b"" if attachment is None else attachment.to_bytes()
+    return Sample(str(sample.key_expr), sample.payload.to_bytes(), beside)
 
 
 _THREAD = threading.local()

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import zenoh
 
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Sample, Urgency
@@ -19,7 +20,7 @@ SAMPLE = Sample("a/b", b"1")
 
 def from_zenoh(payload: bytes = b"1") -> Any:
     """A sample as Zenoh has it."""
-    return SimpleNamespace(key_expr="a/b", payload=payload, attachment=None)
+    return SimpleNamespace(key_expr="a/b", payload=zenoh.ZBytes(payload), attachment=None)
 
 
 def test_a_thread_of_zenoh_keeps_its_state_of_python_from_one_call_to_the_next(
