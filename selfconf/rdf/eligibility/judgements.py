@@ -19,13 +19,10 @@ from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.compiled_roles import bound_shape, left_to_judge
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import RDFS, SC, TYPE
+from selfconf.rdf.vocabulary import RDFS, TYPE
 
 if TYPE_CHECKING:
     import rdflib
-
-_CLASSIFYING = frozenset((TYPE, SC.signalType, SC.parameterType))
-"""What has a class as its value, of which a shape sees what lies above it."""
 
 Violations = tuple[ShapeViolated | NotJudged, ...]
 """What keeps a component from conforming to a shape; nothing if it conforms."""
@@ -167,8 +164,10 @@ class ShapeJudge:
                 continue
             for above in self._hierarchy.superproperties(predicate):
                 yield subject, above, value  # the property itself is one of them
-            if predicate in _CLASSIFYING and isinstance(value, IRI):
-                for kind in self._hierarchy.superclasses(value) - {value}:
-                    yield value, RDFS.subClassOf, kind
-                    if predicate == TYPE:
-                        yield subject, TYPE, kind
+            if not isinstance(value, IRI):
+                continue
+            for kind in self._hierarchy.superclasses(value):  # of any property: a path may go on from what it leads to
+                for above in self._hierarchy.superclasses(kind) - {kind}:
+                    yield kind, RDFS.subClassOf, above
+                if predicate == TYPE:
+                    yield subject, TYPE, kind

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.judgements import Judgements, Violations
@@ -66,3 +67,14 @@ def test_who_is_eligible_follows_what_others_say() -> None:
     assert names(near.partition(read([LAMPS.format(":bright")]))) == [["one"]]
     assert names(near.partition(read([LAMPS.replace(":lit {}", ":dark 1")]))) == [[]]
     assert names(near.partition(read([LAMPS.format(":bright")]))) == [["one"]]
+
+
+@pytest.mark.parametrize(
+    "steps", ["rdfs:subClassOf", "rdfs:subClassOf rdfs:subClassOf", "[ sh:zeroOrMorePath rdfs:subClassOf ]"]
+)
+def test_a_path_of_subclasses_goes_on_from_the_value_of_any_property(steps: str) -> None:
+    task = TASK + f"sh:property [ sh:path ( :carries {steps} ) ; sh:hasValue :Bulb ] ."
+    lamp = ":one a sc:Component, :Lamp ; :carries :Halogen ."
+    above = Hierarchy([(iri("Halogen"), iri("Hot")), (iri("Hot"), iri("Bulb"))])
+    assert names(partitioner(task, above).partition(read([lamp]))) == [["one"]]
+    assert names(partitioner(task, NOTHING_ABOVE).partition(read([lamp]))) == [[]]
