@@ -2,7 +2,8 @@
 
 A property that can be read, and an event, is an output; a property that can be written is an input that may stay
 unfed, because the thing does not wait until it is written; an action is an operation. The `@type`s of an
-affordance are its signal types. One without any is kept: an interaction can name it.
+affordance are its signal types. One without any is kept: an interaction can name it. What it says in terms of other
+vocabularies is said of the port or operation.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from selfconf.importing.sources import SourceDocument
 from selfconf.importing.units import unit_of
 from selfconf.importing.wot.contexts import TermMeanings
 from selfconf.importing.wot.json_text import one_or_several
+from selfconf.importing.wot.other_terms import OtherTerms
 from selfconf.importing.wot.own_terms import stated_rate
 from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI
@@ -31,14 +33,22 @@ _UNUSED = {
     "subscription": ("data of subscriptions and cancellations", "an input that follows an output says nothing to it"),
     "cancellation": ("data of subscriptions and cancellations", "an input that follows an output says nothing to it"),
     "dataResponse": ("responses to events", "an output hears no answer"),
+    **dict.fromkeys(
+        ("observable", "safe", "idempotent", "synchronous"),
+        ("marks of affordances, such as observable", "they say how one is used, an advertisement says what it is"),
+    ),
 }
 """The members of affordances that have no counterpart, in words, and why not."""
 _WORDS = ("title", "titles", "description", "descriptions")
 _SCHEMA = (
-    "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum", "multipleOf", "minLength", "maxLength", "pattern",
-    "enum", "const", "default", "oneOf", "items", "minItems", "maxItems", "properties", "required", "format",
+    "type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum", "multipleOf", "minLength", "maxLength",
+    "pattern", "enum", "const", "default", "oneOf", "items", "minItems", "maxItems", "properties", "required", "format",
     "contentEncoding", "contentMediaType",
 )  # fmt: skip
+_DATA = {*_SCHEMA, *_WORDS, "unit", "readOnly", "writeOnly"}
+"""The members of data schemas, those of properties included."""
+_KNOWN = {*_DATA, *_UNUSED, "data", "input", "output"}
+"""The members of affordances."""
 
 
 class AffordanceReader:
@@ -46,6 +56,7 @@ class AffordanceReader:
 
     def __init__(self, meanings: TermMeanings, ledger: ImportLedger, source: SourceDocument) -> None:
         self.meanings, self.ledger, self.source = meanings, ledger, source
+        self.other_terms = OtherTerms(meanings, ledger, source)
 
     def types(self, holder: Any, what: str = "port") -> tuple[IRI, ...]:
         """The IRIs of the `@type` of something, each once; what is unknown is noted."""
@@ -66,13 +77,14 @@ class AffordanceReader:
     def ports(self, thing: dict[str, Any]) -> Iterator[tuple[str, ImportedPort]]:
         """The ports of a thing, each with whether it is an `input` or an `output`."""
         for name, affordance in self._affordances(thing, "properties"):
-            port = ImportedPort(name, self.types(affordance), self._unit(affordance))
+            others = tuple(self.other_terms.stated(affordance, _KNOWN, (SC.rate,)))
+            port = ImportedPort(name, self.types(affordance), self._unit(affordance), properties=others)
             self._note_schema(affordance)
             reads, writes = _operations(affordance)
             if reads:
-                yield "output", replace(port, properties=stated_rate(affordance, self.meanings))
+                yield "output", replace(port, properties=(*stated_rate(affordance, self.meanings), *others))
             if writes:
-                yield "input", ImportedPort(name, port.types, port.unit, optional=True)
+                yield "input", replace(port, optional=True)
             if not reads and not writes:
                 self._leave_out("properties that can be neither read nor written", "there is nothing to connect")
         for name, affordance in self._affordances(thing, "events"):
@@ -82,7 +94,8 @@ class AffordanceReader:
             kinds = self.types(affordance) or self.types(signal)
             if SC.Failure in kinds:
                 continue  # every component can fail
-            yield "output", ImportedPort(name, kinds, self._unit(signal))
+            others = *self.other_terms.stated(affordance, _KNOWN), *self.other_terms.stated(signal, _DATA)
+            yield "output", ImportedPort(name, kinds, self._unit(signal), properties=others)
 
     def operations(self, thing: dict[str, Any]) -> Iterator[ImportedOperation]:
         """The actions of a thing."""
@@ -93,8 +106,12 @@ class AffordanceReader:
                     self._note_schema(schema)
                     if "unit" in schema:
                         self._leave_out("units of actions", "a request or response has no unit")
+                    if number := sum(1 for _ in self.other_terms.stated(schema, _DATA)):
+                        what = "values of other vocabularies at requests and responses"
+                        self._leave_out(what, "an operation states their types alone", number)
             asked = self.types(request) or self.types(affordance)  # a command of that kind is what is asked for
-            yield ImportedOperation(name, self._one(asked), self._one(self.types(response)))
+            answered, others = self._one(self.types(response)), tuple(self.other_terms.stated(affordance, _KNOWN))
+            yield ImportedOperation(name, self._one(asked), answered, properties=others)
 
     def _one(self, types: tuple[IRI, ...]) -> IRI | None:
         if len(types) > 1:
@@ -132,7 +149,7 @@ class AffordanceReader:
 
     def _note_schema(self, schema: dict[str, Any]) -> None:
         if any(member in schema for member in _SCHEMA):
-            self._leave_out("constraints of data schemas", "a signal type stands for what a signal consists of")
+            self._leave_out("data schemas", "a signal type stands for what a signal consists of")
 
     def _leave_out(self, what: str, reason: str, number: int = 1) -> None:
         self.ledger.leave_out(what, reason, self.source, number)

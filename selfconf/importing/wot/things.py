@@ -19,12 +19,12 @@ from selfconf.importing.sources import SourceDocument
 from selfconf.importing.wot.affordances import AffordanceReader
 from selfconf.importing.wot.contexts import TermMeanings, spoken
 from selfconf.importing.wot.json_text import parse_json
-from selfconf.importing.wot.json_values import terms_of
+from selfconf.importing.wot.other_terms import OtherTerms
 from selfconf.importing.wot.own_terms import OWN_TERMS, OwnTerms
 from selfconf.importing.wot.thing_models import ModelReferences
 from selfconf.model.immutable import immutable
-from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf.vocabulary import RDFS, SC, TYPE
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.vocabulary import RDFS, SC
 
 THING = IRI("https://www.w3.org/2019/wot/td#Thing")
 AFFORDANCES = ("properties", "events", "actions")
@@ -33,7 +33,7 @@ _UNUSED = {
     "security": ("security", "who may do what is not said by an advertisement"),
     "securityDefinitions": ("security", "who may do what is not said by an advertisement"),
     "links": ("links", "an advertisement speaks of its component alone"),
-    "schemaDefinitions": ("constraints of data schemas", "a signal type stands for what a signal consists of"),
+    "schemaDefinitions": ("data schemas", "a signal type stands for what a signal consists of"),
     "uriVariables": ("URI variables", "a port has none"),
     "tm:optional": ("marks of affordances that a thing may lack", "a component has all that it advertises"),
     **dict.fromkeys(
@@ -42,7 +42,7 @@ _UNUSED = {
     ),
 }
 """The members of things that have no counterpart, in words, and why not."""
-_KNOWN = {"@context", "@type", "@id", "id", "title", "titles", "description", "descriptions", *AFFORDANCES}
+_KNOWN = {"id", "title", "titles", "description", "descriptions", *AFFORDANCES, *_UNUSED}
 
 
 @immutable
@@ -113,6 +113,7 @@ class _ThingReader:
         self.thing, self.meanings, self.source, self.ledger = thing, meanings, source, ledger
         self.own_terms = OwnTerms(thing, meanings)
         self.affordances = AffordanceReader(meanings, ledger, source)
+        self.other_terms = OtherTerms(meanings, ledger, source)
 
     def component(self, position: tuple[str, ...]) -> ImportedComponent:
         ports = list(self.affordances.ports(self.thing))
@@ -128,7 +129,10 @@ class _ThingReader:
             self.ledger.names.component(self._iri(position), self.source),
             tuple(types),
             labels=self._words("title"),
-            properties=(*((RDFS.comment, words) for words in self._words("description")), *self._properties()),
+            properties=(
+                *((RDFS.comment, words) for words in self._words("description")),
+                *self.other_terms.stated(self.thing, _KNOWN, OWN_TERMS),
+            ),
             inputs=(*inputs, *own.inputs({port.name for port in inputs})),
             outputs=tuple(port for kind, port in ports if kind == "output"),
             parameters=tuple(own.parameters()),
@@ -154,27 +158,10 @@ class _ThingReader:
         """A title or description, in its languages; by itself, unless it is that of one of them."""
         several, words = self.thing.get(f"{member}s"), self.thing.get(member)
         found = several if isinstance(several, dict) else {}
+        all_words = (words, *found.values()) if found is several or several is None else (words, several)
+        if not_text := sum(not isinstance(one, str) for one in all_words if one is not None):
+            self.ledger.leave_out(f"{member}s that are no text", "people are to read them", self.source, not_text)
         said = [spoken(one, language) for language, one in found.items() if isinstance(one, str) and one]
         if isinstance(words, str) and words and all(one.lexical != words for one in said):
             said.insert(0, spoken(words, self.meanings.language))
         return tuple(said)
-
-    def _properties(self) -> Iterator[tuple[IRI, Term]]:
-        """What the thing says in terms of other vocabularies, as far as it is a literal or an IRI."""
-        for member, value in self.thing.items():
-            if member in _KNOWN or member in _UNUSED or member.startswith("@"):
-                continue
-            predicate = self.meanings.expanded(member)
-            if predicate in OWN_TERMS:
-                continue
-            if predicate in SC or predicate == TYPE:
-                self.ledger.leave_out("terms of selfconf", "an import states those itself", self.source)
-                continue
-            if predicate is None:
-                self.ledger.leave_out(self.meanings.family(member), self.meanings.unknown(), self.source)
-                continue
-            for term in terms_of(member, value, self.meanings):
-                if isinstance(term, tuple):
-                    self.ledger.leave_out(*term, self.source)
-                else:
-                    yield predicate, term

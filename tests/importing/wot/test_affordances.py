@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from selfconf.errors import AuthorError
-from selfconf.importing.imported import ImportedOperation, ImportedPort
+from selfconf.importing.imported import TRUE, ImportedOperation, ImportedPort
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.sources import SourceDocument
 from selfconf.importing.wot.affordances import AffordanceReader
 from selfconf.importing.wot.contexts import TermMeanings
-from selfconf.model.term import IRI
-from selfconf.rdf.vocabulary import UNIT
+from selfconf.model.term import IRI, Literal
+from selfconf.rdf.vocabulary import UNIT, XSD
 
 A, B = IRI("urn:x:A"), IRI("urn:x:B")
 
@@ -23,7 +23,7 @@ class Reading:
 
     def __init__(self, **thing: Any) -> None:
         self.ledger = ImportLedger("urn:x:", list[AuthorError]().append)
-        context = ["https://www.w3.org/2022/wot/td/v1.1", {"x": "urn:x:"}]
+        context = ["https://www.w3.org/2022/wot/td/v1.1", {"x": "urn:x:", "sc": "https://w3id.org/selfconf#"}]
         reader = AffordanceReader(TermMeanings(context), self.ledger, SourceDocument("lamp", "lamp", b""))
         self.ports, self.operations = list(reader.ports(thing)), list(reader.operations(thing))
 
@@ -119,11 +119,33 @@ def test_what_is_no_affordance_is_left_out(thing: dict[str, Any]) -> None:
 def test_what_has_no_counterpart_is_counted() -> None:
     reading = Reading(
         properties={"t": {"forms": [{}, {}], "title": "T", "minimum": 0, "readOnly": True}},
-        actions={"a": {"forms": {}, "input": {"unit": "m"}}},
+        actions={"a": {"forms": {}, "input": {"unit": "m", "type": "number"}, "safe": True, "synchronous": True}},
     )
     assert reading.left_out == {
         "forms": 3,
         "titles and descriptions of affordances": 1,
-        "constraints of data schemas": 1,
+        "data schemas": 2,
         "units of actions": 1,
+        "marks of affordances, such as observable": 2,
+    }
+
+
+def test_what_an_affordance_says_in_other_vocabularies_is_said_of_its_port_or_operation() -> None:
+    reading = Reading(
+        properties={"t": {"x:A": 0.5, "x:B": {"@id": "urn:b"}, "sc:depth": 3, "z": 1}},
+        events={"e": {"x:A": 1, "data": {"x:B": True}}},
+        actions={"a": {"x:A": "soon", "output": {"x:B": 2, "type": "object"}}},
+    )
+    said = (A, Literal("0.5", XSD.double)), (B, IRI("urn:b"))
+    assert reading.ports == [
+        ("output", ImportedPort("t", properties=said)),
+        ("input", ImportedPort("t", optional=True, properties=said)),
+        ("output", ImportedPort("e", properties=((A, Literal("1", XSD.integer)), (B, TRUE)))),
+    ]
+    assert reading.operations == [ImportedOperation("a", properties=((A, Literal("soon")),))]
+    assert reading.left_out == {
+        "terms of selfconf": 1,
+        "terms without a prefix": 1,
+        "values of other vocabularies at requests and responses": 1,
+        "data schemas": 1,
     }

@@ -64,6 +64,12 @@ def test_titles_are_kept_in_their_languages(workshop: Workshop) -> None:
     assert 'rdfs:label "Leuchte", "Lampe"@de .' in only(workshop, workshop.imported("wot", {"lamp.json": text}))
 
 
+def test_titles_that_are_no_text_are_named(workshop: Workshop) -> None:
+    text = described(title=7, titles={"de": ["Lampe"]}, description=None, descriptions=["shines"])
+    report = workshop.imported("wot", {"lamp.json": text})
+    assert left_out(report) == {"titles that are no text": 2, "descriptions that are no text": 1}
+
+
 def test_an_array_holds_several_things_as_a_directory_answers(workshop: Workshop) -> None:
     report = workshop.imported("wot", {"things.json": f"[{described()}, {described(id='urn:dev:b')}, 5]"})
     text = only(workshop, report)
