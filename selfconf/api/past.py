@@ -34,7 +34,7 @@ _ORDER = (".log", ".sst", "")
 
 @immutable
 class PastConfiguration:
-    """A configuration as the history has it: who deployed it, from when until when, and what had failed before."""
+    """A configuration as the history has it: who deployed it, from when until when, after and until which failures."""
 
     name: str
     """The IRI of the configuration."""
@@ -49,13 +49,15 @@ class PastConfiguration:
     """When it was deployed no more; None for one that ran when it was seen last."""
     failures: tuple[Mapping[str, Any], ...]
     """The failures that have led to it, as the events of a run."""
+    losses: tuple[Mapping[str, Any], ...]
+    """The failures that have ended it, where no other has taken its place, as the events of a run."""
     body: Mapping[str, Any]
     """The configuration as JSON."""
 
     def events(self) -> Iterator[Mapping[str, Any]]:
         """What has happened, as the events of a run."""
         yield from self.failures
-        yield {"act": "running", "time": self.generated, "configuration": self.body}
+        yield {"act": "running", "time": self.generated, "configuration": self.body, "revises": bool(self.revises)}
 
     @property
     def passed_over(self) -> dict[str, list[str]]:
@@ -111,7 +113,8 @@ def _events(several: list[PastConfiguration]) -> Iterator[Mapping[str, Any]]:
     """What has happened to one task: its configurations, and the times between in which it had none."""
     for one, after in zip(several, (*several[1:], None), strict=True):
         yield from one.events()
-        if one.ended is not None and (after is None or after.revises != one.name):
+        if one.ended is not None and (after is None or after.revises != one.name or one.losses):
+            yield from one.losses
             yield {"act": "stopped", "time": one.ended}
 
 
@@ -124,16 +127,20 @@ def _configuration(name: str, document: Document) -> PastConfiguration | None:
     agent = document.value(node, PROV.wasAttributedTo)
     named = None if asked is None else document.value(asked, SC.name)
     task = _text(named) or (asked.short if isinstance(asked, IRI) else IRI.unchecked(body["template"]).short)
-    failures = sorted(_failures(document, node), key=lambda failure: failure["time"])
+    failures, losses = (
+        tuple(sorted(_failures(document, node, role), key=lambda failure: failure["time"]))
+        for role in (PROV.wasInfluencedBy, PROV.qualifiedInvalidation)
+    )
     ended = _moment(document.value(node, PROV.invalidatedAtTime))
     revises = str(document.value(node, PROV.wasRevisionOf) or "")
     return PastConfiguration(
-        name, revises, str(agent).rpartition(":")[2], task, generated, ended, tuple(failures), body
+        name, revises, str(agent).rpartition(":")[2], task, generated, ended, failures, losses, body
     )
 
 
-def _failures(document: Document, node: IRI) -> Iterator[Mapping[str, Any]]:
-    for failure in document.values(node, PROV.wasInfluencedBy):
+def _failures(document: Document, node: IRI, predicate: IRI) -> Iterator[Mapping[str, Any]]:
+    """The failures that a predicate leads to from a configuration, as the events of a run."""
+    for failure in document.values(node, predicate):
         yield {
             "act": "lost",
             "component": str(document.value(failure, SC.component)),

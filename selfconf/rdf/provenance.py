@@ -11,7 +11,7 @@ from itertools import count
 from selfconf.model.configuration import Assignment, Configuration
 from selfconf.model.immutable import immutable
 from selfconf.model.template import Task
-from selfconf.model.term import IRI, STRING, BlankNode, Literal
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import PROV, SC, TYPE, XSD
 
@@ -67,12 +67,18 @@ def deployment_triples(configuration: Configuration, name: IRI, task: Task, depl
     for component, cause, detail, seconds in deployment.failures:
         node = next(nodes)
         yield name, PROV.wasInfluencedBy, node
-        yield node, TYPE, SC.Failure
-        yield node, SC.component, component
-        yield node, SC.cause, Literal(cause)
-        if detail:
-            yield node, SC.detail, Literal(detail)
-        yield node, PROV.atTime, moment(seconds)
+        for predicate, value in failure_triples(component, cause, detail, seconds):
+            yield node, predicate, value
+
+
+def failure_triples(component: IRI, cause: str, detail: str, seconds: float) -> Iterator[tuple[IRI, Term]]:
+    """What is said of a failure: each predicate with its value; when it was in seconds of the Unix epoch."""
+    yield TYPE, SC.Failure
+    yield SC.component, component
+    yield SC.cause, Literal(cause)
+    if detail:
+        yield SC.detail, Literal(detail)
+    yield PROV.atTime, moment(seconds)
 
 
 def _blank_nodes() -> Iterator[BlankNode]:

@@ -38,7 +38,8 @@ class TaskStory:
         if act == "lost":
             self.lost[str(event.get("component"))] = event
         elif act == "running" and isinstance(event.get("configuration"), dict):
-            before = self.configuration if self.ended is None else None  # one that was taken down is replaced by none
+            # One that was taken down is replaced by none, unless that is said, as of one that ended by a failure.
+            before = self.configuration if self.ended is None or event.get("revises") else None
             self.configuration, self.refusal, self.since = event["configuration"], None, _time(event)
             self.ended = None
             self._note_replaced(before)
@@ -174,13 +175,14 @@ def _recruited(found: TaskStory, component: str) -> list[str]:
 
 
 def _came_about(found: TaskStory, component: str) -> Iterator[str]:
-    """From which component one took over, and whether it was lost itself."""
+    """From which component one took over, and whether it was lost itself: before it played this role, or since then."""
     instead = found.replaced.get(component)
     if instead is not None:
         loss = found.lost.get(instead)
         yield f"  it took over from {_name(instead)}{'' if loss is None else ': ' + _loss(loss)}"
     if component in found.lost:
-        yield f"  {_name(component)} was {_loss(found.lost[component])}, and has come back"
+        loss = found.lost[component]
+        yield f"  {_name(component)} was {_loss(loss)}{', and has come back' if _time(loss) <= found.since else ''}"
 
 
 def _refused(found: TaskStory, term: str) -> list[str]:

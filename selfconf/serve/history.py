@@ -3,21 +3,25 @@
 Each configuration is a named graph under its own name, as its configurator has told it: which task, what generated it
 and when, which configuration it revises, which failures have influenced it, and what was passed over. When another
 one takes its place, or its configurator has gone, it gets the time of its end (prov:invalidatedAtTime). One that was
-running when the server ended gets none, for when it ended was not seen.
+running when the server ended gets none, for when it ended was not seen. Where none takes its place, no other graph says
+which failures have ended it; so its own does (prov:qualifiedInvalidation).
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import pyoxigraph as ox
 
-from selfconf.errors import AuthorError
-from selfconf.rdf.provenance import moment
+from selfconf.errors import AuthorError, PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import configurator_of
+from selfconf.rdf.provenance import failure_triples, moment
 from selfconf.rdf.turtle import ox_term
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
+from selfconf.serve.change import Body
 
 DEPLOYED = "urn:selfconf:selfconf/"
 """What the names of the graphs begin with in which configurators tell what they have deployed."""
@@ -26,6 +30,7 @@ MOST_KEPT = 5000
 KEPT_FOR = 366 * 86_400.0
 """Seconds for which a configuration is kept that was generated then, and is not deployed any more."""
 _GENERATED, _ENDED = ox.NamedNode(PROV.generatedAtTime), ox.NamedNode(PROV.invalidatedAtTime)
+_PARTS = (ox.NamedNode(SC.component), ox.NamedNode(SC.recruited))
 
 
 class History:
@@ -43,6 +48,8 @@ class History:
         """The configuration that is deployed, by the graph that states it."""
         self._unsettled = {name for name in self._names() if not self._has_ended(name)}
         """Those that ran when the last server ended: they may run still."""
+        self._losses: dict[str, dict[str, Body]] = {}
+        """By the graph that states a configuration, the latest loss of each component that has a part in it."""
 
     def close(self) -> None:
         """Write everything down, and leave the folder to others."""
@@ -59,8 +66,14 @@ class History:
         self._unsettled.clear()
         return {name: self._triples(name) for name in over}
 
-    def note(self, graphs: Mapping[str, bytes]) -> dict[str, bytes]:
-        """Note what configurators tell of what they have deployed; return what has ended by that."""
+    def note(self, graphs: Mapping[str, bytes], events: Iterable[Body] = ()) -> dict[str, bytes]:
+        """Note what has happened to tasks, then what configurators tell of what they have deployed.
+
+        Returns what has ended by that.
+        """
+        for event in events:
+            if event["act"] == "lost":
+                self._note_loss(event)
         over: dict[str, bytes] = {}
         for graph, triples in graphs.items():
             if graph.startswith(DEPLOYED):
@@ -76,8 +89,10 @@ class History:
         before = self._current.pop(graph, None)
         over: dict[str, bytes] = {}
         if before is not None and before != name:
-            node = ox.NamedNode(before)
+            node, losses = ox.NamedNode(before), self._losses.pop(graph, {})
             self._store.add(ox.Quad(node, _ENDED, ox_term(moment(self._clock())), node))
+            if name is None:
+                self._store.extend(self._failures(node, losses))
             over[before] = self._triples(before)
         if name is not None:
             self._current[graph] = name
@@ -85,6 +100,25 @@ class History:
                 self._store.extend(ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads)
                 over |= self._forget_oldest()
         return over
+
+    def _note_loss(self, event: Body) -> None:
+        for graph, name in self._current.items():
+            if _configurator(graph) == event.get("configurator") and self._has_part(event.get("component"), name):
+                self._losses.setdefault(graph, {})[event["component"]] = event
+
+    def _has_part(self, component: str | None, name: str) -> bool:
+        """Whether a configuration has a component for a player or a recruit."""
+        quads = self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))
+        return any(q.predicate in _PARTS and getattr(q.object, "value", None) == component for q in quads)
+
+    def _failures(self, name: ox.NamedNode, losses: Mapping[str, Body]) -> Iterator[ox.Quad]:
+        """What has ended a configuration: the failures of its components."""
+        for component, loss in losses.items():
+            when = min(max(loss["time"], 0.0), self._clock())  # a stranger may say anything
+            said = failure_triples(IRI.unchecked(component), loss.get("cause", ""), loss.get("detail", ""), when)
+            node = ox.BlankNode()
+            yield ox.Quad(name, ox.NamedNode(PROV.qualifiedInvalidation), node, name)
+            yield from (ox.Quad(node, ox.NamedNode(predicate), ox_term(value), name) for predicate, value in said)
 
     def _forget_oldest(self) -> dict[str, bytes]:
         """Forget what is too old or one too many, and return it as graphs that are empty now."""
@@ -109,3 +143,11 @@ class History:
 
     def _triples(self, name: str) -> bytes:
         return self._store.dump(format=ox.RdfFormat.N_TRIPLES, from_graph=ox.NamedNode(name)) or b""
+
+
+def _configurator(graph: str) -> str:
+    """The configurator that states a graph; empty for a graph of another kind."""
+    try:
+        return configurator_of(graph.removeprefix("urn:selfconf:"))
+    except PeerError:
+        return ""

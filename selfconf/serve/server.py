@@ -103,7 +103,7 @@ class Record:
         if self._history is None:
             return
         try:
-            past = self._history.note(change.graphs)
+            past = self._history.note(change.graphs, change.events)
         except (OSError, RuntimeError):  # the latter is how Oxigraph says that a store cannot be written
             log.exception("a change is missing in the history")
         else:

@@ -90,6 +90,20 @@ def test_the_answer_is_that_of_the_moment(at: float | None, words: list[str], ke
     assert [", until " in one for one in said[:1]] == ([at in (None, 1_000_009.0)] if said else [])
 
 
+def test_what_took_over_after_a_time_without_a_configuration_is_told_with_the_failure_before(tmp_path: Path) -> None:
+    clock = Clock()
+    history = History(tmp_path, clock)
+    history.note({GRAPH: told(1, "tracker", at=clock.now)})
+    clock.now += 2
+    loss = {"act": "lost", "configurator": "c1", "component": iri("tracker"), "cause": "crash", "time": clock.now}
+    history.note({GRAPH: b""}, [loss])
+    clock.now += 5
+    history.note({GRAPH: told(2, "odometry", "tracker", clock.now)})
+    history.close()
+    assert ["(crash)" in one for one in past_why(tmp_path, "position", 1_000_004.0)] == [False, True, False]
+    assert "it took over from tracker: lost at" in past_why(tmp_path, "position", None)[1]
+
+
 def test_it_is_read_while_a_server_writes(tmp_path: Path) -> None:
     history = History(tmp_path, Clock())
     for number in range(5):
@@ -144,7 +158,7 @@ def test_after_three_failures_the_history_tells_at_each_moment_what_the_run_has_
     history = History(tmp_path / "history", lambda: lab.network.time)
 
     def note(change: EcologyChange) -> None:
-        history.note(change.graphs)
+        history.note(change.graphs, change.events)
 
     EcologyWatcher(lab.network.node(), "lab", note, lambda: lab.network.time).begin()
     assert lab.running(lab.agent(patient=True))
@@ -168,4 +182,6 @@ def test_after_three_failures_the_history_tells_at_each_moment_what_the_run_has_
         causes = [line for line in said if "took over from" in line]
         failed = lost[number - 1][1] if number else ""
         assert [f"{failed}: lost at " in line and "(fail, " in line for line in causes] == [True] * bool(number), said
-    assert ", until " in past_why(tmp_path / "history", "position", lost[2][0] + 4)[0]
+    over = past_why(tmp_path / "history", "position", lost[2][0] + 4)
+    assert ", until " in over[0]
+    assert "(fail, spare is told to)" in over[2]

@@ -53,6 +53,13 @@ def test_who_goes_first_and_who_has_come_back_is_said() -> None:
     assert order == "  no other candidate went before it in the latest search"
 
 
+def test_who_was_lost_and_has_not_come_back_yet_is_said() -> None:
+    lost = {"act": "lost", "time": 20.0, "component": HOME + "tracker", "cause": "crash"}
+    _, why = why_sentences(story("navigate", [running(10.0, "tracker"), lost]), "position", {})
+    assert why.startswith("  tracker was lost at ")
+    assert why.endswith("(crash)")
+
+
 def test_at_an_earlier_moment_the_answer_is_that_of_then() -> None:
     (only,) = why_sentences(story("navigate", EVENTS, at=15.0), "position", {})
     assert "tracker, since" in only

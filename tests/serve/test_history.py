@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from selfconf.errors import AuthorError
+from selfconf.model.term import IRI
 from selfconf.rdf.turtle import ntriples, parse
-from selfconf.rdf.vocabulary import PROV
+from selfconf.rdf.vocabulary import PROV, SC, TYPE
 from selfconf.serve import history
 from selfconf.serve.history import DEPLOYED, History
 from tests.lab import Lab, iri
@@ -41,6 +42,23 @@ def test_a_configuration_that_is_told_after_its_end_has_ended_once(tmp_path: Pat
         kept.note({GRAPH: told(number)})
     ends = {name: triples.count(b"invalidatedAtTime") for name, triples in kept.past().items()}
     assert ends == {"urn:c:1": 1, "urn:c:2": 1, "urn:c:3": 0}
+
+
+def test_where_nothing_takes_its_place_a_configuration_says_which_of_its_components_failed(tmp_path: Path) -> None:
+    kept = History(tmp_path, lambda: 90.0)
+    part = {"act": "lost", "configurator": "c1", "component": "urn:lamp", "cause": "crash", "detail": "", "time": 80.0}
+    others = ({**part, "component": "urn:other"}, {**part, "configurator": "c2", "cause": "fail"}, {"act": "lost"})
+    for number, event in ((1, part), (2, {**part, "cause": "fail", "detail": "dark", "time": 1e11})):
+        kept.note({GRAPH: told(number) + f"<urn:c:{number}> <{SC.recruited}> <urn:lamp> .\n".encode()})
+        kept.note({}, (event, *others))
+    first, second = kept.past()["urn:c:1"], kept.note({GRAPH: b""})["urn:c:2"]
+    assert b"Failure" not in first  # the second one says what has led to it
+    document = parse(second, "second")
+    (failure,) = document.values(IRI("urn:c:2"), PROV.qualifiedInvalidation)
+    assert {(p, getattr(o, "lexical", o)) for p, o in document.about(failure)} == {
+        (TYPE, SC.Failure), (SC.component, "urn:lamp"), (SC.cause, "fail"), (SC.detail, "dark"),
+        (PROV.atTime, "1970-01-01T00:01:30Z"),
+    }  # fmt: skip
 
 
 def test_it_is_there_for_the_next_server(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import pytest
@@ -12,6 +12,7 @@ import pytest
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.query import StandingQuestion
 from selfconf.rdf.vocabulary import ROB
+from selfconf.serve.change import Body
 from selfconf.serve.history import History
 from selfconf.serve.server import Record, bound
 from tests.lab import ADVERTISEMENTS
@@ -35,7 +36,7 @@ def test_what_is_no_address_is_a_sentence() -> None:
 def test_what_a_full_disk_keeps_from_the_history_can_be_asked_for_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    def full(history: History, graphs: Mapping[str, bytes]) -> Mapping[str, bytes]:
+    def full(history: History, graphs: Mapping[str, bytes], events: Iterable[Body]) -> Mapping[str, bytes]:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(History, "note", full)
