@@ -50,6 +50,12 @@ def test_a_violation_is_where_its_author_would_look_for_it(text: str, at: tuple[
     assert at in [(line, column) for line, column, _ in told(LAMP + text)]
 
 
+@pytest.mark.parametrize("counts", ["sc:minCount [ ]", "sc:minCount 1 ; sc:maxCount [ ]", "sc:maxCount ( 1 )"])
+def test_brackets_that_stand_for_a_number_are_a_violation(counts: str) -> None:
+    """pySHACL cannot compare a blank node."""
+    assert {"MinCount", "MaxCount"} & {shape for _, _, shape in told(f":r a sc:Role ; {counts} .")}
+
+
 def test_of_three_equal_names_the_first_is_not_to_blame() -> None:
     ports = " , ".join(PORT.format("a") for _ in range(3))
     assert [shape for _, _, shape in told(f"{LAMP}:lamp sc:hasInput {ports} .")] == ["PortNamesDistinct"] * 2
