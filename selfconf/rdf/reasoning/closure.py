@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
-from selfconf.model.term import IRI, Term
+from selfconf.model.term import IRI, BlankNode, Term
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import FIRST, OWL, RDFS, REST
 
@@ -57,13 +57,34 @@ def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning, entail: Enta
 
 
 def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IRI, IRI]]:
-    """The pairs (lower, higher) between named terms; an equivalence is a pair in each direction."""
+    """The pairs (lower, higher) between named terms, also where blank nodes lie between the two.
+
+    An equivalence is a pair in each direction.
+    """
+    above_blank: dict[Term, list[Term]] = {}
+    below_blank: list[tuple[IRI, BlankNode]] = []
     for subject, predicate, value in triples:
-        if predicate not in (below, same) or not isinstance(subject, IRI) or not isinstance(value, IRI):
+        if predicate not in (below, same):
             continue
-        yield subject, value
-        if predicate == same:
-            yield value, subject
+        for lower, higher in ((subject, value), (value, subject))[: 1 + (predicate == same)]:
+            if isinstance(lower, BlankNode):
+                above_blank.setdefault(lower, []).append(higher)
+            elif isinstance(lower, IRI) and isinstance(higher, IRI):
+                yield lower, higher
+            elif isinstance(lower, IRI) and isinstance(higher, BlankNode):
+                below_blank.append((lower, higher))
+    for named, blank in below_blank:
+        seen: set[Term] = {named, blank}
+        waiting: list[Term] = [blank]
+        while waiting:
+            for higher in above_blank.get(waiting.pop(), ()):
+                if higher in seen:
+                    continue
+                seen.add(higher)
+                if isinstance(higher, IRI):
+                    yield named, higher
+                else:
+                    waiting.append(higher)
 
 
 def intersections(document: Document) -> Iterator[tuple[IRI, IRI]]:

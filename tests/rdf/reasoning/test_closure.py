@@ -51,6 +51,23 @@ def test_properties_have_a_hierarchy_of_their_own() -> None:
 
 def test_what_has_no_name_is_left_out() -> None:
     assert of(":A rdfs:subClassOf [ a owl:Restriction ] .").flat
+    assert of(":A owl:equivalentClass [ a owl:Restriction ] .").flat
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":A rdfs:subClassOf [ rdfs:subClassOf :B ] .",
+        ":A rdfs:subClassOf [ rdfs:subClassOf [ rdfs:subClassOf :C ] ] . :C rdfs:subClassOf :B .",
+        ":A owl:equivalentClass _:x . :B owl:equivalentClass _:x .",
+        ":A rdfs:subClassOf _:x . _:y rdfs:subClassOf _:x ; owl:equivalentClass _:x ; rdfs:subClassOf :B , 5 .",
+    ],
+)
+@pytest.mark.parametrize("mode", [Reasoning.SUBCLASS, Reasoning.OWL_RL])
+def test_a_class_lies_below_what_lies_above_a_class_without_a_name(text: str, mode: Reasoning) -> None:
+    found = of(text, mode)
+    assert found.matches(iri("A"), iri("B"))
+    assert all(isinstance(above, IRI) for above in found.superclasses(iri("A")))
 
 
 @pytest.mark.parametrize("mode", [Reasoning.SUBCLASS, Reasoning.OWL_RL])
