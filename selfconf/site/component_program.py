@@ -52,6 +52,8 @@ UNKILLABLE = 3.0
 """Seconds after which a process counts as gone even so: it is killed, and its parent may not have waited for it."""
 MOST_WATCHED = 8
 """Of how many components of a process the lives are followed: they share a process, and if that hangs, they all do."""
+NAMED_IN_LOG = 32
+"""How many components of a process each line of the log names, so that names are not most of the log."""
 NO_CRASH = (0, 2)
 """The codes of processes that have wanted to end, and of those that have said why they cannot run."""
 
@@ -338,7 +340,9 @@ class ComponentProgram:
         self._printed().note(self._source(), text)
 
     def _source(self) -> str:
-        return ",".join(sorted(self._asked))
+        """The components of the process, as a line of the log has them; of too many those that were asked for first."""
+        others = sorted(self._profiles.keys() - self._asked)
+        return ",".join(sorted([*sorted(self._asked), *others][:NAMED_IN_LOG]))
 
 
 def _next_ending_check(waited: float) -> float:

@@ -382,6 +382,17 @@ def test_what_components_print_is_in_the_log_with_what_became_of_them(
     assert "has ended with code 1" in notes[1]
 
 
+def test_a_line_of_the_log_names_all_components_of_its_process_and_no_more_than_fit(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    names = [f"lamp-{number:02}" for number in range(component_program.NAMED_IN_LOG + 8)]
+    made, log = site(python('import time; print("hello"); time.sleep(60)'), *names), tmp_path / "home.log"
+    made.start(iri(names[-1]))
+    assert live(network, lambda: log.exists() and " hello\n" in log.read_text())
+    (said,) = [line.split(" ")[2] for line in log.read_text().splitlines() if line.endswith(" hello")]
+    assert said.split(",") == [iri(name) for name in (*names[: component_program.NAMED_IN_LOG - 1], names[-1])]
+
+
 def test_a_terminal_reaches_the_site_alone(network: Network, tmp_path: Path, site: Callable[..., Site]) -> None:
     made = site(python(NUMBERED))
     made.start(SLEEPER)
