@@ -38,6 +38,7 @@ from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
 from selfconf.rdf.rdflib_terms import rdflib_term
+from selfconf.rdf.replacements import one_at_a_time
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.turtle import Node
@@ -107,7 +108,8 @@ def violations(
     for reason in faults(shapes).values():
         raise TemplateError(f"{called} is not evaluated: {reason}", file=source)
     try:
-        with processor_limit(SHAPE_SECONDS), linear_patterns(), only_ordered(), _silent():
+        # The limit last: the processor time of a thread that judges meanwhile, and is waited for, would count.
+        with linear_patterns(), only_ordered(), processor_limit(SHAPE_SECONDS), _silent():
             judge = _Judge(subjects, shapes, shape)
             found: dict[Focus, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
@@ -242,7 +244,7 @@ def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, 
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
     """The report of pySHACL and its text."""
     index_constraints()
-    with _silent():
+    with one_at_a_time, _silent():
         _, report, text = validate(
             subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST_TRIAL
         )

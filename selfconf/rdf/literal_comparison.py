@@ -10,8 +10,8 @@ Loading both takes longer than most configurations, so `selfconf.rdf.shacl` impo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager
 from datetime import datetime, timedelta
 from decimal import Decimal
 from typing import Any
@@ -28,6 +28,7 @@ from rdflib.xsd_datetime import Duration
 
 from selfconf.model.term import Literal, Term
 from selfconf.rdf.rdflib_terms import rdflib_term
+from selfconf.rdf.replacements import replaced
 
 UNORDERED = (TypeError, ArithmeticError)
 """What comparing two literals raises if they have no order; the latter for a decimal beside NaN."""
@@ -58,14 +59,9 @@ def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
     return _compare(one, other)
 
 
-@contextmanager
-def only_ordered() -> Iterator[None]:
+def only_ordered() -> AbstractContextManager[None]:
     """In the block, pySHACL lets a value pass beside a limit, or another property, only if the two have an order."""
-    with ExitStack() as stack:
-        for place, name, ours in _OURS:
-            stack.callback(setattr, place, name, getattr(place, name))
-            setattr(place, name, ours)
-        yield
+    return replaced(_OURS)
 
 
 def _less(component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any) -> tuple[bool, Any]:
