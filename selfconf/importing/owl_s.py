@@ -1,8 +1,8 @@
 """Services of OWL-S, versions 1.1 and 1.2, as components: what the profile says goes in and out, by type.
 
 The inputs and outputs of a service are ports, typed by their `process:parameterType`; a service whose profile lists
-none has those of its process. How a service works inside, what has to hold before it, and how it is reached is left
-out.
+none has those of its process. What is said of services, profiles and parameters in other vocabularies is said of
+components and ports. How a service works inside, what has to hold before it, and how it is reached is left out.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from selfconf.importing.sources import SourceDocument
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document, Node
-from selfconf.rdf.vocabulary import RDFS, TYPE, Namespace
+from selfconf.rdf.vocabulary import RDFS, SC, TYPE, Namespace
 
 VERSIONS = ("1.1", "1.2")
 PARTS_OF_OWL_S = ("Service", "Profile", "Process")
@@ -36,6 +36,18 @@ _UNUSED = {
     "qualityRating": ("ratings", "an advertisement has no place for them"),
 }
 """Properties of profiles without a counterpart, in words, and why not."""
+OWL_S = "http://www.daml.org/services/owl-s/"
+"""What the terms of all versions begin with."""
+_READ = frozenset(
+    base[name]
+    for (_, part), base in _BASES.items()
+    for name in {
+        "Service": ("presents", "presentedBy", "describedBy", "describes", "supports", "supportedBy"),
+        "Profile": ("serviceName", "textDescription", "hasInput", "hasOutput", "hasParameter", "has_process", *_UNUSED),
+        "Process": ("parameterType",),
+    }[part]
+)
+"""The terms of OWL-S that are read, lead to what is read, or are named as left out."""
 
 
 def import_services(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
@@ -104,11 +116,13 @@ class _ServiceReader:
         inputs, outputs = (self._parameters(service, profile, link) for link in ("hasInput", "hasOutput"))
         known = {*inputs, *outputs}
         further = [each for each in self.document.values(profile, self.profile.hasParameter) if each not in known]
+        comments = ((RDFS.comment, words) for words in self._words(profile, self.profile.textDescription))
+        others = (said for subject in dict.fromkeys((service, profile)) for said in self._other_terms(subject))
         return ImportedComponent(
             self.ledger.names.component(service, self.source),
             tuple(dict.fromkeys((self.service.Service, *kinds))),
             labels=tuple(self._words(profile, self.profile.serviceName)),
-            properties=tuple((RDFS.comment, words) for words in self._words(profile, self.profile.textDescription)),
+            properties=(*comments, *others),
             inputs=tuple(self._ports(inputs)),
             outputs=tuple(self._ports(outputs)),
             parameters=tuple(self._operational(further)),
@@ -127,8 +141,23 @@ class _ServiceReader:
             found += self.document.values(process, self.process[link])
         return found
 
-    def _typed(self, parameters: Iterable[Term]) -> Iterator[tuple[str, IRI | None]]:
-        """The name and the type of each parameter; a name that is taken gets a number."""
+    def _other_terms(self, subject: Node) -> Iterator[tuple[IRI, Term]]:
+        """What is said of something in other vocabularies, as far as it is a literal or an IRI."""
+        for predicate, value in self.document.about(subject):
+            if predicate == TYPE or predicate in _READ or (isinstance(value, Literal) and not value.lexical.strip()):
+                continue
+            if predicate.startswith(OWL_S):
+                self.ledger.leave_out("further terms of OWL-S", "an advertisement has no counterpart", self.source)
+            elif predicate in SC:
+                self.ledger.leave_out("terms of selfconf", "an import states those itself", self.source)
+            elif isinstance(value, IRI | Literal):
+                yield predicate, value
+            else:
+                reason = "only plain values are kept"
+                self.ledger.leave_out("nested values of other vocabularies", reason, self.source)
+
+    def _typed(self, parameters: Iterable[Term]) -> Iterator[tuple[str, IRI | None, Term]]:
+        """The name and the type of each parameter, and itself; a name that is taken gets a number."""
         names = NumberedNames()
         for parameter in parameters:
             name = parameter.short.rstrip(CALL_MARK) if isinstance(parameter, IRI) else ""
@@ -136,14 +165,18 @@ class _ServiceReader:
             kind = absolute(said.lexical.strip()) if isinstance(said, Literal) else said
             if said is not None and not isinstance(kind, IRI):
                 self.ledger.leave_out("types that are no IRIs", "the parameter is kept without one", self.source)
-            yield names.free(name or "parameter"), kind if isinstance(kind, IRI) else None
+            yield names.free(name or "parameter"), kind if isinstance(kind, IRI) else None, parameter
 
     def _ports(self, parameters: Iterable[Term]) -> Iterator[ImportedPort]:
-        for name, kind in self._typed(parameters):
-            yield ImportedPort(name, () if kind is None else (kind,))
+        for name, kind, said in self._typed(parameters):
+            others = () if isinstance(said, Literal) else tuple(self._other_terms(said))
+            yield ImportedPort(name, () if kind is None else (kind,), properties=others)
 
     def _operational(self, parameters: Iterable[Term]) -> Iterator[tuple[str, IRI]]:
-        for name, kind in self._typed(parameters):
+        for name, kind, said in self._typed(parameters):
+            if not isinstance(said, Literal) and (number := sum(1 for _ in self._other_terms(said))):
+                reason = "an operational parameter has a name and a type"
+                self.ledger.leave_out("what else is said of operational parameters", reason, self.source, number)
             if kind is None:
                 self.ledger.leave_out("parameters without a type", "an operational parameter has one", self.source)
             else:

@@ -79,6 +79,23 @@ def test_a_profile_without_parameters_has_those_of_the_process(workshop: Worksho
     assert left_out(report) == {"types that are no IRIs": 1, "services without an IRI": 1}
 
 
+def test_what_is_said_in_other_vocabularies_is_kept_and_the_rest_is_named(workshop: Workshop) -> None:
+    more = """@prefix x: <urn:x:> . @prefix sc: <https://w3id.org/selfconf#> .
+        <#s> x:owner x:me . <#p> x:stars 5 , [ x:of 6 ] ; profile:serviceProduct x:b ; profile:hasParameter <#o> ;
+            sc:preference 3 . <#a> x:unit "m" . <#o> process:parameterType x:O ; x:unit "s" ."""
+    report = workshop.imported("owl-s", {"x.ttl": TURTLE + more})
+    text = workshop.texts()["x.ttl"]
+    assert "    x:owner x:me ;\n    x:stars 5 ;\n" in text
+    assert '[ sc:name "a" ; sc:signalType <http://example.org/A> ; x:unit "m" ]' in text
+    assert {what: number for what, number in left_out(report).items() if "type" not in what and "IRI" not in what} == {
+        "further terms of OWL-S": 1,
+        "nested values of other vocabularies": 1,
+        "terms of selfconf": 1,
+        "what else is said of operational parameters": 1,
+    }
+    assert sc.validate([workshop.out]).conforms
+
+
 def test_what_is_no_service_is_named_and_what_is_no_rdf_is_unreadable(workshop: Workshop) -> None:
     report = workshop.imported("owl-s", {"a.owl": "<?xml", "b.ttl": "<urn:x> a <urn:y> .", "c.ttl": "<"})
     assert report.files == ()
