@@ -115,25 +115,49 @@ class Network:
         return sender.open and receiver.open and not self._severed(sender, receiver)
 
     def _severed(self, sender: MemoryBus, receiver: MemoryBus) -> bool:
-        lone = sender is not receiver and (sender.expelled or receiver.expelled)
-        return lone or (sender.number, receiver.number) in self._cut
+        lone = sender.expelled or receiver.expelled
+        one_host = sender is receiver or (sender.number in receiver.host and receiver.number in sender.host)
+        return (lone and not one_host) or (sender.number, receiver.number) in self._cut
 
-    def pause(self, node: MemoryBus) -> None:
+    def pause(self, *nodes: MemoryBus) -> None:
         """Let a node do nothing, as SIGSTOP does: what arrives waits, timers are late, and after `LEASE` it is gone.
 
         Pausing a node that never resumes, and closing it later, is what others see of a host that loses its power.
+        Several nodes are those of a host that is frozen: they are gone for all others, and not for each other.
         """
-        if node.paused or not node.open:
-            return
+        still = [node for node in nodes if node.open and not node.paused]
+        host = frozenset(node.number for node in still)
+        for node in still:
+            number = self._pause(node)
+            node.host = host
+
+            def expel(node: MemoryBus = node, number: int = number) -> None:
+                if node.open and node.paused and node.pauses == number:
+                    self._expel(node)
+
+            self.after(LEASE, expel)
+
+    def stall(self) -> Callable[[], None]:
+        """Let all nodes do nothing, as a machine that stalls; the result lets them go on, in any order.
+
+        None of them notices that another one does nothing.
+        """
+        stalled = [(node, self._pause(node)) for node in self.nodes if node.open and not node.paused]
+
+        def go_on() -> None:
+            self._chance.shuffle(stalled)
+            for node, number in stalled:
+                if node.open and node.pauses == number:
+                    self.resume(node)
+
+        return go_on
+
+    def _pause(self, node: MemoryBus) -> int:
+        """Have a node do nothing from now on; how often it was paused by then."""
+        node.paused = True
         node.pauses += 1
         self.shape += 1
-        node.paused, number = True, node.pauses
-
-        def expel() -> None:
-            if node.open and node.paused and node.pauses == number:
-                self._expel(node)
-
-        self.after(LEASE, expel)
+        return node.pauses
 
     def resume(self, node: MemoryBus) -> None:
         """Let a node go on: first with the timers that are due, then with what has arrived before it was gone."""
@@ -157,20 +181,21 @@ class Network:
         node.expelled = True
         self.shape += 1
         for other in reached:
-            other.unsee(node)
+            if not self.reaches(node, other):
+                other.unsee(node)
         for other in heard:
-            node.unsee(other)
+            if not self.reaches(other, node):
+                node.unsee(other)
         node.match_all()
 
     def _readmit(self, node: MemoryBus) -> None:
+        others = [other for other in self.nodes if other is not node and other.open]
+        links = [link for other in others for link in ((node, other), (other, node)) if not self.reaches(*link)]
         node.expelled = False
         self.shape += 1
-        for other in self.nodes:
-            if other is not node and other.open:
-                if self.reaches(node, other):
-                    other.see(node)
-                if self.reaches(other, node):
-                    node.see(other)
+        for sender, receiver in links:
+            if self.reaches(sender, receiver):
+                receiver.see(sender)
         node.match_all()
 
     def serving(self, key: str) -> list[tuple[MemoryBus, Callable[[MemoryRequest], None]]]:

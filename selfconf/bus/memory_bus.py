@@ -30,6 +30,8 @@ class MemoryBus:
         self.paused, self.pauses = False, 0
         self.expelled = False
         """Whether it was paused for so long that its links are gone."""
+        self.host: frozenset[int] = frozenset()
+        """The numbers of the nodes that it was paused together with: its links to these stay."""
         self.busy_until = 0.0
         """Until when a callback keeps the thread of this node busy; what it sends goes out after that."""
         self._late_timers: list[Callable[[], None]] = []

@@ -150,6 +150,43 @@ def test_a_node_that_is_paused_again_before_it_is_connected_again_stays_gone() -
     assert here.lives == [True, False, True]
 
 
+def test_the_nodes_of_a_host_that_is_frozen_are_gone_for_all_but_each_other() -> None:
+    here = Watched()
+    third = here.network.node()
+    third.announce("lives/third")
+    seen: list[bool] = []
+    third.watch("seen/*", lambda key, alive: seen.append(alive))
+    here.one.announce("seen/one")
+    here.let_pass(0.1)
+    here.network.pause(here.one, third)
+    here.let_pass(3.0)
+    assert here.lives == [True, False]
+    assert here.network.reaches(here.one, third)
+    assert here.network.reaches(third, here.one)
+    assert not here.network.reaches(third, here.other)
+    here.network.resume(here.one)
+    here.network.resume(third)
+    here.let_pass(1.0)
+    assert here.lives == [True, False, True]
+    assert seen == [True]
+    here.network.pause(here.one)
+    here.let_pass(3.0)
+    assert seen == [True, False]
+
+
+def test_nodes_that_stall_together_go_on_as_if_no_time_had_passed() -> None:
+    here = Watched()
+    here.one.later(0.3, lambda: here.heard.append("timer"))
+    go_on = here.network.stall()
+    here.put("first")
+    here.let_pass(5.0)
+    assert here.heard == []
+    go_on()
+    here.let_pass(0.1)
+    assert here.heard == ["timer", "first"]
+    assert here.lives == [True]
+
+
 def test_a_host_that_loses_its_power_is_missed_after_the_lease() -> None:
     here = Watched()
     here.network.pause(here.one)
