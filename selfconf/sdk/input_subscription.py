@@ -5,12 +5,14 @@ has time. The queue is bounded: the newest signal counts of an output that promi
 many are kept as events may need (`signal_queue`); `sc:depth` of the input says otherwise. What is dropped is counted.
 
 *Silence.* An input that follows an output with a promised rate reports when no signal has come for `PATIENCE` of the
-promised periods, and again as long as none comes.
+promised periods, and again as long as none comes. While this process itself stands still, as its machine stalls or it
+is suspended, no signal could have come: the time by which a look comes late counts as no silence. Looks come once in
+each promised period, so that of any such time no more than a period counts.
 
 *Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it,
 and once more one that has stood by, unless that has just issued one, or that was lost with the life of its component
 and is in sight again: it may have nothing else to issue. So it asks for what a component that has been at rest passed
-over, or knew before it was stopped.
+over, or knew before it was stopped. It asks again where no answer comes, nor a signal, and the component lives.
 """
 
 from __future__ import annotations
@@ -116,6 +118,8 @@ class InputSubscription:
         self._lives: set[str] = set()
         self._asked = self._ended = False
         """Whether the output was asked for its last signal, and whether it is followed no more."""
+        self._questions = 0
+        """How often it was asked for its last signal."""
         self._deadline: Undo | None = None
         self._declared = [bus.subscribe(keys.output(wire.component, wire.output), self._received, direct=True)]
         bus.later(SIGNALS_FIRST, self._watch)
@@ -267,7 +271,23 @@ class InputSubscription:
             self._ask_for_last(ASK_FOR_LAST)
 
     def _ask(self) -> None:
-        self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, self._latched)
+        self._questions += 1
+        answered = partial(self._answered, self._questions, self._bus.now())
+        self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, answered)
+
+    def _answered(self, question: int, asked: float, replies: Replies) -> None:
+        """Take the last signal; ask again where there was no answer in time to the newest question: that says nothing.
+
+        Else an output that has one thing to say would never be heard again by an input that has missed it. One that
+        has none does not act, or has just begun to: what it had issued before was for a task of which it has let go.
+        """
+        self._latched(replies)
+        if self._heard_at >= asked or self._ended:
+            return
+        if replies.complete and self.muted and not replies.samples:
+            self._queue.keep(0)
+        elif not replies.complete and self._lives and question == self._questions:
+            self._ask()
 
     def _latched(self, replies: Replies) -> None:
         for sample in () if self._ended else replies.samples:
@@ -385,19 +405,30 @@ class InputSubscription:
             self._deadline()
         usual = max(PATIENCE * self._wire.period, LEAST_PATIENCE)
         seconds = usual if self._sequence else max(usual, BEGINNING)
-        began = self._bus.now()
+        self._look_for_silence(self._bus.now(), usual, seconds)
 
-        def look() -> None:
+    def _look_for_silence(self, began: float, usual: float, seconds: float) -> None:
+        """Look from time to time whether a signal has come: within `seconds` the first, the next ones as usual."""
+        quiet_since = began
+
+        def wait(left: float) -> None:
+            pause = min(left, usual / PATIENCE)
+            self._deadline = self._bus.later(pause, partial(look, self._bus.now() + pause))
+
+        def look(due: float) -> None:
+            nonlocal quiet_since
+            now = self._bus.now()
+            quiet_since = min(now, max(quiet_since, self._heard_at) + max(0.0, now - due))
             allowed = usual if self._heard_at >= began else seconds
-            left = max(self._heard_at, began) + allowed - self._bus.now()
+            left = quiet_since + allowed - now
             if left > 0:
-                self._deadline = self._bus.later(left, look)
+                wait(left)
                 return
             self._events.silent(self._wire, allowed)
             self._lose(self._heard_at)
             self._expect()
 
-        self._deadline = self._bus.later(usual if self._sequence else min(seconds, usual), look)
+        wait(usual)
 
 
 def _is_up_to(last: tuple[str, int], stamp: Stamp) -> bool:

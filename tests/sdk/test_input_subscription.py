@@ -95,6 +95,37 @@ def test_an_output_that_keeps_its_promise_is_not_reported() -> None:
     assert not silence(stage)
 
 
+@pytest.mark.parametrize("seconds", [0.3, 0.4, 0.9, 3.0])
+def test_while_a_process_stands_still_that_follows_an_output_the_output_is_not_silent(seconds: float) -> None:
+    """Whenever that begins, and however often: the output of a machine that stalls goes on when all else does."""
+    stage = Stage()
+    tracker = stage.neighbour()
+    stage.call(follow(period=0.1))
+    for number in range(30):
+        tracker.component.emit("pose", number)
+        stage.let_pass(0.1 * (number % 10) / 10)
+        go_on = stage.network.stall()
+        stage.let_pass(seconds)
+        go_on()
+        stage.let_pass(0.1)
+    assert not silence(stage)
+
+
+def test_an_output_that_is_silent_is_reported_also_after_the_process_has_stood_still() -> None:
+    stage = Stage()
+    stage.neighbour().component.emit("pose", 1)
+    stage.call(follow(period=0.1))
+    stage.neighbour().component.emit("pose", 2)
+    stage.let_pass(0.05)
+    go_on = stage.network.stall()
+    stage.let_pass(3.0)
+    go_on()
+    stage.let_pass(PATIENCE * 0.1 - 0.1)
+    assert not silence(stage)
+    stage.let_pass(0.15)
+    assert silence(stage)
+
+
 def test_an_output_may_take_its_time_to_begin_but_not_for_ever() -> None:
     stage = Stage()
     stage.neighbour()
@@ -208,6 +239,59 @@ def test_an_output_that_has_issued_nothing_is_asked_for_its_last_signal_again() 
     stage.let_pass(10.0)
     assert ("position", 7) in stage.recorder.said
     assert len(asked) == 2
+
+
+def test_an_output_that_does_not_answer_is_asked_for_its_last_signal_until_it_does() -> None:
+    """Though it has issued one before: it was out of sight, so that the input is unfed, and has nothing else to say."""
+    stage = Stage()
+    tracker = stage.network.node()
+    unanswered: list[Request] = []
+    tracker.announce(KEYS.life(TRACKER, "l"))
+    stop = tracker.serve(KEYS.outputs(TRACKER), lambda request: request.finish())
+    stage.call(follow(1))
+    said = encode(Stamp(TRACKER, "l", 1, 0.0))
+    tracker.publisher(KEYS.output(TRACKER, "pose"), Urgency.EVENT).put(b"7", said)
+    stage.let_pass(10.0)
+    stop()
+    stop = tracker.serve(KEYS.outputs(TRACKER), unanswered.append)
+    node = stage.runtime.bus
+    assert isinstance(node, MemoryBus)
+    stage.network.cut(node, tracker)
+    stage.let_pass(0.1)
+    stage.network.reconnect(node, tracker)
+    stage.let_pass(8.0)
+    assert 8 <= len(unanswered) <= 12
+    stop()
+
+    def answer(request: Request) -> None:
+        request.reply(KEYS.output(TRACKER, "pose"), b"7", said)
+        request.finish()
+
+    tracker.serve(KEYS.outputs(TRACKER), answer)
+    stage.let_pass(2.0)
+    assert stage.recorder.said.count(("position", 7)) == 2
+    asked = len(unanswered)
+    stage.let_pass(5.0)
+    assert len(unanswered) == asked
+
+
+def test_a_signal_is_not_new_of_an_output_that_says_it_has_none_by_now() -> None:
+    """It was issued for a task of which its component has let go just before it was listened to."""
+    stage = Stage()
+    tracker = stage.network.node()
+    tracker.announce(KEYS.life(TRACKER, "l"))
+    tracker.serve(KEYS.outputs(TRACKER), lambda request: request.finish())
+
+    def has_a_subscriber(matching: bool) -> None:
+        publisher.put(b"7", encode(Stamp(TRACKER, "l", 1, 0.0)))
+
+    publisher = tracker.publisher(KEYS.output(TRACKER, "pose"), Urgency.EVENT, has_a_subscriber)
+    other = Wire(IRI("urn:c:other"), "pose", None)
+    stage.call(apply(1, inputs={"position": (other,)}, standby={"position": (Wire(TRACKER, "pose", None),)}))
+    stage.let_pass(0.1)
+    stage.call(follow(2))
+    stage.let_pass(0.1)
+    assert ("position", 7) not in stage.recorder.said
 
 
 def test_a_component_may_read_values_in_a_way_of_its_own() -> None:
