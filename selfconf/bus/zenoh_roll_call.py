@@ -63,9 +63,17 @@ class RollCalls:
         self._call(key, seconds, done, [])
 
     def confirm(self, key: str, alive: bool, confirmed: Callable[[], None]) -> None:
-        """Call `confirmed` if a doubtful life has begun, or ended, as a watch has shown; on the thread of the loop."""
+        """Call `confirmed` if a doubtful life has begun, or ended, as a watch has shown; on the thread of the loop.
 
-        def heard(keys: Sequence[str], again: bool = True) -> None:
+        It is called twice at least where it does not answer, and again for as long as calls time out: these say
+        nothing. They end as soon as the router does, as the session does not wait for one that it has lost.
+        """
+
+        def call(again: bool) -> None:
+            began = self._loop.now()
+            self.call(key, CONFIRMATION, lambda keys: heard(keys, again or self._loop.now() - began >= CONFIRMATION))
+
+        def heard(keys: Sequence[str], again: bool) -> None:
             if key in keys:
                 if alive:
                     confirmed()
@@ -73,11 +81,11 @@ class RollCalls:
                     with self._lock:
                         self.doubtful.pop(key, None)
             elif again:
-                self._loop.later(SECOND_ANSWER, lambda: self.call(key, CONFIRMATION, lambda last: heard(last, False)))
+                self._loop.later(SECOND_ANSWER, lambda: call(False))
             elif not alive:
                 confirmed()
 
-        self._loop.wake_up(lambda: self.call(key, CONFIRMATION, heard))
+        self._loop.wake_up(lambda: call(True))
 
     def _call(
         self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None], before: Sequence[set[str]]

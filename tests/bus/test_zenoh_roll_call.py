@@ -176,6 +176,29 @@ def test_what_is_told_of_a_doubtful_life_is_believed_if_an_answer_confirms_it(
     assert list(caller.calls.doubtful) == [LIFE] * stays_doubtful
 
 
+@pytest.mark.parametrize(("known", "alive"), [([LIFE], True), ([], False)])
+def test_calls_for_a_doubtful_life_that_time_out_say_nothing_and_it_is_called_again(
+    known: list[str], alive: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A life that none of them has shown is shown once its router answers again, and no end before that."""
+    monkeypatch.setattr("selfconf.bus.zenoh_roll_call.CONFIRMATION", 0.05)
+    late = [Answer([]) for _ in range(4)]
+    caller, confirmed = Caller(*late, Answer(known)), list[bool]()
+    caller.calls.doubtful[LIFE] = None
+    caller.calls.confirm(LIFE, alive, lambda: confirmed.append(alive))
+    for count, answer in enumerate(late, 1):
+        answer.may_end.clear()
+        while caller.session.calls < count:
+            caller.loop.poll(0.01)
+        caller.loop.poll(0.06)
+        assert not confirmed
+        answer.may_end.set()
+    for _ in range(30):
+        caller.loop.poll(0.01)
+    assert confirmed == [alive]
+    assert caller.session.calls == len(late) + 1
+
+
 def test_so_many_lives_are_doubtful_at_most_and_these_are_the_last() -> None:
     crowd = [f"{number:04}/live/1" for number in range(MOST_DOUBTFUL)]
     caller = Caller(Answer([], too_soon=True), Answer([], crowd), Answer([], too_soon=True), Answer([], [LIFE]))
