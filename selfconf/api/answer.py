@@ -9,13 +9,13 @@ from pathlib import Path
 
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, seconds_limit, steps_limit
 from selfconf.api.collector import collector_at_rest, collector_looking_at_new
-from selfconf.api.ecology import Ecology
+from selfconf.api.ecology import Ecology, LoadedEcology
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.places import Places, with_lines
 from selfconf.api.reading import Text, described_in
 from selfconf.api.task import TaskSpecification, completed
-from selfconf.composition import Composer, Strategy, TimeLimit, composed, explained, insides
-from selfconf.errors import ProgrammerError
+from selfconf.composition import Composer, Inside, Strategy, TimeLimit, composed, explained, insides
+from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import Hierarchy, Reasoning
@@ -24,6 +24,7 @@ from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.left_out import LeftOut
 from selfconf.model.literal_values import number
 from selfconf.model.optimum import Optimum
+from selfconf.model.partition import Partition
 from selfconf.model.profile import Place, Profile
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.sharing import agreed
@@ -243,6 +244,8 @@ class Inquiry:
         began = time.perf_counter()
         with collector_at_rest():
             partition = self.composer.partition(self.ecology)
+            if isinstance(ecology, LoadedEcology):
+                partition, not_read = self._without_never_acting(partition, not_read)
         self.seconds["partition"] = time.perf_counter() - began
         self.eligible: Mapping[str, int] = {
             str(role.iri): len(candidates)
@@ -271,6 +274,36 @@ class Inquiry:
             if hierarchy.matches(setting.type, parameter.type)
         }
         return None if sharer.wants.values == values else sharer
+
+    def _without_never_acting(
+        self, partition: Partition, left_out: tuple[LeftOut, ...]
+    ) -> tuple[Partition, tuple[LeftOut, ...]]:
+        """The partition of the ecology without composites that can never act, and what is left out, with these."""
+        never = tuple(self._never_acting(partition))
+        if never:
+            left = {one.component for one in never}
+            self.ecology = {one: a for one, a in self.ecology.items() if one not in left}
+            partition = self.composer.partition(self.ecology)
+        return partition, (*left_out, *never)
+
+    def _never_acting(self, partition: Partition) -> Iterator[LeftOut]:
+        """The composites that might play but can be nothing inside, whatever is advertised beside them, as at a site.
+
+        Where the document that says what is inside is not at hand, as of a text, nothing is known of that.
+        """
+        eligible = {candidate.profile.component for some in partition.candidates for candidate in some}
+        for component in sorted(eligible.union(one.component for one in partition.recruits)):
+            advertisement = self.ecology[component]
+            if advertisement.profile.inside is None:
+                continue
+            try:
+                document = described_in(advertisement)
+            except SelfconfError:
+                continue
+            try:
+                Inside.of(advertisement.profile, document, self.composer.hierarchy)
+            except SelfconfError as error:
+                yield LeftOut(self._place(component), component, str(error))
 
     def _place(self, component: IRI) -> Place:
         """Where a component is described."""

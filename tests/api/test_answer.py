@@ -187,6 +187,34 @@ def test_what_can_be_shared_is_shared_as_its_holder_wants(
     assert answer.wants(screen).inputs == other != second
 
 
+RADIO = f"""{PREFIXES}
+:play a sc:Template ; sc:roles ( :tuner ) ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :tuner ] .
+:tuner a sc:Role ; sh:class rob:Tuner .
+:radio-set a sc:Component, :Radio ; sc:preference 5 ; sc:grounding [ sc:template :play ] ;
+    sc:hasOutput [ sc:name "sound" ; sc:signalType TYPE ] .
+:old-radio a sc:Component, :Radio ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .
+"""
+
+
+@pytest.mark.parametrize(("signal", "player"), [("rob:Text", "old-radio"), ("rob:Audio", "radio-set")])
+def test_a_composite_that_can_be_nothing_inside_plays_no_role_and_is_named(
+    signal: str, player: str, tmp_path: Path
+) -> None:
+    """One whose inside cannot be configured from these advertisements plays, as others may be at its site."""
+    (tmp_path / "radio.ttl").write_text(RADIO.replace("TYPE", signal))
+    task = template(f"{PREFIXES}:listen a sc:Template ; sc:roles ( :set ) . :set a sc:Role ; sh:class :Radio .")
+    inquiry = Inquiry(task, read(tmp_path), Method())
+    assert inquiry.eligible == {str(iri("set")): 1 if player == "old-radio" else 2}
+    answer = inquiry.answer()
+    assert isinstance(answer, Answer)
+    assert answer.components == (iri(player),)
+    assert [(one.component, one.reason) for one in answer.left_out] == (
+        [(iri("radio-set"), "its output 'sound' is Text, and that of the template play is Audio")]
+        if player == "old-radio"
+        else []
+    )
+
+
 def test_a_refusal_of_text_that_is_in_no_file_has_its_lines(clock: sc.TaskSpecification) -> None:
     ecology = sc.read(*(Path(f"examples/clock/{name}.ttl").read_text() for name in ("clock", "display")))
     refusal = sc.configure(clock.bind(room=":cellar"), ecology)
