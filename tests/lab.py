@@ -137,20 +137,29 @@ class Recorder(Component):
 
 
 class StillShelf(Shelf):
-    """The advertisements in files that stay as they are once they are written: nobody has to look at them again."""
+    """The advertisements in files that stay as they are once they are written: nobody has to look at them again.
+
+    Those that are `held_back`, by the names of their files, are not there yet, or were lost with a newer disk.
+    """
 
     _written: ClassVar[dict[Path, str]] = {}
     """What lies in each file: histories by the hundred write the same."""
 
-    def __init__(self, texts: Mapping[Path, str]) -> None:
+    def __init__(self, texts: Mapping[Path, str], held_back: Callable[[], frozenset[str]]) -> None:
         super().__init__([], lambda complaint: None)
-        self._texts = texts
+        self._texts, self._is_held_back = texts, held_back
+        self._known: frozenset[str] | None = None
+        """What was held back when the files were read."""
 
     def refresh(self) -> bool:
         """Read the files, when that is asked for the first time; whether the advertisements are others now."""
-        if self.advertisements or not self._texts:
+        held_back = self._is_held_back()
+        if held_back == self._known or not self._texts:
             return False
+        self._known, self.advertisements = held_back, {}
         for path, text in sorted(self._texts.items()):
+            if path.stem in held_back:
+                continue
             if self._written.get(path) != text:
                 path.write_text(text)
                 self._written[path] = text
@@ -203,6 +212,10 @@ class Lab:
         """Those of each site, as far as any of them live."""
         self.events: list[RunEvent] = []
         self.ended: list[Refusal | Undecided | None] = []
+        self.held_back: dict[str, frozenset[str]] = {}
+        """The advertisements that a site has not, as its disk is that of before, by the name of the site."""
+        self.clock_steps: dict[str, float] = {}
+        """By how many seconds the clock of a task was set since it began, by its name."""
 
     def site(self, name: str, *names: str) -> Site:
         """A site with those advertisements, and with whatever else lies in its folder already."""
@@ -219,7 +232,8 @@ class Lab:
         if not self._still:
             return Shelf([write_advertisements(folder, *names, advertisements=self.advertised)], self.complaints.append)
         folder.mkdir(parents=True, exist_ok=True)
-        return StillShelf({folder / f"{name}.ttl": PREFIXES + self.advertised[name] + "\n" for name in names})
+        texts = {folder / f"{name}.ttl": PREFIXES + self.advertised[name] + "\n" for name in names}
+        return StillShelf(texts, lambda: self.held_back.get(folder.name, frozenset()))
 
     def profile(self, name: str) -> Profile:
         """The profile in one of the advertisements."""
@@ -275,7 +289,7 @@ class Lab:
             "lab",
             order,
             f"agent{len(self.network.nodes)}",
-            lambda: self.network.time + clock,
+            lambda: self.network.time + clock + self.clock_steps.get(order.name, 0.0),
         )
         agent.start()
         return agent

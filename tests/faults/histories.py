@@ -14,6 +14,7 @@ plays it again and drops every action that is not needed (`tests.faults.replay`)
 from __future__ import annotations
 
 import traceback
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -40,6 +41,8 @@ from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.site import Site
+from tests.faults.harsh import KINDS as HARSH
+from tests.faults.harsh import calm, promising
 from tests.faults.script import Action, Script
 from tests.faults.simulated_code import SimulatedCodeThread, SimulatedComponentCode
 from tests.faults.simulated_processes import SimulatedProcesses
@@ -162,6 +165,7 @@ class History:
     """A script that is played; `broken` says what was not as it must be, and when."""
 
     def __init__(self, script: Script, folder: Path) -> None:
+        from tests.faults.harsh_actions import HarshActions
         from tests.faults.watch import Watch
 
         self.script = script
@@ -169,6 +173,8 @@ class History:
         advertised = {
             name: startable(text) if name in script.startable else text for name, text in ecology.advertisements.items()
         }
+        if script.promised:
+            advertised = {name: promising(text) for name, text in advertised.items()}
         self.lab = Lab(folder, script.seed, script.faults, advertised, still=True)
         self.network = self.lab.network
         self.told: list[str] = []
@@ -181,6 +187,9 @@ class History:
         self._nodes: dict[str, MemoryBus] = {}
         self._isolated: set[str] = set()
         self._powerless: list[MemoryBus] = []
+        self.done: Counter[str] = Counter()
+        """How many actions of each kind were possible."""
+        self._harsh = HarshActions(self)
         self.known: dict[Callable[[History], object], Any] | None = None
         """What was looked up while the history stands still; None while it goes on."""
         for name in ecology.sites:
@@ -209,10 +218,13 @@ class History:
             self.watch.note("nothing breaks", traceback.format_exc(limit=-4))
 
     def _play(self) -> None:
+        if self.script.stormy:
+            self.network.faults = calm(self.script.faults)
         for action in self.script.actions:
             self.lab.let_pass(max(0.0, action.time - self.network.time))
             if self.perform(action):
                 self.told.append(str(action))
+                self.done[action.kind] += 1
         self._cease()
         self._come_to_an_end()
         if self.script.mended:
@@ -287,12 +299,15 @@ class History:
 
     def perform(self, action: Action) -> bool:
         """Do what an action says, if that is possible; whether it was."""
+        if action.kind in HARSH:
+            return self._harsh.perform(action)
         done: bool = getattr(self, f"_{action.kind}")(action)
         return done
 
     def _cease(self) -> None:
         """Undo what is wrong with the network, and let everybody go on."""
         self.told.append(f"{self.network.time:8.3f}  the faults cease")
+        self._harsh.cease()
         self.network.faults = Faults()
         for node in self._powerless:
             node.close()
@@ -363,6 +378,11 @@ class History:
             lone = self.node(other)
             if lone is not None:
                 self.network.cut(node, lone)
+        self._harsh.joined(node)
+
+    def leave(self, who: str) -> None:
+        """Have what is done to a task from now on be done to another one of its name, and not to this one."""
+        del self._nodes[who]
 
     def _begin_site(self, name: str) -> None:
         site = self.lab.site(name, *self.script.ecology.sites[name])

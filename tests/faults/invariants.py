@@ -30,6 +30,8 @@ CALLS = 2.0
 """Seconds after which a configurator looks again at a call that was not answered."""
 MOST_WAITING = 2_000
 """How many messages and timers may wait in the network."""
+LATE = ("answer_late", "end_before_answer")
+"""The kinds of actions by which answers come late."""
 LOOKS = 10.0
 """Seconds within which a configurator notices that a component does not act any more without having said so."""
 
@@ -52,14 +54,19 @@ def travel(history: History) -> float:
     return 2 * (faults.most_delay + faults.most_event_delay) + 0.2
 
 
+def loses(history: History) -> bool:
+    """Whether calls or answers may be lost: one that comes too late is none."""
+    return bool(history.script.faults.loss) or any(one.kind in LATE for one in history.script.actions)
+
+
 def retries(history: History) -> float:
     """How long it may take until a call has got through, in seconds."""
-    return 20 * CALLS if history.script.faults.loss else 2 * CALLS
+    return 20 * CALLS if loses(history) else 2 * CALLS
 
 
 def told_again(history: History) -> float:
     """How much later an actuator may hear that it is to rest, as the first message was lost, in seconds."""
-    return CALLS if history.script.faults.loss else 0.0
+    return CALLS if loses(history) else 0.0
 
 
 def tolerated(history: History) -> float:
@@ -70,7 +77,7 @@ def tolerated(history: History) -> float:
 
 def heeded(history: History) -> float:
     """How long an actuator may follow what acts for others, in seconds: its release may be lost twice."""
-    lost_twice = 2 * RELEASE_AGAIN if history.script.faults.loss else 0.0
+    lost_twice = 2 * RELEASE_AGAIN if loses(history) else 0.0
     return max(GRACE, tolerated(history)) + LEASE + travel(history) + lost_twice
 
 

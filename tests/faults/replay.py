@@ -6,8 +6,8 @@
 
 `--ecology composed` plays it where there are operations and a composite, `--busy` with code that is busy while it acts,
 `--large` as if the ecology were so large that not all lives are followed, `--upgrades` with tasks that change to what
-they would rather have. A test that fails prints the command that
-plays its history again.
+they would rather have, `--harsh` the script of that number of `tests/faults/harsh.py`. A test that fails prints the
+command that plays its history again.
 
 The exit code is 1 if an invariant was broken.
 """
@@ -79,7 +79,8 @@ def told(recipe: Recipe, history: History) -> str:
 
 def command(recipe: Recipe) -> str:
     """The command that plays a history again, with what is not needed left out."""
-    options = [f"--{name}" for name in ("busy", "large", "upgrades") if getattr(recipe, name)]
+    options = [f"--{name}" for name in ("busy", "large", "upgrades", "harsh") if getattr(recipe, name)]
+    options += [f"--only {recipe.only}"] if recipe.only else []
     return " ".join([PROGRAM, str(recipe.seed), "--ecology", recipe.ecology.name, *options, "--shrink"])
 
 
@@ -92,13 +93,16 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--busy", action="store_true", help="code is also busy while it acts, and hangs on")
     parser.add_argument("--large", action="store_true", help="only selected lives are followed")
     parser.add_argument("--upgrades", action="store_true", help="tasks change to what they would rather have")
+    parser.add_argument("--harsh", action="store_true", help="play a script of tests.faults.harsh")
+    parser.add_argument("--only", default="", metavar="KIND,...", help="of these kinds of harsh actions alone")
     parser.add_argument("--ecology", choices=ECOLOGIES, default="paper", help="where it happens (default: %(default)s)")
     return parser
 
 
 def recipe_of(given: argparse.Namespace) -> Recipe:
     """The recipe that the options of this program name."""
-    return Recipe(given.seed, ECOLOGIES[given.ecology], given.busy, given.large, given.upgrades)
+    ecology = ECOLOGIES[given.ecology]
+    return Recipe(given.seed, ecology, given.busy, given.large, given.upgrades, given.harsh, given.only)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -65,6 +65,10 @@ class Script:
     """After how many seconds each component that acts issues its signals again; None: only when it is told to."""
     mended: bool = False
     """Whether in the end every component lives and is able to act, so that each task changes to the best there is."""
+    stormy: bool = False
+    """Whether the faults of the network come in storms, and not between these."""
+    promised: bool = False
+    """Whether outputs promise a rate, so that one that issues nothing counts as failed."""
 
     def __str__(self) -> str:
         lines = [f"seed {self.seed} in the ecology {self.ecology.name}: {self.faults}"]
@@ -230,13 +234,25 @@ class Recipe:
     """Whether the ecology counts as so large that not all lives are followed."""
     upgrades: bool = False
     """Whether tasks change to what they would rather have."""
+    harsh: bool = False
+    """Whether the script is one of `tests.faults.harsh`."""
+    only: str = ""
+    """The kinds of harsh actions that it is made of, apart by commas, if not any of them."""
 
     @property
     def script(self) -> Script:
         """The script that is made."""
-        written = write(self.seed, ecology=self.ecology)
+        written = self._written
         if self.ecology.latched:  # a signal that is lost on its way is not said again
             written = replace(written, faults=replace(written.faults, loss=0.0))
         crowded = with_crowd(written) if self.ecology.crowd else written
         upgrading = with_upgrades(crowded) if self.upgrades else crowded
         return replace(with_busy_code(upgrading) if self.busy else upgrading, large=self.large)
+
+    @property
+    def _written(self) -> Script:
+        if not self.harsh:
+            return write(self.seed, ecology=self.ecology)
+        from tests.faults import harsh
+
+        return harsh.write(self.seed, self.ecology, tuple(filter(None, self.only.split(","))))
