@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,8 +63,8 @@ def run(given: argparse.Namespace) -> int:
         complain(str(unreadable) if unreadable.file else f"selfconf import: {unreadable}")  # a place comes first
     for each in (*report.renamed, *report.left_out):
         complain(str(each))
-    if not report.files and not report.unreadable and given.router is None:
-        complain(f"selfconf import: {_looked_for(given.form, given.sources)}")
+    if not report.files and not report.unreadable:
+        complain(f"selfconf import: {_looked_for(given)}")
     if given.format == "json":
         print(json.dumps(_body(report), indent=2, ensure_ascii=False))
     else:
@@ -87,14 +86,18 @@ def _imported(given: argparse.Namespace) -> ImportReport:
     return import_living_nodes(given.router, given.domain, given.out, given.namespace)
 
 
-def _looked_for(form: str, sources: Sequence[str]) -> str:
-    """The sentence about sources that hold nothing of a format: which files of a folder were read."""
+def _looked_for(given: argparse.Namespace) -> str:
+    """The sentence about sources that hold nothing of a format: which domain, or which files of a folder, was read."""
     from selfconf.importing import IMPORT_FORMATS
 
-    *others, last = IMPORT_FORMATS[form].endings
+    if given.router is not None:
+        return f"no node of ROS 2 lives in the domain {given.domain} at {given.router}; --domain names another one"
+    *others, last = IMPORT_FORMATS[given.form].endings
     endings = f"{', '.join(others)} or {last}" if others else last
-    where = listed(sources)
-    return f"there is nothing of the format {form} in {where}; of a folder the files that end in {endings} are read"
+    where = listed(given.sources)
+    return (
+        f"there is nothing of the format {given.form} in {where}; of a folder the files that end in {endings} are read"
+    )
 
 
 def _print_table(report: ImportReport) -> None:

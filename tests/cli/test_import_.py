@@ -10,6 +10,8 @@ import pytest
 from referencing import Registry, Resource
 
 from selfconf import library
+from selfconf.api import living_import
+from selfconf.importing import ImportReport
 from tests.cli.command import run
 
 SCHEMAS = {path.name: json.loads(path.read_text("utf-8")) for path in library.schemas()}
@@ -105,3 +107,12 @@ def test_an_imported_system_is_configured(tmp_path: Path, capsys: pytest.Capture
     outcome = run(capsys, "configure", template, "--ads", str(tmp_path), "--format", "json")
     assert outcome.code == 0, outcome
     assert len(outcome.body["connections"]) == 3
+
+
+def test_a_domain_in_which_no_node_lives_is_named(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(living_import, "import_living_nodes", lambda *_: ImportReport("ros2", (), (), ()))
+    outcome = run(capsys, "import", "ros2", "--connect", "tcp/127.0.0.1:7447", "--domain", "5", "--out", str(tmp_path))
+    assert (outcome.code, outcome.out) == (1, "0 components in 0 files\n")
+    assert "no node of ROS 2 lives in the domain 5 at tcp/127.0.0.1:7447; --domain names another one" in outcome.err
