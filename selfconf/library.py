@@ -7,6 +7,7 @@ what messages call it, and its place is what relative IRIs are relative to.
 
 from __future__ import annotations
 
+import atexit
 import tempfile
 from functools import cache
 from importlib.resources import files
@@ -52,7 +53,9 @@ def _folder(name: str) -> Path:
 @cache
 def _unpacked() -> tempfile.TemporaryDirectory[str]:
     """Where the files of a zipped wheel are unpacked; it is removed when the process ends, and not before."""
-    return tempfile.TemporaryDirectory(prefix="selfconf-")
+    folder = tempfile.TemporaryDirectory(prefix="selfconf-")
+    atexit.register(folder.cleanup)  # left to itself it goes with a warning
+    return folder
 
 
 def _unpack(packaged: Traversable, folder: Path) -> None:

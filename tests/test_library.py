@@ -60,10 +60,16 @@ def test_a_wheel_that_is_not_unpacked_has_all_of_them_and_leaves_nothing_behind(
     """
     environment = {**os.environ, "TMPDIR": str(temporary)}
     done = subprocess.run(
-        [sys.executable, "-c", program], env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=120
+        [sys.executable, "-W", "error", "-c", program],
+        env=environment,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
     assert done.returncode == 0, done.stderr
     shapes = sorted((ROOT / "shapes").glob("*.ttl"))
     files = [*sorted((ROOT / "ontology").glob("*.ttl")), *shapes, *shapes, *library.schemas()]
     assert done.stdout.splitlines()[: len(files)] == [f"{path.name} {path.stat().st_size}" for path in files]
     assert list(temporary.iterdir()) == []
+    assert "Warning" not in done.stderr
