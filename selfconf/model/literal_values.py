@@ -90,6 +90,15 @@ def plain_number(term: Term) -> int | float | None:
     return int(found) if term.datatype in WHOLE_NUMBERS else float(found)
 
 
+def natural_number(term: Term) -> int | None:
+    """The number from zero on that a literal of xsd:integer stands for, as in `sh:minCount`; None for anything else."""
+    if not isinstance(term, Literal) or term.datatype != INTEGER:
+        return None
+    found = number(term)
+    return None if found is None or found < 0 else int(found)
+
+
+INTEGER = XSD_NAMESPACE + "integer"
 BOOLEAN = XSD_NAMESPACE + "boolean"
 TRUTH = {"true": True, "1": True, "false": False, "0": False}
 """The texts of a truth value, each with what it stands for."""

@@ -13,6 +13,7 @@ from selfconf.model.literal_values import (
     WHOLE_NUMBERS,
     as_python,
     fraction,
+    natural_number,
     number,
     plain_number,
     truth,
@@ -63,6 +64,13 @@ def test_a_number_is_read_exactly_as_it_is_written(lexical: str, datatype: str, 
 def test_a_literal_that_is_no_measurement_is_no_number(lexical: str, datatype: str) -> None:
     assert number(literal(lexical, datatype)) is None
     assert plain_number(literal(lexical, datatype)) is None
+
+
+@pytest.mark.parametrize(("lexical", "found"), [("0", 0), ("-0", 0), ("+1", 1), ("007", 7), ("-1", None), (" 1", None)])
+def test_a_natural_number_is_zero_or_more_however_it_is_written(lexical: str, found: int | None) -> None:
+    assert natural_number(literal(lexical, "integer")) == found
+    assert natural_number(literal(lexical, "int")) is None
+    assert natural_number(IRI("urn:x:1")) is None
 
 
 def test_a_whole_number_is_an_int_in_python_and_any_other_a_float() -> None:

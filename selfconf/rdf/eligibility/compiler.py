@@ -19,6 +19,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeGuard
 
+from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.eligibility.role_tests import ClassTest, Count, PropertyTest, QualifiedCount, RoleTest, SelfTest
 from selfconf.rdf.permitted_fields import SHAPE_ANNOTATIONS, STRUCTURE
@@ -55,7 +56,7 @@ class _PropertyParts:
 
     def takes(self, predicate: IRI, value: Term) -> bool:
         """Take a constraint of how many values, or which, if it is one."""
-        number = int(value.lexical) if isinstance(value, Literal) and value.lexical.isdecimal() else None
+        number = natural_number(value)
         if predicate == SH.hasValue:
             self.required.append(value)
         elif predicate == SH.minCount and number is not None:
@@ -161,9 +162,7 @@ class ShapeCompiler:
     def _qualified(self, said: Mapping[IRI, list[Term]]) -> Iterator[QualifiedCount]:
         """How many values conform to a shape; `rest` where only pySHACL can judge that, or part of it."""
         shapes, *counts = (said.get(SH[f"qualified{name}"], []) for name in ("ValueShape", "MinCount", "MaxCount"))
-        numbers = [
-            [int(n.lexical) for n in some if isinstance(n, Literal) and n.lexical.isdecimal()] for some in counts
-        ]
+        numbers = [[number for number in map(natural_number, some) if number is not None] for some in counts]
         ill_formed = len(shapes) != 1 or not any(counts) or any(len(some) > 1 for some in counts) or numbers == [[], []]
         if ill_formed or SH.qualifiedValueShapesDisjoint in said:
             self.rest = True

@@ -11,6 +11,7 @@ Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, shacl_pattern
 from selfconf.rdf.shacl.shape_syntax import (
+    COUNTS,
     ILL_FORMED,
     LITERAL,
     ONLY_WITH_A_PATH,
@@ -24,6 +25,7 @@ from selfconf.rdf.shacl.shape_syntax import (
 from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude
 
 __all__ = [
+    "COUNTS",
     "ILL_FORMED",
     "LITERAL",
     "ONLY_WITH_A_PATH",

@@ -14,6 +14,7 @@ from collections.abc import Iterable
 
 import pyoxigraph as ox
 
+from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES
 from selfconf.rdf.sparql import fault
@@ -118,7 +119,7 @@ def _fits(document: Document, predicate: IRI, value: Term) -> bool:
     """Whether a value may be that of one of SHACL's properties."""
     literal = value if isinstance(value, Literal) else None
     if predicate in COUNTS:
-        return literal is not None and literal.datatype == XSD.integer and literal.lexical.isdecimal()
+        return natural_number(value) is not None
     if predicate in SWITCHES:
         return literal is not None and literal.datatype == XSD.boolean
     if predicate in LISTS:

@@ -14,6 +14,7 @@ from functools import lru_cache
 from types import ModuleType
 
 from selfconf.model.immutable import immutable
+from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.shacl.patterns import shacl_pattern
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
@@ -109,7 +110,7 @@ def _kinds(test: ValueTest) -> frozenset[type]:
 
 
 def _length(wanted: Term) -> int:
-    return int(wanted.lexical) if isinstance(wanted, Literal) and wanted.lexical.isdecimal() else 0
+    return natural_number(wanted) or 0
 
 
 def _order_of_limits(low: Term, high: Term) -> int | None:
@@ -143,7 +144,7 @@ def _compiles(test: ValueTest) -> bool:
     if not isinstance(wanted, Literal):
         return False
     if test.constraint in _LENGTHS:
-        return wanted.datatype == XSD.integer and wanted.lexical.isdecimal()
+        return natural_number(wanted) is not None
     if test.constraint in _LIMITS:
         return bool(_literals().has_value(wanted))
     if test.constraint != SH.pattern or wanted.datatype != XSD.string:

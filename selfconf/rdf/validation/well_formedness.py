@@ -24,12 +24,14 @@ from rdflib import RDF, SH, XSD, Graph, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.read_shapes import ReadShapes
-from selfconf.rdf.shacl import ILL_FORMED, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
+from selfconf.rdf.shacl import COUNTS, ILL_FORMED, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.vocabulary import SC
@@ -153,7 +155,12 @@ def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, s
 
 
 def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
-    """Literals where a shape has to stand, which the shape of shapes overlooks."""
+    """Literals where a shape has to stand, and numbers that count nothing, which the shape of shapes overlooks."""
+    for predicate in map(URIRef, sorted(COUNTS)):
+        for shape, value in shapes.subject_objects(predicate):
+            offsets = positions.triples.get((shape, predicate, value))
+            if isinstance(value, Literal) and offsets is not None and natural_number(from_rdflib(value)) is None:
+                yield at(positions, offsets.object, "SC-T13", unfit(IRI.unchecked(predicate)))
     for predicate in (SH.node, SH["not"], SH.qualifiedValueShape):
         for shape, value in shapes.subject_objects(predicate):
             offsets = positions.triples.get((shape, predicate, value))

@@ -47,7 +47,7 @@ BOUNDS = st.sampled_from(("minInclusive", "maxInclusive", "minExclusive", "maxEx
 CONSTRAINTS = st.one_of(
     st.builds("sh:in {}".format, LISTS),
     st.builds("sh:hasValue {}".format, TERMS),
-    st.builds("sh:minCount {}".format, st.integers(0, 2)),
+    st.builds("sh:minCount {}{}".format, st.sampled_from(("", "+", "0")), st.integers(0, 2)),
     st.builds("sh:maxCount {}".format, st.integers(0, 2)),
     st.builds("sh:nodeKind sh:{}".format, KINDS),
     st.builds("sh:datatype {}".format, DATATYPES),

@@ -37,6 +37,7 @@ def places(text: str) -> list[tuple[int, int]]:
     [
         "sh:class :Lamp",
         "sh:property [ sh:path :p ; sh:minCount 1 ; sh:in ( 1 2 ) ]",
+        "sh:property [ sh:path :p ; sh:minCount +1 ; sh:maxCount 02 ; sh:minLength -0 ]",
         "sh:or ( [ sh:class :A ] [ sh:class :B ] )",
         "sh:property [ sh:path ( :p :q ) ; sh:pattern '^a+$' ]",
         "sh:sparql [ sh:select 'SELECT $this WHERE { $this a ?type }' ]",
@@ -58,6 +59,8 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:minCount 1", 16, "how many play a role is sc:minCount"),
         ("sh:hasValue 1 ; sh:lessThan :p", 32, "write sh:property"),
         ("sh:node 'x'", 24, "sh:node"),
+        ("sh:property [ sh:path :p ; sh:minCount ' 1 '^^xsd:integer ]", 55, "has to be a whole number"),
+        ("sh:property [ sh:path :p ; sh:qualifiedValueShape [ ] ; sh:qualifiedMaxCount -1 ]", 93, "a whole number"),
         ("sh:property [ sh:path :p ; sh:minCount 1 , 2 ]", 59, "A shape has one sh:minCount at most."),
         ("sh:property [ sh:path :p ; sh:pattern '(' ]", 54, "This is no regular expression"),
         (r"sh:property [ sh:path :p ; sh:pattern '\\p{L}+' ]", 54, r"a letter of any language is [^\W\d_]."),
