@@ -51,6 +51,23 @@ _LEXICAL = {
     **dict.fromkeys(FLOATING, re.compile(_DECIMAL + "(?:[eE][+-]?[0-9]+)?")),
 }
 
+_DATE = r"-?(?:[1-9][0-9]{3,}|0[0-9]{3})-(?:0[1-9]|1[0-2])-(?:0[1-9]|[12][0-9]|3[01])"
+_TIME = r"(?:(?:[01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9](?:\.[0-9]+)?|24:00:00(?:\.0+)?)"
+_ZONE = r"(?:Z|[+-](?:(?:0[0-9]|1[0-3]):[0-5][0-9]|14:00))"
+_DAYS = r"(?:[0-9]+D)?(?:T(?=[0-9])(?:[0-9]+H)?(?:[0-9]+M)?(?:[0-9]+(?:\.[0-9]+)?S)?)?"
+_TEXTS = {
+    "dateTime": f"{_DATE}T{_TIME}{_ZONE}?",
+    "dateTimeStamp": f"{_DATE}T{_TIME}{_ZONE}",
+    "date": f"{_DATE}{_ZONE}?",
+    "time": f"{_TIME}{_ZONE}?",
+    "duration": f"-?P(?=[0-9T])(?:[0-9]+Y)?(?:[0-9]+M)?{_DAYS}",
+    "dayTimeDuration": f"-?P(?=[0-9T]){_DAYS}",
+    "yearMonthDuration": "-?P(?=[0-9])(?:[0-9]+Y)?(?:[0-9]+M)?",
+    "language": "[A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*",
+}
+TEXT_PATTERNS = {XSD_NAMESPACE + name: re.compile(pattern) for name, pattern in _TEXTS.items()}
+"""The lexical spaces of datatypes of short texts; that a month has that day is not looked at."""
+
 
 def number_of(lexical: str, datatype: str) -> Decimal | None:
     """The number that a text of a datatype stands for, exactly as it is written; None if it stands for none.

@@ -3,8 +3,9 @@
 A signal is a JSON object with a member for each field; further members are allowed, as a kind of signal below this one
 has more. A field holds one value of its datatype, or, if it is repeated, any number of them in order. JSON has numbers,
 truth values and text: numeric datatypes of XML Schema are checked as numbers (whole ones by their bounds, and as in
-JSON Schema 2.0 is a whole number; floating ones by what a double holds), xsd:boolean as a truth value, every other
-datatype of XML Schema as text, and a datatype that is of none of these kinds is not checked.
+JSON Schema 2.0 is a whole number; floating ones by what a double holds), xsd:boolean as a truth value, dates, times,
+durations and languages as text that is written as one, every other datatype of XML Schema as text, such as that of
+bytes, which may be long, and a datatype that is of none of these kinds is not checked.
 
 A signal that travels as bytes, or as an array, has no fields that could be checked; its kind says whether it may.
 
@@ -22,7 +23,7 @@ from operator import countOf
 from reprlib import Repr
 from typing import Any, NamedTuple
 
-from selfconf.model.literal_values import DATATYPES, FLOATING, WHOLE_NUMBERS
+from selfconf.model.literal_values import DATATYPES, FLOATING, TEXT_PATTERNS, WHOLE_NUMBERS
 from selfconf.model.term import IRI, XSD_NAMESPACE
 
 _SHORT = Repr()
@@ -173,6 +174,9 @@ def _kind(datatype: IRI) -> _JsonKind:
         return _JsonKind(frozenset((int, float)), *unbounded, _is_number)
     if datatype == XSD_NAMESPACE + "boolean":
         return _JsonKind(frozenset((bool,)), *unbounded, lambda value: isinstance(value, bool))
+    if datatype in TEXT_PATTERNS:
+        written = TEXT_PATTERNS[datatype].fullmatch
+        return _JsonKind(frozenset(), *unbounded, lambda value: isinstance(value, str) and written(value) is not None)
     if datatype.startswith(XSD_NAMESPACE):
         return _JsonKind(frozenset((str,)), *unbounded, lambda value: isinstance(value, str))
     return _JsonKind(frozenset(), *unbounded, lambda _: True)

@@ -98,6 +98,32 @@ def test_bytes_are_a_signal_of_a_kind_that_holds_bytes_or_many_values(
     assert problem == (None if right else "is bytes, where Kind is an object with 'celsius'")
 
 
+@pytest.mark.parametrize(
+    ("datatype", "right", "wrong"),
+    [
+        ("dateTime", "2026-02-28T23:59:59.5+14:00 -0044-03-15T12:00:00 2026-01-01T24:00:00Z", "2026-01-01 today 5"),
+        ("dateTimeStamp", "2026-02-28T23:59:59Z", "2026-02-28T23:59:59"),
+        ("date", "2026-12-31 12026-01-01Z", "2026-13-01 2026-1-1 01.02.2026"),
+        ("time", "00:00:00 12:30:05.25-03:00", "12:30 25:00:00 24:00:01"),
+        ("duration", "P1Y2M3DT4H5M6.7S -PT1S P1D PT5M", "P PT 1D P1S P1H P-1D"),
+        ("dayTimeDuration", "P1DT1H PT0S", "P1M P1Y P"),
+        ("yearMonthDuration", "P1Y P14M", "P1D P"),
+        ("language", "en de-CH zh-Hant-TW", "en_GB englishlanguage -"),
+    ],
+)
+def test_a_text_of_a_datatype_is_written_as_one(datatype: str, right: str, wrong: str) -> None:
+    kind = IRI(XSD_NAMESPACE + datatype)
+    fields = SignalFields(IRI("urn:s"), (SignalField("f", kind), SignalField("g", kind, repeated=True)))
+    for text in right.split():
+        assert fields.problem({"f": text, "g": [text]}) is None, text
+    for text in (*wrong.split(), ""):
+        assert fields.problem({"f": text, "g": []}) == f"has {text!r} as 'f', which is xsd:{datatype}"
+        assert f"has {text!r} at 1 in 'g'" in str(
+            fields.problem({"f": right.split()[0], "g": [right.split()[0], text]})
+        )
+    assert fields.problem({"f": 7, "g": []}) is not None
+
+
 def test_a_datatype_that_json_cannot_tell_is_not_checked() -> None:
     fields = SignalFields(IRI("urn:S"), (SignalField("any", IRI("urn:datatype")),))
     for value in (1, "a", None, [1], {"b": 2}):
