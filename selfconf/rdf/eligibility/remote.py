@@ -17,7 +17,7 @@ from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.permitted_fields import PERMITTED_IN_SHAPES
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.turtle import ox_term
-from selfconf.rdf.vocabulary import RDFS, SC, TYPE
+from selfconf.rdf.vocabulary import RDFS, REST, SC, TYPE
 
 _COMPONENT = str(ox_term(SC.Component))
 BLANK_NODE_DEPTH = 3
@@ -35,6 +35,11 @@ _ACCEPTED = (
     "?subject ?predicate ?object FILTER ( isBlank(?subject) )"
 )
 """The statements of the shapes that the inputs of a component accept, which are blank nodes at any depth."""
+_LISTED = (
+    f"?component ?link ?list . ?list <{REST}>/<{REST}>/<{REST}>* ?subject . "
+    "?subject ?predicate ?object FILTER ( isBlank(?list) && isBlank(?subject) )"
+)
+"""The statements of a list that is the value of a property, from its third member on."""
 ANY_COMPONENT = f"ASK {{ ?component a {_COMPONENT} }}"
 """Whether the default graph of an endpoint has a component at all."""
 
@@ -61,7 +66,7 @@ def statements(types: Iterable[IRI]) -> str:
     """The query for everything that the components of some types say."""
     values = " ".join(str(ox_term(kind)) for kind in types)
     branches = [f"{{ {_level(depth)} }}" for depth in range(BLANK_NODE_DEPTH)]
-    branches.append(f"{{ {_ACCEPTED} }}")
+    branches += [f"{{ {_ACCEPTED} }}", f"{{ {_LISTED} }}"]
     inside = f"VALUES ?type {{ {values} }} ?component a ?type , {_COMPONENT} . {' UNION '.join(branches)}"
     return (
         "CONSTRUCT { ?subject ?predicate ?object } WHERE {\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pyoxigraph as ox
+import pytest
 
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import read_advertisements
@@ -32,6 +33,15 @@ def test_the_shape_that_an_input_accepts_is_handed_out_whole_however_deep_it_is(
     (one,), (other,) = (read_advertisements(source, "a")[0] for source in (handed_out, (PREFIXES + text).encode()))
     assert one.profile.inputs == other.profile.inputs
     assert one.profile.inputs[0].condition is not None
+
+
+@pytest.mark.parametrize("members", ["", "1", "1 2", "1 2 3 4 5"])
+def test_a_list_of_any_length_is_handed_out_whole(members: str) -> None:
+    text = f"{PREFIXES} :a a sc:Component, :A ; :sizes ( {members} ) ."
+    store = ox.Store()
+    store.load(text.encode(), format=ox.RdfFormat.TURTLE)
+    handed_out = set(store.query(statements([iri("A")])))
+    assert len(handed_out) == len(set(store))
 
 
 def test_an_endpoint_tells_whether_it_has_components_and_of_which_types() -> None:
