@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.terminal import complain, display
 from selfconf.errors import AuthorError
+from selfconf.model.wording import one_line
 
 if TYPE_CHECKING:
     from selfconf.model.codes import Code
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
     complain(text.summary(result))
     if result.unreadable:
-        names = ", ".join(sorted(result.unreadable))
+        names = ", ".join(map(one_line, sorted(result.unreadable)))
         complain(f"selfconf validate: cannot read {names}; correct the path or the syntax.")
         return 2
     return 0 if result.conforms and not (arguments.warnings_as_errors and result.warnings) else 1

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from selfconf.cli.terminal import paint
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
+from selfconf.model.wording import one_line
 
 _COLOURS = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
 
@@ -45,7 +46,7 @@ def _counted(number: int, noun: str) -> str:
 
 
 def _place(found: Diagnostic) -> str:
-    return f"{found.file}:{found.line}:{found.column}"
+    return f"{one_line(found.file)}:{found.line}:{found.column}"
 
 
 def _kind(found: Diagnostic) -> str:

@@ -33,6 +33,7 @@ def test_a_problem_is_one_line_with_its_hint_whatever_is_in_it() -> None:
         line(Diagnostic("a.ttl", 1, 1, "SC-A01", "two\nlines\t and \x07"))
         == "a.ttl:1:1: error[SC-A01]: two lines and �"
     )
+    assert line(Diagnostic("a\n::b\x1b.ttl", 1, 1, "SC-A01", "No.")) == r"a\n::b\x1b.ttl:1:1: error[SC-A01]: No."
     assert RENDERERS["text"](report(["a.ttl"], [WARNING, ERROR])).splitlines() == [line(ERROR), line(WARNING)]
 
 
