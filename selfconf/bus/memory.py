@@ -68,6 +68,8 @@ class Network:
         self._chance = random.Random(seed)
         self._events: list[tuple[float, int, Callable[[], None]]] = []
         self._count = itertools.count()
+        self._undone: set[int] = set()
+        """The numbers of events that do not happen any more, though they are still among the others."""
         self._cut: set[tuple[int, int]] = set()
         """The one-way links that are cut: sender, receiver."""
         self._latest: dict[tuple[int, int], float] = {}
@@ -253,32 +255,41 @@ class Network:
         self._latest[link] = moment
         return moment - begins
 
-    def at(self, time: float, node: MemoryBus, action: Callable[[], None]) -> None:
-        """Have a node do something at a time, if it is still there: a timer."""
+    def at(self, time: float, node: MemoryBus, action: Callable[[], None]) -> int:
+        """Have a node do something at a time, if it is still there: a timer. Returns its number, for `undo`."""
 
         def act() -> None:
             if node.open:
                 node.take(action, timer=True)
 
-        self.at_time(time, act)
+        return self.at_time(time, act)
 
     def after(self, seconds: float, action: Callable[[], None]) -> None:
         """Have something happen to the network itself, which is never paused."""
         self.at_time(self.time + seconds, action)
 
-    def at_time(self, time: float, action: Callable[[], None]) -> None:
-        """Have something happen to the network itself at a time."""
-        heapq.heappush(self._events, (time, next(self._count), action))
+    def at_time(self, time: float, action: Callable[[], None]) -> int:
+        """Have something happen to the network itself at a time. Returns its number, for `undo`."""
+        number = next(self._count)
+        heapq.heappush(self._events, (time, number, action))
+        return number
+
+    def undo(self, number: int) -> None:
+        """Have something not happen that has not happened yet: its time passes, but `stepped` is not called."""
+        self._undone.add(number)
 
     def step(self) -> bool:
         """Let the next thing happen; False if nothing is left."""
         if not self._events:
             return False
-        time, _, action = heapq.heappop(self._events)
+        time, number, action = heapq.heappop(self._events)
         if time > self.time:
             self.time = time
-        action()
-        self.stepped()
+        if number in self._undone:
+            self._undone.discard(number)
+        else:
+            action()
+            self.stepped()
         return True
 
     def run(self, until: Callable[[], bool], seconds: float = 60.0) -> bool:

@@ -79,18 +79,22 @@ class MemoryBus:
 
     def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
         """Call `action` once, after that time."""
-        undone = False
+        over = False
 
         def act() -> None:
-            if not undone:
+            nonlocal over
+            if not over:
+                over = True
                 action()
 
         def undo() -> None:
-            nonlocal undone
-            undone = True
+            nonlocal over
+            if not over:
+                over = True
+                self.network.undo(number)
 
         seconds = seconds and max(seconds, _LEAST_TIMER)
-        self.network.at(max(self.network.time, self.busy_until) + seconds, self, act)
+        number = self.network.at(max(self.network.time, self.busy_until) + seconds, self, act)
         return undo
 
     def wake_up(self, action: Callable[[], None]) -> None:

@@ -20,6 +20,8 @@ class MemoryQuestion:
         self._errors: list[str] = []
         self._open = self._size = 0
         self._over = False
+        self._undo: Callable[[], None] = lambda: None
+        """Undoes the timer that ends the waiting."""
 
     def asked(self, node: MemoryBus, said: Sample, answer: Callable[[MemoryRequest], None]) -> None:
         """Have the question arrive at a node that answers it."""
@@ -31,7 +33,7 @@ class MemoryQuestion:
         """Wait for the replies of the nodes that were asked, for so many seconds."""
         if self._open == 0:
             self.bus.network.deliver(self.bus, self.bus, lambda: self._end(True))
-        self.bus.later(seconds, lambda: self._end(False))
+        self._undo = self.bus.later(seconds, lambda: self._end(False))
 
     def replied(self, sample: Sample | None, error: str | None) -> None:
         """Keep a reply, or the reason why there is none, as long as all of them are not too large."""
@@ -52,6 +54,7 @@ class MemoryQuestion:
     def _end(self, complete: bool) -> None:
         if not self._over:
             self._over = True
+            self._undo()
             self._done(Replies(tuple(self._samples), tuple(self._errors), complete and self._size <= LARGEST_REPLIES))
 
 

@@ -268,3 +268,19 @@ def test_whoever_wants_to_looks_at_every_step() -> None:
         node.later(seconds, lambda: None)
     network.run(lambda: False, 5.0)
     assert times == [1.0, 2.0]
+
+
+def test_a_timer_that_is_undone_and_one_of_a_question_that_is_answered_are_no_steps() -> None:
+    network = Network()
+    asker, answerer = network.node(), network.node()
+    answerer.serve("a", lambda request: request.finish())
+    asker.later(1.0, lambda: None)()
+    asker.ask("a", b"", 2.0, lambda replies: None)
+    asker.later(3.0, lambda: None)
+    times: list[float] = []
+    network.stepped = lambda: times.append(network.time)
+    network.run(lambda: False, 2.5)
+    assert max(times) < 0.1
+    network.let_pass(1.0)
+    assert times[-1] == 3.0
+    assert not network.step()

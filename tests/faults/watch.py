@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from operator import attrgetter
+from typing import Any
 
 from selfconf.composites import InsideOfComposite
 from selfconf.configurator.state import Phase
@@ -34,7 +35,6 @@ _TURNING = (("started",), ("stopped",))
 """What components write down that decides whether they are on."""
 _STATE = attrgetter("state")
 _ACTIVATION = attrgetter("activation")
-_SAID = attrgetter("recorder.said")
 _TURNS = attrgetter("turn", "_acting_turn")  # by these it is decided whether code acts
 CONNECTED = "who calls is connected"
 TRIES_FIRST = "a composite tries first"
@@ -61,8 +61,10 @@ class Watch:
         self._runtimes: list[ComponentRuntime] = []
         self._codes: list[ComponentCode] = []
         self._lives: list[Life] = []
+        self._said: list[list[tuple[Any, ...]]] = []
+        """What each of these lives has written down."""
         self._lengths: list[int] = []
-        """How much each of these lives had written down at the last look."""
+        """How much that was at the last look."""
         self._followed: list[set[tuple[str, Wire]]] = []
         """What their inputs followed when the conditions were looked at last, which was at a time."""
         self._compared_at = self._changed_at = -math.inf
@@ -94,10 +96,14 @@ class Watch:
         if now < self._overdue:
             return
         for (name, condition), since in self._since.items():
-            if now - since > self._bounds[name] and (name, condition) not in self._noted:
-                self._noted.add((name, condition))
-                self.note(name, f"{condition}, since {since:.3f}")
+            self._judge(name, condition, now - since)
         self._await()
+
+    def _judge(self, name: str, condition: str, lasted: float) -> None:
+        """Note a condition once if it has lasted for too long, though it may be over: nothing need happen meanwhile."""
+        if lasted > self._bounds[name] and (name, condition) not in self._noted:
+            self._noted.add((name, condition))
+            self.note(name, f"{condition}, since {self._history.network.time - lasted:.3f}")
 
     def _await(self) -> None:
         """Note when to look again at the conditions that are present, a little early, as sums of times are rounded."""
@@ -164,7 +170,7 @@ class Watch:
 
     def _heard(self) -> list[tuple[int, int]]:
         """The lives that have written something down since the last look, by number, and how much they had before."""
-        before, self._lengths = self._lengths, list(map(len, map(_SAID, self._lives)))
+        before, self._lengths = self._lengths, list(map(len, self._said))
         if before == self._lengths:
             return []
         return [(n, had) for n, (had, has) in enumerate(zip(before, self._lengths, strict=True)) if had != has]
@@ -175,7 +181,7 @@ class Watch:
         Some conditions end as time passes, so they are looked at from time to time.
         """
         return self._history.network.time >= self._compared_at + LOOKS or any(
-            any(said in _TURNING for said in self._lives[number].recorder.said[had:])
+            any(said in _TURNING for said in self._said[number][had:])
             or self._lives[number].followed != self._followed[number]
             for number, had in heard
         )
@@ -188,6 +194,7 @@ class Watch:
             if (name, condition) not in present:
                 lasted = now - self._since.pop((name, condition))
                 self.longest[name] = max(lasted, self.longest.get(name, 0.0))
+                self._judge(name, condition, lasted - ROUNDING)
         for name, condition in present:
             self._since.setdefault((name, condition), now)
         self._await()
@@ -209,7 +216,8 @@ class Watch:
             self._runtimes = [life.runtime for life in self._lives]
             self._codes = [life.runtime.code for life in self._lives]
             self._threads = [life.thread for life in self._lives]
-            self._lengths = list(map(len, map(_SAID, self._lives)))
+            self._said = [life.recorder.said for life in self._lives]
+            self._lengths = list(map(len, self._said))
             self._seen.clear()
         insides = list(history.insides())
         now = network.time
