@@ -17,9 +17,9 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
 
-# Three processes more than there are processors, for many tests wait for programs that they have started; which tests
+# Five processes more than there are processors, for many tests wait for programs that they have started; which tests
 # share one, and which processes compute meanwhile, is said in tests/schedule.py.
-PARALLEL := --forks $(shell echo $$((3 + $$(nproc 2>/dev/null || echo 2))))
+PARALLEL := --forks $(shell echo $$((5 + $$(nproc 2>/dev/null || echo 2))))
 
 # A test that hangs for five minutes has failed: it says where each thread is, and its process is replaced.
 BOUNDED := -o faulthandler_timeout=300 -o faulthandler_exit_on_timeout=true

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from selfconf.__main__ import COLLECTING
-from tests import forks, schedule
+from tests import forks
 from tests.asked_here import ask_here
 from tests.effort import examples
 from tests.frozen import freeze_what_is_there
@@ -43,9 +43,6 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Where tests run in several processes, put those that wait for programs first, and those that compute last."""
-    for item in items:
-        if "inhabited" in getattr(item, "fixturenames", ()) and schedule.group_of(item.nodeid) != "inhabited":
-            raise pytest.UsageError(f"{item.nodeid} uses `inhabited`: add its module to INHABITED in tests/schedule.py")
     if config.option.forks:
         items.sort(key=_place)
 

@@ -99,7 +99,8 @@ class Forks:
         self._session, self._number = session, number
         groups: OrderedDict[str, list[int]] = OrderedDict()
         for place, item in enumerate(session.items):
-            groups.setdefault(schedule.group_of(item.nodeid), []).append(place)
+            group = schedule.group_of(item.nodeid, getattr(item, "fixturenames", ()))
+            groups.setdefault(group, []).append(place)
         self._groups = deque(groups.values())
         self._forks: dict[Connection, Fork] = {}
 
@@ -214,6 +215,8 @@ def _work(session: pytest.Session, number: int, connection: Connection) -> NoRet
 
 def _run_tests(session: pytest.Session, number: int, connection: Connection) -> None:
     config = session.config
+    if schedule.computes(number):
+        os.nice(schedule.YIELDS)
     for name in ("terminalreporter", "terminalprogress"):
         if config.pluginmanager.has_plugin(name):
             config.pluginmanager.unregister(name=name)

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-INHABITED = {
-    "tests/cli/test_discover.py",
-    "tests/cli/test_echo.py",
-    "tests/cli/test_query.py",
-    "tests/cli/test_run.py",
-    "tests/cli/test_run_trouble.py",
-    "tests/cli/test_site.py",
-    "tests/cli/test_status.py",
-    "tests/cli/test_stop.py",
-    "tests/cli/test_top.py",
-}
-"""Modules with tests that use the fixture `inhabited`, which starts a site and seven components: once is enough."""
+from collections.abc import Collection
+
+INHABITED = "inhabited"
+"""The fixture that starts a site and seven components: once is enough."""
 WHOLE = {
     "tests/api/test_ecology.py",
     "tests/api/test_living.py",
@@ -36,11 +28,11 @@ RECORDED = "tests/recorded/test_recorded.py"
 """A module whose tests share the answers to a group of cases, which is their parameter."""
 
 
-def group_of(test: str) -> str:
-    """Return the name of a test's group; a test that may run in any process is a group by itself."""
+def group_of(test: str, fixtures: Collection[str] = ()) -> str:
+    """Return the name of a test's group, by its name and its fixtures; a test for any process is a group by itself."""
     module, _, name = test.partition("::")
-    if module in INHABITED:
-        return "inhabited"
+    if INHABITED in fixtures:
+        return INHABITED
     if module in WHOLE:
         return module
     if name.startswith(BAD_FILES):
@@ -48,6 +40,10 @@ def group_of(test: str) -> str:
     if module == RECORDED and "_as_recorded[" in name:
         return module + name.partition("[")[2]
     return test
+
+
+YIELDS = 5
+"""By how much a process that computes is nicer than the others: it takes what time these leave, and none starves."""
 
 
 def computes(process: int) -> bool:

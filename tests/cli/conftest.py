@@ -39,7 +39,7 @@ def inhabited(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
 def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
     """End the paper's ecology after the last of its tests: seven components that act take a tenth of a processor."""
     home = item.session.stash.get(_INHABITED, None)
-    leaving = nextitem is None or schedule.group_of(nextitem.nodeid) != "inhabited"
+    leaving = schedule.INHABITED not in getattr(nextitem, "fixturenames", ())
     if home is not None and leaving and item.config.option.forks:  # in one process its tests do not follow each other
         del item.session.stash[_INHABITED]
         home.close()
