@@ -156,7 +156,9 @@ class Forks:
             hook.pytest_runtest_logreport(report=report)
         fork.left.remove(test)
         item = self._session.items[test]
-        hook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+        # The process has looked up where the test stands, which takes longer than all else that is done here.
+        location = reports[-1]["location"] if reports else item.location
+        hook.pytest_runtest_logfinish(nodeid=item.nodeid, location=location)
         self._supply(fork)
 
     def _crashed(self, fork: Fork) -> None:

@@ -42,7 +42,7 @@ def group_of(test: str, fixtures: Collection[str] = ()) -> str:
     return test
 
 
-YIELDS = 5
+YIELDS = 3
 """By how much a process that computes is nicer than the others: it takes what time these leave, and none starves."""
 
 
