@@ -5,12 +5,11 @@ The shape of a role stays where it is, in the document of its template; `selfcon
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from selfconf.model.literal_values import truth
+from selfconf.model.literal_values import plain_number, truth
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Setting
 from selfconf.model.term import IRI, Literal, Term
@@ -22,7 +21,8 @@ from selfconf.rdf.vocabulary import FIRST, SC, SH, TYPE, XSD
 ROLE_STRUCTURE = frozenset((TYPE, SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits))
 """What is said of a role besides its shape."""
 WHOLE = frozenset(XSD[name] for name in ("integer", "int", "long", "short", "nonNegativeInteger", "positiveInteger"))
-_COUNT = re.compile(r"\+?[0-9]{1,18}")
+BEYOND_COUNTING = 10**18
+"""No role asks for so many components."""
 
 
 def roles_of(document: Document, head: Term, names: Sequence[Term]) -> tuple[Role, ...]:
@@ -107,12 +107,12 @@ class _RoleReader(DocumentReader):
         if not values:
             return None
         value = values[0]
-        whole = isinstance(value, Literal) and value.datatype in WHOLE and _COUNT.fullmatch(value.lexical)
-        if len(values) > 1 or not isinstance(value, Literal) or not whole:
+        number = plain_number(value) if isinstance(value, Literal) and value.datatype in WHOLE else None
+        if len(values) > 1 or not isinstance(number, int) or not 0 <= number < BEYOND_COUNTING:
             what = f"sc:{predicate.short} of the role {worded(role)}"
             problem = f"{what} is one whole number from 0 on, of at most 18 digits"
             raise self.mistake(problem, role, predicate, values[-1])
-        return int(value.lexical)
+        return number
 
 
 def substituted(document: Document, values: Mapping[IRI, Term]) -> Document:

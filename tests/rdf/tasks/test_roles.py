@@ -55,6 +55,8 @@ def test_a_parameter_is_replaced_in_shapes_and_nowhere_else() -> None:
         (":r sc:minCount 2 .", 2, None),
         (":r sc:maxCount 3 .", 1, 3),
         (":r sc:minCount 0 ; sc:maxCount 1 .", 0, 1),
+        (":r sc:minCount -0 ; sc:maxCount +03 .", 0, 3),
+        (":r sc:maxCount '2'^^xsd:nonNegativeInteger .", 1, 2),
         (":r sc:minCount 2 ; sc:maxCount 2 .", 2, 2),
     ],
 )
