@@ -284,7 +284,7 @@ def source(name: str, wanted: str, issued: str) -> str:
         (
             SUPPLIED.replace("sc:feeds :user", "").replace(":source :user", ":user") + USER,
             {"one": COMPOSITE.replace("NAME", "one").replace("sc:of :one-role", "sc:of :nobody")},
-            0,
+            1,
             "peis-home#nobody>, which is no role of the template",
         ),
     ],
