@@ -25,7 +25,8 @@ def heed_failure(state: State, event: Failed) -> Reaction:
     held = state.held.get(event.component)
     if held is None or state.phase is Phase.DISMANTLING:
         return state, ()
-    if event.life and not held.life and state.ended_lives.get(event.component) == event.life:
+    again = event.life and not held.life and state.ended_lives.get(event.component) == event.life
+    if again and (event.component, Call.RESERVE) not in state.pending:  # which a life that hangs does not answer
         return _lost_already(state, event.component)
     if _passes_over(held, event):
         return state, ()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from selfconf.configurator.effects import Compose, Finish, ReleaseFrom, WakeUp
@@ -87,6 +89,18 @@ def silent(history: History, call: Call) -> None:
     while (TRACKER, call) not in history.state.pending:
         history.answer(*min(history.state.pending))
     history.hear(Answered(TRACKER, call, history.state.epoch, None, startable=True))
+
+
+def test_the_end_of_a_life_that_hangs_is_heeded_where_it_was_to_be_reserved_and_does_not_answer() -> None:
+    history = lost(Cause.HUNG)
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    ended = Failed(TRACKER, "1", Cause.CRASH, "its life has ended", True)
+    assert history.hear(ended) == [WakeUp(TRACKER, history.state.epoch)]
+    history.state = replace(history.state, pending=frozenset({(TRACKER, Call.RESERVE)}))
+    history.hear(ended)
+    assert history.state.lost[TRACKER].cause is Cause.CRASH
+    assert history.state.phase is Phase.COMPOSING
 
 
 @pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])

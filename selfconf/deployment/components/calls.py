@@ -54,8 +54,9 @@ from selfconf.protocol.messages import (
 
 log = logging.getLogger(__name__)
 
-SITE_ENDS = 1.0
-"""Seconds for which a site is waited for that ends the process of a component that has not obeyed its release."""
+SITE_ENDS = 2.5
+"""Seconds for which a site is waited for that ends the process of a component that has not obeyed its release: it kills
+a process that takes more than two."""
 END_SEEN = 0.1
 """Seconds after which the end of a life is seen whose process its site has ended."""
 GONE = 2.5
@@ -90,6 +91,8 @@ class Calls:
         """The connections that each component was given, in which life, so that only new ones are reported."""
         self._held_back: list[ApplyTo] = []
         """What is applied to once it is known what stands behind the composites that it is connected to."""
+        self._ending: set[IRI] = set()
+        """The components whose sites were asked to end their processes, and have not answered yet."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
 
@@ -290,7 +293,11 @@ class Calls:
         self._calling.ask(component, Call.RELEASE, message, answered)
 
     def _release_again(self, effect: ReleaseFrom) -> None:
-        if not self._state().ended and self._state().owed.get(effect.component) == effect.epoch:
+        if self._state().ended or self._state().owed.get(effect.component) != effect.epoch:
+            return
+        if effect.component in self._ending:
+            self.bus.later(RELEASE_AGAIN, partial(self._release_again, effect))
+        else:
             self.release(effect)
 
     def _end(self, component: IRI, message: Release, otherwise: Callable[[], None]) -> None:
@@ -307,9 +314,11 @@ class Calls:
             if replies.samples:
                 self.bus.later(END_SEEN, ended)
             else:
+                self._ending.discard(component)
                 otherwise()
 
         def ended() -> None:
+            self._ending.discard(component)
             if self.ecology.lives_on(component, message.life):
                 otherwise()  # it was no process of the site that lives this life
                 return
@@ -321,4 +330,5 @@ class Calls:
             self._step(Answered(component, Call.RELEASE, message.epoch, Verdict.OTHER_LIFE, detail=detail))
 
         self._lives.lost(component, message.life)
+        self._ending.add(component)
         self.bus.ask(self.keys.end(found.site), encode(End(component, message.life)), SITE_ENDS, answered)

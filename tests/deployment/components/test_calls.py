@@ -50,7 +50,7 @@ def test_components_start_after_those_that_feed_them_and_actuators_last_and_rest
     assert (off[:2], set(off[2:])) == (["drive", "control"], {"sonar", "encoder", "tracker"})
 
 
-@pytest.mark.parametrize("seconds", [0.3, 2 * SITE_ENDS], ids=["soon", "late"])
+@pytest.mark.parametrize("seconds", [0.3, 2.1, 2 * SITE_ENDS], ids=["soon", "killed", "late"])
 def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_path: Path, seconds: float) -> None:
     """It is out of control if the site takes too long for that."""
     lab = Lab(tmp_path)
