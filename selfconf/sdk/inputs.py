@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import replace
+from functools import partial
 from typing import Any, Protocol
 
 from selfconf import ros_messages
@@ -213,13 +214,20 @@ class Inputs:
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""
+        self._look_whether_settled(action, self._bus.now())
+
+    def _look_whether_settled(self, action: Callable[[], None], due: float) -> None:
+        """Look again and again; by as much as a look comes late this process stood still, and no signal could come."""
         if not self._handovers:
             action()
             return
+        late = max(0.0, self._bus.now() - due)
         for port, handover in list(self._handovers.items()):
-            self._hand_over(port, handover)
+            self._handovers[port] = later = replace(handover, due=handover.due + late)
+            self._hand_over(port, later)
         self._let_go()
-        self._bus.later(HANDOVER_CHECK if self._handovers else 0.0, lambda: self.when_settled(action))
+        pause = HANDOVER_CHECK if self._handovers else 0.0
+        self._bus.later(pause, partial(self._look_whether_settled, action, self._bus.now() + pause))
 
     def _hand_over(self, port: str, handover: Handover) -> None:
         """End a handover if the new outputs deliver, or are as quiet as the old; report them as silent if they are."""

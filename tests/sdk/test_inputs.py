@@ -385,6 +385,21 @@ def test_an_input_goes_on_following_what_fed_it_while_the_next_issues_nothing_an
     assert change.answers
 
 
+def test_time_in_which_the_machine_stalls_is_none_in_which_the_next_output_issues_nothing() -> None:
+    change = Change()
+    change.let_pass(0.4, change.tracker)
+    for _ in range(5):
+        go_on = change.stage.network.stall()
+        change.stage.let_pass(HANDOVER)
+        go_on()
+        change.let_pass(0.2, change.tracker)
+    assert not silence(change.stage)
+    assert not change.answers
+    change.let_pass(0.4, change.tracker, change.odometry)
+    assert change.answers
+    assert not silence(change.stage)
+
+
 @pytest.mark.parametrize("gently", [True, False], ids=["repeated", "made for another task that shares the component"])
 def test_a_gentle_call_that_is_repeated_goes_on_with_the_same_handover(gently: bool) -> None:
     change = Change()
