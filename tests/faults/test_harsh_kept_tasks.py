@@ -11,7 +11,7 @@ from tests.effort import NIGHTLY
 from tests.faults.harsh_kept_tasks import KINDS, played
 from tests.faults.kept_tasks import account
 
-HARSH = 1_000 if NIGHTLY else len(KINDS)
+HARSH = 495 if NIGHTLY else len(KINDS)
 BATCH = len(KINDS)
 
 
