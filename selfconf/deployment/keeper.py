@@ -7,7 +7,8 @@ task, the one that has it lets go first; until then the components do not listen
 
 A site that was frozen, or cut off, finds by a newer record that another one has gone on with its task meanwhile. It
 leaves that as it runs, and goes on with it in turn: what it knows itself is outdated, and the components would come to
-rest before it has asked all of them.
+rest before it has asked all of them. One that could hear the others, but was not heard when it asked them, learns what
+is newer all the same: a site that hears an outdated record puts the newer one.
 """
 
 from __future__ import annotations
@@ -128,7 +129,11 @@ class Keeper:
 
     def _take(self, sample: Sample) -> None:
         try:
-            self._learn(decode(sample.payload, TaskRecord))
+            record = decode(sample.payload, TaskRecord)
+            self._learn(record)
+            newest = self.folder.records[record.task]
+            if newest.supersedes(record):
+                self._tell(newest)
         except PeerError as error:
             self._complain(f"this site does not keep the task that another one has sent on {sample.key}: {error}")
         except OSError as error:
@@ -274,6 +279,10 @@ class Keeper:
             )
             self._revisions[task] = record.revision
             self._learn(record)
-            notice = self.bus.publisher(self.keys.task(task), Urgency.EVENT)
-            notice.put(encode(record))
-            notice.undeclare()
+            self._tell(record)
+
+    def _tell(self, record: TaskRecord) -> None:
+        """Have every site that hears this one learn a record."""
+        notice = self.bus.publisher(self.keys.task(record.task), Urgency.EVENT)
+        notice.put(encode(record))
+        notice.undeclare()

@@ -205,6 +205,31 @@ def test_after_all_sites_were_restarted_the_task_comes_back_from_their_disks(kee
     assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"tracker"})
 
 
+def test_a_site_that_hears_the_others_and_was_not_heard_as_it_asked_them_is_told_what_has_ended(
+    keepers: Keepers,
+) -> None:
+    network, lone = keepers.lab.network, keepers.buses["b"]
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    assert isinstance(lone, MemoryBus)
+    others = [node for node in network.nodes if node is not lone]
+    for node in others:
+        network.cut(lone, node)
+    keepers.lab.let_pass(0.1)
+    ended = encode(replace(RECORD, revision=9, ended=True))
+    keepers.buses["a"].ask(keepers.lab.keys.keep(), ended, 1.0, lambda replies: None)
+    keepers.lab.let_pass(0.1)
+    for node in others:
+        network.reconnect(lone, node)
+        network.mute(lone, node)
+    keepers.lab.let_pass(3.0)
+    assert not keepers.keepers["b"].folder.records[RECORD.task].ended
+    for node in others:
+        network.reconnect(lone, node)
+    keepers.lab.let_pass(3.0)
+    assert all(one.folder.records[RECORD.task].ended for one in keepers.keepers.values())
+
+
 def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
     """Which site is to run a task, and which one after its end."""
     first = keeper_of(task, sites)
