@@ -28,6 +28,7 @@ KINDS = (
     "fill_disk",
     "slow_disk",
     "roll_back",
+    "roll_back_all",
     "set_clock",
     "stall_machine",
     "freeze_some",
@@ -110,7 +111,7 @@ class HarshKeptHistory(KeptHistory):
 
     def _copy_disks(self) -> None:
         """Copy the disks from time to time."""
-        for name in KEEPING:
+        for name in self._nodes:
             if (self._disks / name).is_dir():
                 shutil.copytree(self._disks / name, self._disks / f"{name} before", dirs_exist_ok=True)
         if self.network.time < FAULTY:
@@ -141,6 +142,11 @@ class HarshKeptHistory(KeptHistory):
         del self.keepers[name]
         self._begin(name)
         return True
+
+    def _roll_back_all(self, name: str) -> bool:
+        """All that keeps tasks begins again with disks of before: nothing knows any more of what came after."""
+        rolled_back = [one for one in list(self.keepers) if self._roll_back(one)]
+        return bool(rolled_back)
 
     def _set_clock(self, name: str) -> bool:
         seconds = self._chance.choice(STEPS)
