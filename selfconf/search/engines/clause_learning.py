@@ -46,10 +46,13 @@ def solver_available() -> bool:
 
 def as_clauses(literals: Sequence[int], most: int, top: int) -> list[list[int]]:
     """Return clauses by which at most a number of literals hold; new literals are numbered from `top` on."""
-    from pysat.card import CardEnc, EncType
+    from pysat.card import CardEnc, EncType, ITotalizer
 
-    in_pairs = most == 1 and len(literals) <= PAIRED
-    kind = EncType.pairwise if in_pairs else EncType.seqcounter if most <= FEW_TO_COUNT else EncType.totalizer
+    if most > FEW_TO_COUNT:
+        # `CardEnc` would count to the number of literals, not to the bound: several times as many clauses.
+        with ITotalizer(list(literals), ubound=most, top_id=top) as counter:
+            return [[-counter.rhs[most]], *counter.cnf.clauses]
+    kind = EncType.pairwise if most == 1 and len(literals) <= PAIRED else EncType.seqcounter
     return list(CardEnc.atmost(list(literals), most, top_id=top, encoding=kind).clauses)
 
 

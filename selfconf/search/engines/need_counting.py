@@ -181,6 +181,8 @@ def supplied(given: ReducedProblem, counted: Sequence[CountedNeeds]) -> Undersup
             return found
         useless |= {(need, role) for need, role in found if need is not None}
         full |= {role: some for need, role in found if need is None}
+    if not useless and not full:
+        return given
 
     def supplies(role: int, option: Option) -> bool:
         if role in full and full[role].needs.keys().isdisjoint(option.kind.supports):

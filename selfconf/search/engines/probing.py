@@ -16,11 +16,12 @@ option is in no solution, so that every solution stays, and with them the least.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 
 from selfconf.search.engines.matching import hall_set
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, supplied
-from selfconf.search.reduction import Option, ReducedProblem, pruned
+from selfconf.search.reduction import ArcConsistency, Option, ReducedProblem, pruned
 
 MOST_PROBED = 20_000
 """How many needs and supports are read at most, some milliseconds."""
@@ -30,6 +31,7 @@ def probed(given: ReducedProblem) -> ReducedProblem:
     """Return a problem without the options that were tried and are in no solution; the same one if there are none."""
     left = MOST_PROBED
     size = sum(1 + len(kind.needs) + len(kind.supports) for kind in given.kinds())
+    trial: _Trial | None = None
     for role, slots in Counter(given.slots).items():
         options = given.options[role]
         if slots > 1 or not any(option.kind.supports for option in options):
@@ -37,23 +39,41 @@ def probed(given: ReducedProblem) -> ReducedProblem:
         left -= size * len(options)
         if left < 0:
             break
-        kept = tuple(option for option in options if _fits(_with_only(given, role, (option,))))
+        trial = trial or _Trial(given)
+        kept = tuple(option for option in options if trial.fits(role, option))
         if len(kept) < len(options):
-            given = pruned(_with_only(given, role, kept))
+            given, trial = pruned(_with(given, {role: kept})), None
             if given.wiped_out() is not None:
                 break
     return given
 
 
-def _fits(given: ReducedProblem) -> bool:
-    """Return whether arc consistency leaves each role options, and all slots enough components."""
-    left = pruned(given)
-    return (
-        left.wiped_out() is None
-        and hall_set(left.slots, left.components()) is None
-        and not isinstance(supplied(left, counted_needs(left)), Undersupply)
-    )
+class _Trial:
+    """A problem in which one option after the other is tried alone in its slot."""
+
+    def __init__(self, given: ReducedProblem) -> None:
+        self._given = given
+        self._asked = Counter(given.slots)
+        self._consistency = ArcConsistency(given.kinds(), len(given.needs), given.values, self._asked)
+
+    def fits(self, role: int, option: Option) -> bool:
+        """Return whether arc consistency leaves each role options, and all slots enough components."""
+        given, kind = self._given, option.kind
+        others = {id(other.kind): other.kind for other in given.options[role] if other.kind is not kind}
+        removed, removals = self._consistency.without(others.values())
+        left: dict[int, tuple[Option, ...]] = {role: (option,)}
+        for touched in {removal.kind.role for removal in removals}:
+            left[touched] = tuple(
+                one for one in left.get(touched, given.options[touched]) if id(one.kind) not in removed
+            )
+            if len(left[touched]) < self._asked[touched]:
+                return False
+        remaining = _with(given, left)
+        # Where no other role lost an option, components are enough: those that are not had been removed before.
+        if removals and hall_set(remaining.slots, remaining.components()) is not None:
+            return False
+        return not isinstance(supplied(remaining, counted_needs(remaining)), Undersupply)
 
 
-def _with_only(given: ReducedProblem, role: int, options: tuple[Option, ...]) -> ReducedProblem:
-    return replace(given, options=(*given.options[:role], options, *given.options[role + 1 :]))
+def _with(given: ReducedProblem, left: Mapping[int, tuple[Option, ...]]) -> ReducedProblem:
+    return replace(given, options=tuple(left.get(role, options) for role, options in enumerate(given.options)))

@@ -46,16 +46,20 @@ def _loaded(
     name: str, few: int, top: int, clauses: list[list[int]], bounds: list[tuple[list[int], int, list[int]]]
 ) -> Any:
     from pysat import solvers
-    from pysat.card import CardEnc, EncType
+    from pysat.card import CardEnc, EncType, ITotalizer
 
     solver = getattr(solvers, name)()
     for clause in clauses:
         solver.add_clause(clause)
     for literals, most, force in bounds:
-        kind = EncType.totalizer if most > 1 else EncType.pairwise if len(literals) <= few else EncType.seqcounter
-        encoded = CardEnc.atmost(literals, most, top_id=top, encoding=kind)
-        top = max(top, encoded.nv)
-        for clause in encoded.clauses:
+        if most > 1:
+            with ITotalizer(literals, ubound=most, top_id=top) as counter:  # counts to the bound, `CardEnc` to the end
+                top, counting = counter.top_id, [[-counter.rhs[most]], *counter.cnf.clauses]
+        else:
+            kind = EncType.pairwise if len(literals) <= few else EncType.seqcounter
+            encoded = CardEnc.atmost(literals, most, top_id=top, encoding=kind)
+            top, counting = max(top, encoded.nv), encoded.clauses
+        for clause in counting:
             solver.add_clause([*force, *clause])
     return solver
 

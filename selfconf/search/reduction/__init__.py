@@ -10,12 +10,13 @@
 * `with_recruits` is a problem whose recruits are options as well, those of one role more that has no slots, without a
   component (`NO_COMPONENT`). `recruits_that_matter` are those that can be fed and feed a component. `needed_signals`
   are those that some components and their suppliers need, `signals_served` those that a component serves.
-* `pruned` removes options by arc consistency; `consistent` does so for classes, and says why each was removed.
+* `pruned` removes options by arc consistency; `consistent` does so for classes, and says why each was removed;
+  `ArcConsistency` does so again and again, with some classes or others taken out on trial.
 * A `Constraint` is one of `Played` (a role), `Fed` (a need), `Shared` (the value of a variable) and `Distinct` (the
   components). `all_of` lists those of a problem, and `subproblem` is the problem with only some of them in force.
 """
 
-from selfconf.search.reduction.arc_consistency import consistent
+from selfconf.search.reduction.arc_consistency import ArcConsistency, consistent
 from selfconf.search.reduction.constraints import (
     NO_COMPONENT,
     Constraint,
@@ -47,6 +48,7 @@ from selfconf.search.reduction.reduced_problem import (
 
 __all__ = [
     "NO_COMPONENT",
+    "ArcConsistency",
     "Constraint",
     "Distinct",
     "Fed",

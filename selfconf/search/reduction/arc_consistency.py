@@ -25,31 +25,52 @@ def consistent(
     """
     if not values and len(set[int]().union(*[kind.supports for kind in kinds])) == needs:
         return set(), []  # each need has a support, of which none is removed: nothing has to be counted
-    supports, needing = _counted(kinds, needs)
-    removed: set[int] = set()
-    removals: list[Removal] = []
-    unsupported = [need for need in range(needs) if not supports[need]]
-    admitted = _Admitted(kinds, values, required) if values else None
-    roles: set[int] = set(required)
-    while True:
-        while unsupported:
-            need = unsupported.pop()
-            for kind in needing[need]:
-                if id(kind) not in removed:
-                    removed.add(id(kind))
-                    removals.append(Removal(kind, need=need))
-                    roles.add(kind.role)
-                    unsupported += _without_support_of(kind, supports)
-        # Values come after needs: a pass over all classes for each variable costs more than following the counters.
-        by_value = admitted.valueless(removed, roles) if admitted else {}
-        if not by_value:
-            return removed, removals
-        roles.clear()
-        for removal in by_value.values():
-            removed.add(id(removal.kind))
-            removals.append(removal)
-            roles.add(removal.kind.role)
-            unsupported += _without_support_of(removal.kind, supports)
+    return ArcConsistency(kinds, needs, values, required).without(())
+
+
+class ArcConsistency:
+    """Arc consistency of some classes, from which others may be taken out on trial: supports are counted but once.
+
+    The arguments are those of `consistent`.
+    """
+
+    def __init__(
+        self, kinds: Sequence[InterchangeabilityClass], needs: int, values: Sequence[int], required: Collection[int]
+    ) -> None:
+        self._kinds, self._values, self._required = kinds, values, required
+        self._supports, self._needing = _counted(kinds, needs)
+        self._unsupported = [need for need, number in enumerate(self._supports) if not number]
+
+    def without(self, taken: Iterable[InterchangeabilityClass]) -> tuple[set[int], list[Removal]]:
+        """Return the classes that are in no solution without some others; by identity, with these, and why."""
+        supports, needing = self._supports.copy(), self._needing
+        unsupported = self._unsupported.copy()
+        removed: set[int] = set()
+        removals: list[Removal] = []
+        for kind in taken:
+            removed.add(id(kind))
+            unsupported += _without_support_of(kind, supports)
+        admitted = _Admitted(self._kinds, self._values, self._required) if self._values else None
+        roles: set[int] = set(self._required)
+        while True:
+            while unsupported:
+                need = unsupported.pop()
+                for kind in needing[need]:
+                    if id(kind) not in removed:
+                        removed.add(id(kind))
+                        removals.append(Removal(kind, need=need))
+                        roles.add(kind.role)
+                        unsupported += _without_support_of(kind, supports)
+            # Values come after needs: a pass over all classes for each variable costs more than following the counters.
+            by_value = admitted.valueless(removed, roles) if admitted else {}
+            if not by_value:
+                return removed, removals
+            roles.clear()
+            for removal in by_value.values():
+                removed.add(id(removal.kind))
+                removals.append(removal)
+                roles.add(removal.kind.role)
+                unsupported += _without_support_of(removal.kind, supports)
 
 
 def _counted(

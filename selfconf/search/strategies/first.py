@@ -152,9 +152,12 @@ def _prefix_impossible(problem: Problem, roles: int, budget: Budget) -> bool:
 
 
 def least_of(
-    given: ReducedProblem, budget: Budget, by_clauses: Engine = least_by_clauses
+    given: ReducedProblem, budget: Budget, by_clauses: Engine = least_by_clauses, probing: bool = True
 ) -> list[Option] | Undecided | None:
-    """Return the least solution of a reduced problem, by the first engine that finds it; None if there is none."""
+    """Return the least solution of a reduced problem, by the first engine that finds it; None if there is none.
+
+    Options are tried alone only with `probing`.
+    """
     remaining = pruned(given)
     if remaining.wiped_out() is not None:
         return None
@@ -174,7 +177,7 @@ def least_of(
         if isinstance(supplying, Undersupply):
             return None
         if supplying is not remaining:
-            return least_of(supplying, budget, by_clauses)
+            return least_of(supplying, budget, by_clauses, probing)
         chosen = first_solution(remaining, budget, matching=matching, pace=REDUCED_PACE, counted=counted)
         if not isinstance(chosen, Undecided) or budget.steps == 0:
             return chosen
@@ -184,9 +187,9 @@ def least_of(
         excluded = unmatchable(remaining.slots, components)
         assert not isinstance(excluded, HallSet)
         remaining = _without(remaining, excluded)
-        fewer = probed(remaining)
+        fewer = probed(remaining) if probing else remaining
         if fewer is not remaining:
-            return least_of(fewer, budget, by_clauses)
+            return least_of(fewer, budget, by_clauses, probing=False)
         cases = value_cases(remaining)
         if cases is not None:
             return _least_of_cases(cases, budget, by_clauses)
