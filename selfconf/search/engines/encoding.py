@@ -215,10 +215,15 @@ class Encoding:
     def _values(self) -> None:
         constrained: list[list[tuple[int, int]]] = [[] for _ in self.reduced.values]
         for options, literals in zip(self.reduced.options, self.plays, strict=True):
-            for option, literal in zip(options, literals, strict=True):
-                for variable, mask in enumerate(option.kind.admits):
-                    if mask != ANY_VALUE:
-                        constrained[variable].append((literal, mask & self.reduced.values[variable]))
+            # Variable by variable: of many, most roles constrain few.
+            for variable, masks in enumerate(zip(*[option.kind.admits for option in options], strict=True)):
+                if masks.count(ANY_VALUE) < len(masks):
+                    common = self.reduced.values[variable]
+                    constrained[variable] += [
+                        (literal, mask & common)
+                        for literal, mask in zip(literals, masks, strict=True)
+                        if mask != ANY_VALUE
+                    ]
         for variable, some in enumerate(constrained):
             if some:
                 self._one_value(some, self._in_force(Shared(variable)))

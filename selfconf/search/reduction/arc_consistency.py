@@ -101,41 +101,49 @@ class _Admitted:
     def __init__(
         self, kinds: Sequence[InterchangeabilityClass], values: Sequence[int], required: Collection[int]
     ) -> None:
-        self.kinds = kinds
         self.values = list(values)
         self._narrowed = {number for number, common in enumerate(values) if common != ANY_VALUE}
         """The variables that have lost values since it was last asked about them."""
-        self._of_role: dict[int, list[InterchangeabilityClass]] = {role: [] for role in required}
+        self._of_role: dict[int, list[InterchangeabilityClass]] = {role: [] for role in sorted(required)}
+        self._optional: list[InterchangeabilityClass] = []
+        """The classes of roles that need not be played."""
         for kind in kinds:
-            if kind.role in self._of_role:
-                self._of_role[kind.role].append(kind)
+            self._of_role.get(kind.role, self._optional).append(kind)
+        self._constrained: list[dict[int, None]] = [{} for _ in values]
+        """For each variable the required roles with a class that does not admit all values."""
 
     def valueless(self, removed: Set[int], roles: Iterable[int]) -> dict[int, Removal]:
         """Return the classes left, by identity, that admit only values of a variable that some role cannot have.
 
-        Only `roles` have lost classes since it was last asked about them. None are returned once a required role has no
-        class left: then there is no solution, and the cause is that role.
+        Only `roles` have lost classes since it was last asked about them, all of them being asked about at first. None
+        are returned once a required role has no class left: then there is no solution, and the cause is that role.
         """
         self._narrow(removed, roles)
         found: dict[int, Removal] = {}
         if not all(self._of_role.values()):
             return found
-        self.kinds = [kind for kind in self.kinds if id(kind) not in removed]
+        self._optional = [kind for kind in self._optional if id(kind) not in removed]
         for number in sorted(self._narrowed):
             common = self.values[number]
-            for kind in [kind for kind in self.kinds if not kind.admits[number] & common]:
-                # A class may fail on two variables; the first is its cause.
-                found.setdefault(id(kind), Removal(kind, variable=number))
+            concerned = self._constrained[number] if common else self._of_role
+            for some in (*map(self._of_role.__getitem__, concerned), self._optional):
+                for kind in [kind for kind in some if not kind.admits[number] & common]:
+                    # A class may fail on two variables; the first is its cause.
+                    found.setdefault(id(kind), Removal(kind, variable=number))
         self._narrowed.clear()
         return found
 
     def _narrow(self, removed: Set[int], roles: Iterable[int]) -> None:
         """Take from the variables the values that the classes left of some roles do not admit."""
-        for role in self._of_role.keys() & roles:
+        for role in sorted(self._of_role.keys() & roles):
             left = self._of_role[role] = [kind for kind in self._of_role[role] if id(kind) not in removed]
             for number, masks in enumerate(zip(*[kind.admits for kind in left], strict=True)):
                 # No step of Python for each class: nearly none constrains all variables.
-                common = self.values[number] if ANY_VALUE in masks else self.values[number] & reduce(or_, masks)
+                unbound = masks.count(ANY_VALUE)
+                if unbound == len(masks):
+                    continue
+                self._constrained[number][role] = None
+                common = self.values[number] if unbound else self.values[number] & reduce(or_, masks)
                 if common != self.values[number]:
                     self.values[number] = common
                     self._narrowed.add(number)
