@@ -2,11 +2,11 @@
 
     python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--half HALF] [--write]
 
-Each engine runs in a process of its own, on the problems of `further_families`, and is asked twice: which configuration
-is the first one, or that there is none, which is the question that selfconf answers; and, where there is one, for any
-configuration, which is easier. An engine is stopped at the limit, or at `PATIENCE` times the best time so far where
-that is sooner, since what is slower does not change how selfconf compares to the best. `--write` writes
-`docs/benchmarks/further.md`.
+Each engine runs in a process of its own, on the problems of `further_families` and `later_families`, and is asked two
+questions: which configuration is the first one, or that there is none, which is what selfconf answers; and, where there
+is one, for any configuration, which is easier. An engine is stopped at the limit, or at `PATIENCE` times the best
+time so far where that is sooner, since what is slower does not change how selfconf compares to the best. `--write`
+writes `docs/benchmarks/further.md`.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from benchmarks.search import engines as anything
 from benchmarks.search import first
 from benchmarks.search.families import Instance
 from benchmarks.search.further_families import CHOOSING, REPORTING, SMALL, UNSEEN, Family, instances
+from benchmarks.search.later_families import LATER_CHOOSING, LATER_REPORTING, LATER_SMALL
 from benchmarks.search.measure import Measured, made, measure
 from benchmarks.search.report import WORK, Row, table
 from selfconf.search.problem import Problem
@@ -36,7 +37,13 @@ PATIENCE = 3.0
 """An engine that has taken so many times as long as the best, and a second, is not waited for."""
 MEDIAN, WORST, ANY = 0.7, 2.0, 2.0
 """The goals: the first configuration in so many times the best in the median and at worst; any one in the median."""
-HALVES: dict[str, Mapping[str, Family]] = {"choosing": CHOOSING, "reporting": REPORTING, "unseen": UNSEEN}
+HALVES: dict[str, Mapping[str, Family]] = {
+    "choosing": CHOOSING,
+    "reporting": REPORTING,
+    "unseen": UNSEEN,
+    "choosing later": LATER_CHOOSING,
+    "reporting later": LATER_REPORTING,
+}
 """The families by what they are for."""
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "further.md"
 
@@ -49,7 +56,8 @@ works beside it in a thread, and later CaDiCaL in a process. Every other engine 
 of those instances that take selfconf or the best other engine {work:g} ms at least.
 
 The families `choosing` are those on which ideas and thresholds of the search were chosen; `reporting` were only
-measured; `unseen` were made after the search was finished. [Luck, and what was
+measured; `unseen` were made after the search was finished, and those called `later` once more, to choose on and to
+measure. [Luck, and what was
 missing](../search.md#luck-and-what-was-missing) says why it lost, and what helped."""
 
 
@@ -207,7 +215,7 @@ def main() -> int:
     seeds = 1 if options.smoke else options.seeds
     engines = anything.installed()
     everything: list[Asked] = []
-    for half, families in {"smoke": SMALL}.items() if options.smoke else HALVES.items():
+    for half, families in {"smoke": {**SMALL, **LATER_SMALL}}.items() if options.smoke else HALVES.items():
         chosen = {name: sizes for name, sizes in families.items() if options.only in name}
         if options.half not in (None, half):
             continue
