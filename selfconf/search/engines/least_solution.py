@@ -10,8 +10,8 @@ CaDiCaL with the counting written as clauses, on a third clasp, which decides in
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
 begins; where roles ask for many, it soon gets the counting as clauses too. After `BRIEF` steps clasp works beside it;
 where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
-would each take twice as long, so there CaDiCaL waits for longer (`ALONE_OF_TWO`), and takes the place of clasp, which
-comes back when no engine has ended for long. Where there is one processor, they take turns, each twice as long as
+would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and then has one processor, and
+MiniCard and clasp take turns on the other. Where there is one processor, all three take turns, each twice as long as
 before. With a budget of steps it is always in turns, as a step has to mean the same on every machine. What one engine
 has settled the others take over, since the least solution is unique: so the answer is the same whichever engine finds
 it, and the time is that of the better one at each question.
@@ -24,7 +24,7 @@ from contextlib import ExitStack
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.clause_learning import FEW_TO_COUNT, SECOND_SOLVER, ClauseSolver
+from selfconf.search.engines.clause_learning import FEW_TO_COUNT, LONGEST_CALL, SECOND_SOLVER, ClauseSolver
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival, processors
@@ -43,10 +43,10 @@ NEARLY = 2
 """Where one in this number of all slots is settled by then, the first solver has as many again."""
 ALONE = 10_000
 """Conflicts of the first solver after that before CaDiCaL joins in, some tenths of a second."""
-ALONE_OF_TWO = 40_000
-"""Conflicts of the first solver before CaDiCaL takes the place of clasp, where there are but two processors."""
-TWO_AT_A_TIME = 200_000
-"""Conflicts of the first solver after that before there are three on two processors, some seconds."""
+ALONE_OF_TWO = 15_000
+"""Conflicts of the first solver before CaDiCaL joins in where there are but two processors, one of them clasp's."""
+FIRST_TURN = 5_000
+"""Conflicts of clasp, and then of the first solver, in their first turns on one processor; later turns are longer."""
 
 
 def any_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
@@ -152,18 +152,29 @@ class _Descent:
         first = self._counting(first, encoding, stack)
         if in_order is not None:
             stack.callback(in_order.pause)  # its thread interrupts a solver, which must not be deleted before
-        crowding = in_order if processors() == 2 else None
-        self.advance(first, ALONE if crowding is None else ALONE_OF_TWO)
+        crowded = in_order is not None and processors() == 2
+        self.advance(first, ALONE_OF_TWO if crowded else ALONE)
         if self.finished:
             return
-        if crowding is not None:
-            crowding.pause()
-        self.beside.append(stack.enter_context(Rival(encoding, self.slots, self.least)))
-        if crowding is not None:
-            self.advance(first, TWO_AT_A_TIME)
-            if not self.finished:
-                crowding.begin(first.clauses.interrupt)
+        rival = stack.enter_context(Rival(encoding, self.slots, self.least))
+        self.beside.append(rival)
+        if in_order is not None and crowded:
+            in_order.pause()
+            self._share_processor(first, in_order, rival)
         self.advance(first, None)
+
+    def _share_processor(self, first: Turn, in_order: OrderedDecisions, rival: Rival) -> None:
+        """Let clasp and the first solver take turns on a processor until there is an answer; CaDiCaL has the other."""
+
+        def heard() -> bool:
+            self._hear(rival)
+            return self.finished
+
+        conflicts = FIRST_TURN
+        while not self.finished:
+            in_order.search(conflicts, heard)
+            self.advance(first, conflicts)
+            conflicts = min(2 * conflicts, LONGEST_CALL)
 
     def _take_turns(self, first: Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack) -> None:
         """Let one solver after the other work, each time for longer, until one has the answer or the budget ends."""

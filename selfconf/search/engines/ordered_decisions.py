@@ -36,8 +36,8 @@ LEVELS = 32_767
 COUNTING = "--trans-ext=card"
 """Bounds as rules that count, with an atom for each number reached, about which clasp can learn. On covers it meets a
 hundred times fewer conflicts than with bounds as constraints; of one alone, a constraint is the quicker."""
-SIGNALS_SECONDS = 0.1
-"""How long Python waits for a search before it looks for signals, which it cannot handle while it waits."""
+SIGNALS_SECONDS = 0.02
+"""How long Python waits for a search before it handles signals, and looks whether the search is still needed."""
 
 
 class OrderedDecisions:
@@ -71,11 +71,13 @@ class OrderedDecisions:
     def __exit__(self, *_: object) -> None:
         self.pause()
 
-    def search(self, conflicts: int) -> None:
-        """Look for the least solution until it is found, or so many conflicts are met."""
+    def search(self, conflicts: int, needless: Callable[[], bool] = lambda: False) -> None:
+        """Look for the least solution until it is found, so many conflicts are met, or it is said to be needless."""
         handle = self._handle = self._started(f"{conflicts}", lambda: None)
         while not handle.wait(SIGNALS_SECONDS):
-            pass
+            if needless():
+                self.pause()
+                return
         self.settled()
 
     def begin(self, ended: Callable[[], None]) -> None:

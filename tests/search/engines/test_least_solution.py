@@ -66,7 +66,7 @@ def test_what_several_settle_is_the_same_as_alone(number: int, monkeypatch: pyte
         with monkeypatch.context() as patch:
             patch.setattr(rival, "processors", lambda: number)
             patch.setattr(least_solution, "processors", lambda: number)
-            for moment in ("ALONE", "ALONE_OF_TWO", "TWO_AT_A_TIME"):
+            for moment in ("ALONE", "ALONE_OF_TWO", "FIRST_TURN"):
                 patch.setattr(least_solution, moment, 1)
             patch.setattr(least_solution, "BRIEF", 0)
             patch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20)

@@ -122,6 +122,14 @@ def test_what_takes_more_conflicts_is_left_open_and_gone_on_with() -> None:
         assert search.possible is not None
 
 
+def test_a_search_ends_once_it_is_needless() -> None:
+    asked: list[bool] = []
+    with in_order(reduced(satisfiability(400, 4.26, 1))) as search:
+        search.search(ENOUGH, lambda: asked.append(True) or len(asked) > 1)
+        assert search.possible is None
+    assert len(asked) > 1
+
+
 def threads() -> set[str]:
     """The threads of this process, those that Python has not begun included."""
     return {path.name for path in Path("/proc/self/task").iterdir()}
