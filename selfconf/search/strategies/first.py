@@ -183,16 +183,27 @@ def least_of(
             return chosen
         remaining = replace(remaining, limits=limits(remaining, counted))
     if matching is not None:
-        # Only now, as it costs about as much as a matching, and an easy search needs none of it.
-        excluded = unmatchable(remaining.slots, components)
-        assert not isinstance(excluded, HallSet)
-        remaining = _without(remaining, excluded)
-        fewer = probed(remaining) if probing else remaining
-        if fewer is not remaining:
-            return least_of(fewer, budget, by_clauses, probing=False)
-        cases = value_cases(remaining)
-        if cases is not None:
-            return _least_of_cases(cases, budget, by_clauses)
+        return _least_of_sharing(remaining, budget, by_clauses, probing)
+    return _by_clauses(remaining, budget, by_clauses)
+
+
+def _least_of_sharing(
+    given: ReducedProblem, budget: Budget, by_clauses: Engine, probing: bool
+) -> list[Option] | Undecided | None:
+    """Return the least solution of a problem whose roles share components, given that these can be matched.
+
+    Options in no matching are removed only now: that costs about as much as a matching, and an easy search needs none
+    of it.
+    """
+    excluded = unmatchable(given.slots, given.components())
+    assert not isinstance(excluded, HallSet)
+    remaining = _without(given, excluded)
+    fewer = probed(remaining) if probing else remaining
+    if fewer is not remaining:
+        return least_of(fewer, budget, by_clauses, probing=False)
+    cases = value_cases(remaining)
+    if cases is not None:
+        return _least_of_cases(cases, budget, by_clauses)
     return _by_clauses(remaining, budget, by_clauses)
 
 
