@@ -10,11 +10,11 @@ CaDiCaL with the counting written as clauses, on a third clasp, which decides in
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
 begins; where roles ask for many, it soon gets the counting as clauses too. After `BRIEF` steps clasp works beside it;
 where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
-would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and then has one processor, and
-MiniCard and clasp take turns on the other. Where there is one processor, all three take turns, each twice as long as
-before. With a budget of steps it is always in turns, as a step has to mean the same on every machine. What one engine
-has settled the others take over, since the least solution is unique: so the answer is the same whichever engine finds
-it, and the time is that of the better one at each question.
+would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and takes the place of clasp; if
+no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take turns on the other processor. Where there is one
+processor, all three take turns, each twice as long as before. With a budget of steps it is always in turns, as a step
+has to mean the same on every machine. What one engine has settled the others take over, since the least solution is
+unique: so the answer is the same whichever engine finds it, and the time is that of the better one at each question.
 """
 
 from __future__ import annotations
@@ -45,6 +45,8 @@ ALONE = 10_000
 """Conflicts of the first solver after that before CaDiCaL joins in, some tenths of a second."""
 ALONE_OF_TWO = 15_000
 """Conflicts of the first solver before CaDiCaL joins in where there are but two processors, one of them clasp's."""
+BESIDE_CADICAL = 30_000
+"""Conflicts of the first solver beside CaDiCaL there before it shares its processor with clasp."""
 FIRST_TURN = 5_000
 """Conflicts of clasp, and then of the first solver, in their first turns on one processor; later turns are longer."""
 
@@ -164,12 +166,13 @@ class _Descent:
         self.advance(first, None)
 
     def _share_processor(self, first: Turn, in_order: OrderedDecisions, rival: Rival) -> None:
-        """Let clasp and the first solver take turns on a processor until there is an answer; CaDiCaL has the other."""
+        """Let the first solver work beside CaDiCaL, and later take turns with clasp, until one has ended."""
 
         def heard() -> bool:
             self._hear(rival)
             return self.finished
 
+        self.advance(first, BESIDE_CADICAL)
         conflicts = FIRST_TURN
         while not self.finished:
             in_order.search(conflicts, heard)
