@@ -15,6 +15,7 @@ import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from operator import itemgetter
 
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import CALL_MARK, Input, Output, Ports, WantedSignal
@@ -61,7 +62,7 @@ def components_to_add(problem: Problem, effort: RelaxationEffort, works: Works) 
         if playing is not None and added and works(asked):
             return _trimmed(problem, added, playing, effort, works)
         helpful = _helpful(changed, effort) if playing is None else _feeding_first(changed.problem)
-        waiting += _with_one_more(added, [(role, outputs) for role in helpful for outputs in choices[role]], seen)
+        waiting += _with_one_more(added, _first_choices_first(helpful, choices), seen)
     return None
 
 
@@ -72,6 +73,17 @@ def _choices(problem: Problem, effort: RelaxationEffort) -> list[list[tuple[Outp
         [] if role in closed else list(effort.first_of(wanted_of(problem, role), CHOICES))
         for role in range(len(problem.roles))
     ]
+
+
+def _first_choices_first(
+    roles: Iterable[int], choices: Sequence[Sequence[tuple[Output, ...]]]
+) -> list[tuple[int, tuple[Output, ...]]]:
+    """Return all choices of some roles: the first of each role, then the second of each that has one, and so on.
+
+    A role with many choices would else take all trials for itself.
+    """
+    ranked = [(rank, (role, outputs)) for role in roles for rank, outputs in enumerate(choices[role])]
+    return [one for _, one in sorted(ranked, key=itemgetter(0))]
 
 
 def _with_one_more(

@@ -132,7 +132,7 @@ UNITS = [iri("M"), iri("CM")]
 FRAMES = [Literal("map"), Literal("base")]
 SHAPE = "[ <urn:test:path> <urn:test:value> ]"
 NAMES = ["p", "q", "r"]
-FURTHER = ascii_lowercase[ascii_lowercase.index("s") :]
+FURTHER = (*ascii_lowercase[ascii_lowercase.index("s") :], *(f"z{number}" for number in range(20)))
 """Names for the outputs that a cast needs beyond those it happens to have."""
 NUMBERS = range(5)
 Cast = Sequence[Sequence[int]]
