@@ -12,7 +12,8 @@ each promised period, so that of any such time no more than a period counts.
 *Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it,
 and once more one that has stood by, unless that has just issued one, or that was lost with the life of its component
 and is in sight again: it may have nothing else to issue. So it asks for what a component that has been at rest passed
-over, or knew before it was stopped. It asks again where no answer comes, nor a signal, and the component lives.
+over, or knew before it was stopped. It asks again where no answer comes in time, nor a signal, and the component lives,
+and waits twice as long for the next answer.
 """
 
 from __future__ import annotations
@@ -56,6 +57,9 @@ the newest was none of its source's, and may not mute it."""
 PASSED_OVER = "passed over a signal on %s: %s"
 LAST_SIGNAL = 1.0
 """Seconds that an output may take to say its last signal; a later one comes by itself."""
+LONGEST_ANSWER = 16.0
+"""Seconds that the answer may take at most where questions were not answered in time, each with twice the time of the
+one before: a signal that is large is longer on its way over a slow link, which new questions would but fill."""
 ASK_FOR_LAST = (0.3, 1.0, 3.0)
 """Seconds after which an output that has issued nothing is asked once more: a question may be there before the output
 has issued anything, and the signal before the subscription."""
@@ -270,24 +274,26 @@ class InputSubscription:
         if not self.muted and self._heard_at < since:
             self._ask_for_last(ASK_FOR_LAST)
 
-    def _ask(self) -> None:
+    def _ask(self, seconds: float = LAST_SIGNAL) -> None:
         self._questions += 1
-        answered = partial(self._answered, self._questions, self._bus.now())
-        self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", LAST_SIGNAL, answered)
+        answered = partial(self._answered, self._questions, self._bus.now(), seconds)
+        self._bus.ask(self._keys.output(self._wire.component, self._wire.output), b"", seconds, answered)
 
-    def _answered(self, question: int, asked: float, replies: Replies) -> None:
+    def _answered(self, question: int, asked: float, seconds: float, replies: Replies) -> None:
         """Take the last signal; ask again where there was no answer in time to the newest question: that says nothing.
 
         Else an output that has one thing to say would never be heard again by an input that has missed it. One that
         has none does not act, or has just begun to: what it had issued before was for a task of which it has let go.
+        An answer that is too large for the bus ends the question before its time, and would be so again.
         """
         self._latched(replies)
-        if self._heard_at >= asked or self._ended:
+        if self._heard_at >= asked or self._ended or replies.samples:
             return
-        if replies.complete and self.muted and not replies.samples:
+        if replies.complete and self.muted:
             self._queue.keep(0)
-        elif not replies.complete and self._lives and question == self._questions:
-            self._ask()
+        in_vain = not replies.complete and self._bus.now() - asked > seconds / 2
+        if in_vain and self._lives and question == self._questions:
+            self._ask(min(2 * seconds, LONGEST_ANSWER))
 
     def _latched(self, replies: Replies) -> None:
         for sample in () if self._ended else replies.samples:

@@ -17,7 +17,14 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.input_subscription import BEGINNING, PATIENCE, UNSEEN, InputEvents, InputSubscription
+from selfconf.sdk.input_subscription import (
+    ASK_FOR_LAST,
+    BEGINNING,
+    PATIENCE,
+    UNSEEN,
+    InputEvents,
+    InputSubscription,
+)
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.signal_queue import EVENTS
 from tests.lab import Recorder
@@ -260,19 +267,64 @@ def test_an_output_that_does_not_answer_is_asked_for_its_last_signal_until_it_do
     stage.let_pass(0.1)
     stage.network.reconnect(node, tracker)
     stage.let_pass(8.0)
-    assert 8 <= len(unanswered) <= 12
+    assert len(unanswered) == 4  # each had twice the time of the one before
     stop()
 
+    answered: list[Request] = []
+
     def answer(request: Request) -> None:
+        answered.append(request)
         request.reply(KEYS.output(TRACKER, "pose"), b"7", said)
         request.finish()
 
     tracker.serve(KEYS.outputs(TRACKER), answer)
-    stage.let_pass(2.0)
+    stage.let_pass(8.0)
     assert stage.recorder.said.count(("position", 7)) == 2
-    asked = len(unanswered)
-    stage.let_pass(5.0)
-    assert len(unanswered) == asked
+    asked = len(answered)
+    stage.let_pass(40.0)
+    assert len(answered) == asked
+
+
+def test_an_answer_that_takes_longer_than_a_second_is_had_in_the_end() -> None:
+    """A large signal over a slow link: each question has twice the time of the one before."""
+    stage = Stage()
+    tracker = stage.network.node()
+    asked: list[float] = []
+
+    def answer(request: Request) -> None:
+        def say() -> None:
+            request.reply(KEYS.output(TRACKER, "pose"), b"7", encode(Stamp(TRACKER, "l", 1, 0.0)))
+            request.finish()
+
+        asked.append(stage.network.time)
+        tracker.later(6.0, say)
+
+    tracker.announce(KEYS.life(TRACKER, "l"))
+    tracker.serve(KEYS.outputs(TRACKER), answer)
+    stage.call(follow(1))
+    stage.let_pass(60.0)
+    assert stage.recorder.said.count(("position", 7)) == 1
+    assert len(asked) < 10
+
+
+def test_an_answer_that_is_too_large_for_the_bus_is_asked_for_only_as_often_as_before_the_first_signal(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stage = Stage()
+    tracker = stage.network.node()
+    asked: list[Request] = []
+
+    def answer(request: Request) -> None:
+        asked.append(request)
+        request.reply(KEYS.output(TRACKER, "pose"), b"7" * 200_000, encode(Stamp(TRACKER, "l", 1, 0.0)))
+        request.finish()
+
+    monkeypatch.setattr("selfconf.bus.memory_questions.LARGEST_REPLIES", 100_000)
+    tracker.announce(KEYS.life(TRACKER, "l"))
+    tracker.serve(KEYS.outputs(TRACKER), answer)
+    stage.call(follow(1))
+    stage.let_pass(30.0)
+    assert len(asked) == 1 + len(ASK_FOR_LAST)
 
 
 def test_a_signal_is_not_new_of_an_output_that_says_it_has_none_by_now() -> None:
