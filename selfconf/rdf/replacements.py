@@ -23,9 +23,9 @@ def replaced(replacements: Sequence[tuple[object, str, object]]) -> Iterator[Non
     """
     with one_at_a_time:
         before = [vars(owner)[name] for owner, name, _ in replacements]
-        for owner, name, replacement in replacements:
-            setattr(owner, name, replacement)
-        try:
+        try:  # from here on, as a time limit may end the block at any step
+            for owner, name, replacement in replacements:
+                setattr(owner, name, replacement)
             yield
         finally:
             for (owner, name, _), original in zip(replacements, before, strict=True):

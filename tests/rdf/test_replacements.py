@@ -34,6 +34,27 @@ def test_a_block_that_breaks_leaves_nothing_replaced() -> None:
     assert _Owner.answer() == "own"
 
 
+class _Interrupting(type):
+    """Raises as its attributes are replaced, as a time limit does that is over at that step."""
+
+    def __setattr__(cls, name: str, value: object) -> None:
+        super().__setattr__(name, value)
+        if value is None:
+            raise TimeoutError
+
+
+class _Interrupted(metaclass=_Interrupting):
+    answer: object = "own"
+
+
+def test_a_block_that_is_ended_while_names_are_replaced_leaves_nothing_replaced() -> None:
+    others: list[tuple[object, str, object]] = [(_Interrupted, "answer", None), (_Interrupted, "answer", "late")]
+    with pytest.raises(TimeoutError), replaced([(_Owner, "answer", None), *others]):
+        pass
+    assert _Owner.answer() == "own"
+    assert _Interrupted.answer == "own"
+
+
 def test_one_thread_at_a_time_replaces_a_name() -> None:
     entered, seen = threading.Event(), list[str]()
 
