@@ -52,7 +52,8 @@ FOREIGN := tests/bridging/ros2/test_native_nodes.py tests/test_lost_node_benchma
 
 # Mistakes in good files, ten thousand random ecologies for each property of the search, against every oracle, ten
 # thousand histories with faults and four thousand harsh ones, all that is recorded, drives of ten seeds, a hundred
-# kills of a server that writes its history, the programs of others, and the ecologies of all tests once more with keys; about forty minutes.
+# kills of a server that writes its history, the programs of others, and the ecologies of all tests once more with keys;
+# about forty minutes.
 nightly: $(VENV)/with-dev fuzz test-keys
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/composition/test_searches.py \
 		tests/test_certificate.py tests/faults tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
