@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import field, fields, replace
 from pathlib import Path
 
@@ -34,7 +35,7 @@ from selfconf.model.wording import plain
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.provenance import configuration_iri, configuration_triples
 from selfconf.rdf.tasks import TaskDocument
-from selfconf.rdf.turtle import to_turtle
+from selfconf.rdf.turtle import Document, to_turtle
 from selfconf.render import (
     Names,
     configuration_text,
@@ -291,14 +292,18 @@ class Inquiry:
 
         Where the document that says what is inside is not at hand, as of a text, nothing is known of that.
         """
+        documents: dict[str, Document | None] = {}
         eligible = {candidate.profile.component for some in partition.candidates for candidate in some}
         for component in sorted(eligible.union(one.component for one in partition.recruits)):
             advertisement = self.ecology[component]
             if advertisement.profile.inside is None:
                 continue
-            try:
-                document = described_in(advertisement)
-            except SelfconfError:
+            source = self._place(component).source
+            if source not in documents:  # one file may advertise many
+                with suppress(SelfconfError):
+                    documents[source] = described_in(advertisement)
+            document = documents.setdefault(source, None)
+            if document is None:
                 continue
             try:
                 Inside.of(advertisement.profile, document, self.composer.hierarchy)

@@ -15,6 +15,7 @@ import rdflib
 import selfconf as sc
 from selfconf import configure, read, template
 from selfconf.api.answer import Answer, Inquiry, Method
+from selfconf.api.reading import described_in
 from selfconf.composition import Strategy
 from selfconf.errors import AuthorError, BindingError, ProgrammerError, SelfconfError, TemplateError
 from selfconf.model.configuration import Configuration, Wants
@@ -23,7 +24,8 @@ from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.project import STRATEGIES
-from selfconf.rdf.turtle import parse
+from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.turtle import Document, parse
 from selfconf.rdf.vocabulary import SC
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
@@ -213,6 +215,25 @@ def test_a_composite_that_can_be_nothing_inside_plays_no_role_and_is_named(
         if player == "old-radio"
         else []
     )
+
+
+def test_a_file_that_advertises_many_composites_is_read_once_for_what_they_are_inside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read_again: list[IRI] = []
+
+    def described(advertisement: Advertisement) -> Document:
+        read_again.append(advertisement.component)
+        return described_in(advertisement)
+
+    (tmp_path / "radio.ttl").write_text(RADIO.replace("TYPE", "rob:Text"))
+    sets = [f":set{number} a sc:Component, :Radio ; sc:grounding [ sc:template :play ] ." for number in range(9)]
+    (tmp_path / "sets.ttl").write_text("\n".join([RADIO.partition(":radio-set")[0], *sets]))
+    task = template(f"{PREFIXES}:listen a sc:Template ; sc:roles ( :set ) . :set a sc:Role ; sh:class :Radio .")
+    monkeypatch.setattr("selfconf.api.answer.described_in", described)
+    inquiry = Inquiry(task, read(tmp_path), Method())
+    assert read_again == [iri("radio-set"), iri("set0")]
+    assert inquiry.eligible == {str(iri("set")): 1}
 
 
 def test_a_refusal_of_text_that_is_in_no_file_has_its_lines(clock: sc.TaskSpecification) -> None:

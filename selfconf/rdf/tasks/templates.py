@@ -158,6 +158,8 @@ class _Reader(DocumentReader):
     def _said_of_others(self) -> None:
         """Raises where something is said that is said of roles or templates alone."""
         for subject, statements in self.document.statements.items():
+            if _SAID_OF.keys().isdisjoint([said for said, _ in statements]):
+                continue  # nearly all that a file says; one that advertises many composites is read for each
             for predicate, kinds in _SAID_OF.items():
                 described = any((TYPE, kind) in statements for kind in kinds)
                 if not described and any(said == predicate for said, _ in statements):
