@@ -7,7 +7,7 @@ many are kept as events may need (`signal_queue`); `sc:depth` of the input says 
 *Silence.* An input that follows an output with a promised rate reports when no signal has come for `PATIENCE` of the
 promised periods, and again as long as none comes. While this process itself stands still, as its machine stalls or it
 is suspended, no signal could have come: the time by which a look comes late counts as no silence. Looks come once in
-each promised period, so that of any such time no more than a period counts.
+each promised period, or 40 times a second, so that of any such time no more than a period, or 25 ms, counts.
 
 *Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it,
 and once more one that has stood by, unless that has just issued one, or that was lost with the life of its component

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
@@ -188,8 +189,10 @@ def test_calls_for_a_doubtful_life_that_time_out_say_nothing_and_it_is_called_ag
     caller.calls.confirm(LIFE, alive, lambda: confirmed.append(alive))
     for count, answer in enumerate(late, 1):
         answer.may_end.clear()
-        while caller.session.calls < count:
+        deadline = time.monotonic() + 10.0
+        while caller.session.calls < count and time.monotonic() < deadline:
             caller.loop.poll(0.01)
+        assert caller.session.calls == count
         caller.loop.poll(0.06)
         assert not confirmed
         answer.may_end.set()

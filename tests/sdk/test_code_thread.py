@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import threading
+import time
 
-from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.code_thread import RUSH, CodeThread
 
 
 def test_without_a_thread_of_its_own_everything_runs_at_once() -> None:
@@ -47,6 +48,22 @@ def test_it_waits_for_the_first_thing_to_do_and_may_be_woken() -> None:
     code.wake_up()
     thread.join(5.0)
     assert not thread.is_alive()
+
+
+def test_what_is_handed_over_while_it_sleeps_wakes_it_at_once() -> None:
+    code, ended = CodeThread(inline=False), threading.Event()
+    thread = threading.Thread(target=code.run, args=(ended.is_set,))
+    began = time.monotonic()
+    thread.start()
+    for _ in range(20):
+        ran = threading.Event()
+        ran.wait(10 * RUSH)  # until nothing more is expected, and the thread sleeps
+        code.signal(ran.set)
+        assert ran.wait(5.0)
+    ended.set()
+    code.wake_up()
+    thread.join(5.0)
+    assert time.monotonic() - began < 4.0  # by itself it looks twice a second
 
 
 def test_whatever_several_threads_hand_over_runs_in_their_order_though_it_goes_to_sleep_in_between() -> None:

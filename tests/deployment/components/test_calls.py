@@ -16,6 +16,7 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import End, Page, Release, Wake
 from selfconf.sdk.runtime import LIFE_ENDS
 from selfconf.sdk.supervision import GRACE
+from selfconf.site.component_program import TERMINATION
 from tests.deployment.simulated import home, living_room, slow_code
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
@@ -50,8 +51,17 @@ def test_components_start_after_those_that_feed_them_and_actuators_last_and_rest
     assert (off[:2], set(off[2:])) == (["drive", "control"], {"sonar", "encoder", "tracker"})
 
 
-@pytest.mark.parametrize("seconds", [0.3, 2.1, 2 * SITE_ENDS], ids=["soon", "killed", "late"])
-def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_path: Path, seconds: float) -> None:
+@pytest.mark.parametrize(
+    ("seconds", "in_time"),
+    [
+        pytest.param(0.3, True, id="soon"),
+        pytest.param(TERMINATION + 0.1, True, id="killed"),
+        pytest.param(2 * SITE_ENDS, False, id="late"),
+    ],
+)
+def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(
+    tmp_path: Path, seconds: float, in_time: bool
+) -> None:
     """It is out of control if the site takes too long for that."""
     lab = Lab(tmp_path)
     lab.site("astrid", *TASK, "odometry")
@@ -88,9 +98,9 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(tmp_pat
     assert lab.until(lambda: bool(lab.ended))
     assert ended == [End(tracker, runtime.life)]
     (stopped,) = lab.acts("stopped")
-    assert stopped.owed == (() if seconds < SITE_ENDS else (tracker,))
+    assert stopped.owed == (() if in_time else (tracker,))
     off = [event.detail for event in lab.acts("released") if event.component == tracker]
-    assert off == (["its site has ended its process"] if seconds < SITE_ENDS else [])
+    assert off == (["its site has ended its process"] if in_time else [])
     assert lab.until(lambda: lab.active() == set())
 
 
