@@ -48,6 +48,7 @@ BROKEN_ONCE = {
     "what stood by has let go of a task, and has not said if it acts": Recipe(3000747, CHOICE, upgrades=True),
     "what runs loses a source while what is better is silent": Recipe(3502067, CHOICE, large=True, upgrades=True),
     "an upgrade begins before a composite says what it is": Recipe(2004121, COMPOSED, busy=True, upgrades=True),
+    "a composite is repaired inside, and its task has not told yet": Recipe(41004643, COMPOSED, upgrades=True),
     "what is followed was stopped since, which is heard of too late": Recipe(9303807, CHOICE, upgrades=True),
     "a task waits for what hung when another has asked for it": Recipe(9751881, CHOICE, busy=True, upgrades=True),
     "a source acts for another task when it is followed": Recipe(5002231, CHOICE, busy=True, upgrades=True),

@@ -109,7 +109,16 @@ def worse_than_need_be(history: History) -> Iterator[str]:
             yield f"{agent.name} runs without {rather}"
 
 
-STEPS = (Invariant("an upgrade starves nobody", starves, lambda history: 0.0),)
+SAID_OUTSIDE = 0.05
+"""Seconds from when a composite runs again inside until those whom it feeds have been told what they are to follow: it
+says so to their task, which calls them, and asks again where a message is lost."""
+STEPS = (
+    Invariant(
+        "an upgrade starves nobody",
+        starves,
+        lambda history: SAID_OUTSIDE if history.script.ecology.composites else 0.0,
+    ),
+)
 ENDS = (Invariant("the better is reached", worse_than_need_be),)
 
 
