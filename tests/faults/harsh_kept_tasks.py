@@ -8,11 +8,9 @@ one after the other is the first of a seed, and happens at least twice where it 
 
 from __future__ import annotations
 
-import argparse
 import errno
 import random
 import shutil
-import tempfile
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
@@ -22,7 +20,7 @@ from selfconf.bus.memory_bus import MemoryBus
 from selfconf.deployment import Keeper, TaskFolder
 from selfconf.protocol.messages import TaskRecord
 from tests.faults.harsh import AWHILE, STALLS, STEPS
-from tests.faults.kept_tasks import BEGAN, CLOCKS, FAULTY, KEEPING, SETTLED, KeptHistory, account, request_for
+from tests.faults.kept_tasks import BEGAN, CLOCKS, FAULTY, KEEPING, SETTLED, KeptHistory, main, request_for
 
 KINDS = (
     "fill_disk",
@@ -217,22 +215,5 @@ def played(seed: int, folder: Path) -> HarshKeptHistory:
     return history
 
 
-def main(each: Callable[[str], None] = print) -> int:
-    """Play histories; 1 if any of them broke something."""
-    parser = argparse.ArgumentParser(description="play harsh histories of tasks that live in the sites")
-    parser.add_argument("first", type=int)
-    parser.add_argument("last", type=int)
-    given, broken, done = parser.parse_args(), 0, Counter[str]()
-    for seed in range(given.first, given.last):
-        with tempfile.TemporaryDirectory() as folder:
-            history = played(seed, Path(folder))
-        done += history.done
-        if history.broken:
-            broken += 1
-            each(account(seed, history) + "\n")
-    each(f"{given.last - given.first} histories, {broken} broken; {dict(done)}")
-    return 1 if broken else 0
-
-
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(main(played))

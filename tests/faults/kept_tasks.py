@@ -280,19 +280,19 @@ def account(seed: int, history: KeptHistory) -> str:
     return "\n".join([f"seed {seed}", *history.told, "", *history.broken])
 
 
-def main(each: Callable[[str], None] = print) -> int:
-    """Play histories; 1 if any of them broke something."""
+def main(play: Callable[[int, Path], KeptHistory] = played) -> int:
+    """Play the histories of some seeds; 1 if any of them broke something."""
     parser = argparse.ArgumentParser(description="play histories of tasks that live in the sites")
     parser.add_argument("first", type=int)
     parser.add_argument("last", type=int)
     given, broken = parser.parse_args(), 0
     for seed in range(given.first, given.last):
         with tempfile.TemporaryDirectory() as folder:
-            history = played(seed, Path(folder))
+            history = play(seed, Path(folder))
         if history.broken:
             broken += 1
-            each(account(seed, history) + "\n")
-    each(f"{given.last - given.first} histories, {broken} broken")
+            print(account(seed, history) + "\n")
+    print(f"{given.last - given.first} histories, {broken} broken")
     return 1 if broken else 0
 
 
