@@ -158,16 +158,18 @@ def test_a_port_without_a_name_is_refused_for_there_is_no_key_for_it() -> None:
                 decode(encode(kind(1, supervisor, inputs=inputs)), kind)
 
 
-@pytest.mark.parametrize("period", [0.0, -1.0, float("nan"), float("inf")])
-def test_a_promise_is_a_pause_that_one_can_wait_for(period: float) -> None:
+@pytest.mark.parametrize("period", ["0", "-1", "NaN", "Infinity"])
+def test_a_promise_is_a_pause_that_one_can_wait_for(period: str) -> None:
+    good = encode(Apply(1, "s", inputs={"position": (Wire(IRI("urn:a"), "pose", 8.5),)}))
     with pytest.raises(PeerError, match="period"):
-        decode(encode(Apply(1, "s", inputs={"position": (Wire(IRI("urn:a"), "pose", period),)})), Apply)
+        decode(good.replace(b"8.5", period.encode()), Apply)
 
 
-@pytest.mark.parametrize("beginning", [float("nan"), float("inf"), float("-inf")])
-def test_a_task_begins_at_a_moment_for_tasks_are_served_in_that_order(beginning: float) -> None:
+@pytest.mark.parametrize("beginning", ["NaN", "Infinity", "-Infinity"])
+def test_a_task_begins_at_a_moment_for_tasks_are_served_in_that_order(beginning: str) -> None:
+    good = encode(Reserve(1, "s", "t~1", beginning=8.5))
     with pytest.raises(PeerError, match="finite"):
-        decode(encode(Reserve(1, "s", "t~1", beginning=beginning)), Reserve)
+        decode(good.replace(b"8.5", beginning.encode()), Reserve)
 
 
 @pytest.mark.parametrize("kind", [Reserve, Apply, Release])
