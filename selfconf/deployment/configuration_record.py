@@ -8,7 +8,7 @@ from typing import Any
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode_term, encode_term
+from selfconf.protocol.json_values import decode_term, encode_term
 
 
 def configuration_record(configuration: Configuration) -> dict[str, Any]:

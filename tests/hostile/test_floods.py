@@ -13,7 +13,8 @@ from selfconf.discovery import Discovery, EcologyView
 from selfconf.discovery.ecology_view import BETWEEN_DISCOVERIES, IN_A_ROW
 from selfconf.discovery.inquiry import MOST_COMPLAINTS
 from selfconf.protocol.activation import MOST_HOLDING
-from selfconf.protocol.codec import LARGEST, MOST_ADVERTISED, MOST_WIRES, encode
+from selfconf.protocol.codec import LARGEST, MOST_ADVERTISED, encode
+from selfconf.protocol.json_values import MOST_WIRES
 from selfconf.protocol.messages import Apply, Cause, Fail, Page, Reserve, Stamp, Wire
 from selfconf.sdk.input_subscription import LATE
 from selfconf.sdk.payloads import LARGEST_JSON
