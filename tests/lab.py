@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -270,14 +271,8 @@ class Lab:
         """
         wishes.setdefault("at_leisure", (lambda work: work()) if self._foresees else (lambda work: None))
         task = task_of(template, bound)
-        composer = Composer(task)
-        order = RunRequest(
-            task=task.task,
-            compose=composer.compose,
-            standby=composer.standby,
-            not_judged=composer.not_judged,
-            usable=composer.usable,
-            passed_over=composer.passed_over,
+        order = replace(
+            RunRequest.of(Composer(task)),
             policy=policy,
             patient=patient,
             report=self.events.append,

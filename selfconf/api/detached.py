@@ -10,22 +10,20 @@ from typing import Any
 
 from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.arguments import checked_priority, checked_text, checked_upgrade, option
-from selfconf.api.run_outcomes import outcome_among, searched_ecology
+from selfconf.api.run_outcomes import composing, searched_ecology
 from selfconf.api.task import TaskSpecification
-from selfconf.composition import Composer, TimeLimit, composed
+from selfconf.composition import Composer
 from selfconf.configurator import Policy
 from selfconf.deployment import Aside, RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError
-from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
-from selfconf.model.refusal import Outcome, Refusal
+from selfconf.model.refusal import Refusal
 from selfconf.model.seconds import DELAY_IN_WORDS, is_delay
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, safe_name, task_identity
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import tasks, turtle
-from selfconf.rdf.advertisements import Advertisement
 
 
 @immutable
@@ -119,9 +117,6 @@ def request_of(
     task, method, composer = recorded_task(record)
     options = record.options
 
-    def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
-        return outcome_among(composed(composer, found, lost, running, TimeLimit(method.seconds)), found, lost)
-
     def explain(refusal: Refusal, found: Callable[[Refusal], None]) -> None:
         def find() -> None:  # with a composer of its own: the partition of the next search must not be spoilt
             composer, ecology = method.composer(task), searched_ecology(refusal)
@@ -129,13 +124,8 @@ def request_of(
 
         at_leisure(find)
 
-    return RunRequest(
-        task=task.document.task,
-        compose=compose,
-        standby=composer.standby,
-        not_judged=composer.not_judged,
-        usable=composer.usable,
-        passed_over=composer.passed_over,
+    return replace(
+        RunRequest.of(composer, composing(composer, method.seconds)),
         policy=option(Policy, "policy", options.get("policy") or "repair"),
         patient=True,
         priority=record.priority,

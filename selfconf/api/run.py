@@ -15,18 +15,17 @@ from selfconf.api.detached import AS_USUAL, TaskOptions, task_record
 from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import Membership
 from selfconf.api.places import Places
-from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, outcome_among, searched_ecology
+from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.work_queue import UNDISTURBED, WorkQueue
 from selfconf.bus.zenoh_bus import ZenohBus
-from selfconf.composition import Composer, TimeLimit, composed
+from selfconf.composition import Composer, TimeLimit
 from selfconf.configurator import Loss
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import ProgrammerError
-from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import FrozenMapping
-from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, task_name
@@ -98,13 +97,8 @@ class Run:
         self._named = bool(options.name)
         self.wanted_name = self.task_name = task_name(record.task)
         """The name that was given to the task, or that of its template; and the one that it has in the ecology."""
-        self._request = RunRequest(
-            task=self.task.document.task,
-            compose=self._compose,
-            standby=self._composer.standby,
-            not_judged=self._composer.not_judged,
-            usable=self._composer.usable,
-            passed_over=self._composer.passed_over,
+        self._request = replace(
+            RunRequest.of(self._composer, composing(self._composer, method.seconds)),
             policy=options.policy,
             patient=wait,
             believed=membership.beliefs(),
@@ -242,13 +236,6 @@ class Run:
             )
             self._told = refusal, ecology, explained
         return self._told[2]
-
-    def _compose(
-        self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
-    ) -> Outcome:
-        return outcome_among(
-            composed(self._composer, found, lost, running, TimeLimit(self.method.seconds)), found, lost
-        )
 
     def _settle(self, refusal: Refusal | Undecided | None) -> None:
         self._refusal, self._ended = refusal, True

@@ -14,6 +14,8 @@ from dataclasses import field, fields, replace
 from typing import TypeAlias, overload
 
 from selfconf.api.answer import Answer, ExplainedRefusal
+from selfconf.composition import Composer, TimeLimit, composed
+from selfconf.deployment import ComposeFunction
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import FrozenMapping, immutable
 from selfconf.model.optimum import Optimum
@@ -90,6 +92,15 @@ def outcome_among(answer: Optimum | Outcome, found: Mapping[IRI, Advertisement],
         able = FrozenMapping({component: one for component, one in found.items() if component not in lost})
         return RefusalAmong(**{one.name: getattr(answer, one.name) for one in fields(Refusal)}, ecology=able)
     return answer.configuration if isinstance(answer, Optimum) else answer
+
+
+def composing(composer: Composer, seconds: float | None = None) -> ComposeFunction:
+    """Act 3 of a run: the best answer of a composer within some seconds; a refusal keeps the ecology it is about."""
+
+    def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+        return outcome_among(composed(composer, found, lost, running, TimeLimit(seconds)), found, lost)
+
+    return compose
 
 
 def searched_ecology(refusal: Refusal) -> Mapping[IRI, Advertisement]:

@@ -9,6 +9,7 @@ again. Composites that could be inside of each other in a circle never live.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Set
+from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Undo
@@ -209,14 +210,5 @@ class Composites:
             local = {one: a for one, a in found.items() if one in self._advertisements and one != component}
             return composer.compose(local, lost, running)
 
-        return RunRequest(
-            task=composer.task.task,
-            compose=compose,
-            standby=composer.standby,
-            not_judged=composer.not_judged,
-            usable=composer.usable,
-            passed_over=composer.passed_over,
-            name=safe_name(component.short),
-            believed=self._believed,
-            aside=self._aside,
-        )
+        request = RunRequest.of(composer, compose)
+        return replace(request, name=safe_name(component.short), believed=self._believed, aside=self._aside)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import KW_ONLY
+from typing import Protocol
 
 from selfconf.bus.port import Undo
 from selfconf.configurator import Policy
@@ -23,6 +24,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import TaskRecord, Wire
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.tasks import TaskDocument
 
 ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
@@ -42,6 +44,34 @@ EventListener = Callable[[AnyRunEvent], None]
 
 Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
 """For each component and input, the outputs that might be connected to it next."""
+
+
+class TaskComposer(Protocol):
+    """What composes one task again and again: a `selfconf.composition.Composer`, which is no part of this room.
+
+    Each of its methods is a field of `RunRequest`, where it is described.
+    """
+
+    @property
+    def task(self) -> TaskDocument:
+        """The task."""
+
+    def compose(
+        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+    ) -> Outcome:
+        """Act 3."""
+
+    def not_judged(self) -> Mapping[IRI, NotJudged]:
+        """What cannot be judged."""
+
+    def usable(self, components: Set[IRI], refusal: Refusal) -> Mapping[IRI, tuple[IRI, ...]]:
+        """What could help where there is no configuration."""
+
+    def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> Standby:
+        """What might be connected next."""
+
+    def passed_over(self, configuration: Configuration) -> Mapping[IRI, Sequence[IRI]]:
+        """What came before the chosen ones."""
 
 
 @immutable
@@ -103,6 +133,18 @@ class RunRequest:
     """Receives what the configurator does and notices, in order."""
     ended: Callable[[Refusal | Undecided | None], None] = lambda refusal: None
     """Called once when the task has ended; with the refusal if that is why."""
+
+    @classmethod
+    def of(cls, composer: TaskComposer, compose: ComposeFunction | None = None) -> RunRequest:
+        """The request to run the task of a composer; `compose`, if there is any, does act 3 in its place."""
+        return cls(
+            task=composer.task.task,
+            compose=compose or composer.compose,
+            not_judged=composer.not_judged,
+            usable=composer.usable,
+            standby=composer.standby,
+            passed_over=composer.passed_over,
+        )
 
 
 @immutable

@@ -12,7 +12,7 @@ from selfconf.api.answer import Answer, Method, refusal_with_places
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered, text_of
-from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, outcome_among, searched_ecology
+from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.bus.memory import Faults, Network
 from selfconf.bus.memory_bus import MemoryBus
@@ -21,8 +21,7 @@ from selfconf.composition import TimeLimit
 from selfconf.configurator import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError
-from selfconf.model.configuration import Configuration
-from selfconf.model.refusal import Outcome, Refusal, Undecided
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
@@ -83,14 +82,9 @@ class MemoryRun:
         self._method = method
         self._explained: tuple[Refusal, Mapping[IRI, Advertisement], Refusal] | None = None
         """The refusal that was explained last, in which ecology, and its explanation."""
-        self._composer = composer = method.composer(task)
-        request = RunRequest(
-            task=task.document.task,
-            compose=self._compose,
-            standby=composer.standby,
-            not_judged=composer.not_judged,
-            usable=composer.usable,
-            passed_over=composer.passed_over,
+        self._composer = method.composer(task)
+        request = replace(
+            RunRequest.of(self._composer, composing(self._composer)),
             policy=policy,
             patient=wait,
             report=self._report,
@@ -131,11 +125,6 @@ class MemoryRun:
 
     def __repr__(self) -> str:
         return f"<run of {self._task.task.template.iri.short}: {self.phase}>"
-
-    def _compose(
-        self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
-    ) -> Outcome:
-        return outcome_among(self._composer.compose(found, lost, running), found, lost)
 
     def _explain(self, refusal: Refusal) -> Refusal:
         """A refusal with all that can be found out: no time passes in the ecology meanwhile."""

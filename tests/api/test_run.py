@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -16,7 +15,7 @@ from selfconf import read, template
 from selfconf.api.answer import Method
 from selfconf.api.membership import Membership
 from selfconf.api.run import Run, WorkQueue
-from selfconf.composition import TimeLimit
+from selfconf.composition import Composer, TimeLimit
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
@@ -164,8 +163,8 @@ def test_what_cannot_be_configured_ends_with_a_refusal_that_is_explained(
 def test_a_refusal_is_explained_by_the_ecology_in_which_it_was_found(served: Home, clock: sc.TaskSpecification) -> None:
     with sc.join(served.ecology) as living:
         run, home = living.run(clock.bind(room=":cellar")), living.advertisements()
-        refused = run._compose(home, frozenset(), None)
-        run._compose({}, frozenset(), None)
+        refused = run._request.compose(home, frozenset(), None)
+        run._request.compose({}, frozenset(), None)
         assert isinstance(refused, sc.Refusal)
         explained = run._explain(refused, run._composer, TimeLimit(None))
     assert [str(miss) for miss in explained.near_misses] == ["its place is kitchen, not cellar"]
@@ -313,14 +312,15 @@ def test_searches_are_done_by_the_thread_that_reads_the_events_and_keep_the_run_
     searching, go_on = threading.Event(), threading.Event()
     searched_by: list[threading.Thread] = []
 
-    class Held(Run):
-        def _compose(self, *arguments: Any) -> Any:
-            searched_by.append(threading.current_thread())
-            searching.set()
-            go_on.wait(10.0)
-            return super()._compose(*arguments)
+    answers = Composer.answers
 
-    monkeypatch.setattr(sys.modules[__name__], "Run", Held)
+    def held(*arguments: Any) -> Any:
+        searched_by.append(threading.current_thread())
+        searching.set()
+        go_on.wait(10.0)
+        return answers(*arguments)
+
+    monkeypatch.setattr(Composer, "answers", held)
     moments: list[float] = []
 
     def look() -> None:

@@ -12,7 +12,8 @@ import pytest
 import selfconf as sc
 from selfconf import values
 from selfconf.api.answer import Answer, ExplainedRefusal
-from selfconf.api.run_outcomes import RefusalAmong, answered, answered_event, outcome_among, searched_ecology
+from selfconf.api.run_outcomes import RefusalAmong, answered, answered_event, composing, outcome_among, searched_ecology
+from selfconf.composition import Composer
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import EcologyAsked, SearchEnded, TaskRefused, TaskRunning, TaskWaiting
@@ -105,3 +106,13 @@ def test_what_is_no_refusal_stays_as_it_is() -> None:
     assert outcome_among(Optimum(answer, (), (), (), proved=True), {}, ()) is answer
     undecided = Undecided()
     assert outcome_among(undecided, {}, ()) is undecided
+
+
+def test_what_a_run_composes_keeps_the_ecology_of_a_refusal_and_ends_with_its_time() -> None:
+    home = sc.read(ROOT / "examples" / "clock").advertisements()
+    task = sc.template(ROOT / "examples" / "clock" / "tell-the-time.ttl").bind(room=":kitchen")
+    composer, (lost, *others) = Composer(task.document), sorted(home)
+    refusal = composing(composer)(home, frozenset({lost}), None)
+    assert isinstance(refusal, RefusalAmong)
+    assert sorted(searched_ecology(refusal)) == others
+    assert composing(composer, seconds=0.0)(home, frozenset(), None) == Undecided(seconds=0.0)

@@ -110,7 +110,7 @@ def test_nothing_is_known_about_an_ecology_that_has_changed(lab: Lab) -> None:
     running = agent.state.target
     assert running is not None
     found = {one: f.advertisement for one, f in agent.ecology.discovery.found.items()}
-    request = RunRequest(task=task.task, compose=Composer(task).compose, at_leisure=at_once)
+    request = replace(RunRequest.of(Composer(task)), at_leisure=at_once)
     contingencies = Contingencies(lab.network.node(), request, lambda: found)
     contingencies.prepare(frozenset(), running)
     lab.let_pass(0.1)
@@ -140,7 +140,7 @@ def test_what_is_known_is_what_the_search_answers(lab: Lab) -> None:
         if not isinstance(running, Configuration):
             continue
         composer = Composer(task)
-        request = RunRequest(task=task.task, compose=composer.compose, at_leisure=at_once)
+        request = replace(RunRequest.of(composer), at_leisure=at_once)
         contingencies = Contingencies(lab.network.node(), request, lambda found=found: found)  # type: ignore[misc]
         contingencies.prepare(before, running)
         lab.let_pass(0.01)

@@ -34,7 +34,7 @@ RECORD = TaskRecord("patrol~1", 1, priority=1, beginning=5.0)
 def request_for(record: TaskRecord) -> RunRequest:
     """The paper's task."""
     task = complete(bind(read_task(turtle.parse(NAVIGATE, "t")), (("robot", ":Astrid"), ("goal", "(AT BEDROOM)"))))
-    return RunRequest(task=task.task, compose=Composer(task).compose, patient=True, priority=record.priority)
+    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
 
 
 class Keepers:
@@ -239,7 +239,7 @@ def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
 def composed(record: TaskRecord) -> RunRequest:
     """A task that needs a composite."""
     task = complete(read_task(turtle.parse(COMPOSED.whole, "t")))
-    return RunRequest(task=task.task, compose=Composer(task).compose, patient=True, priority=record.priority)
+    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
 
 
 def following(folder: Path, seed: int) -> tuple[Keepers, str, str, str]:
@@ -303,10 +303,7 @@ def test_nothing_stops_when_the_first_site_is_back_while_the_next_one_takes_over
 def drives(record: TaskRecord) -> RunRequest:
     """A task for which either of two components will do."""
     task = complete(read_task(turtle.parse(DRIVEN, "t")))
-    composer = Composer(task)
-    return RunRequest(
-        task=task.task, compose=composer.compose, usable=composer.usable, patient=True, priority=record.priority
-    )
+    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
 
 
 @pytest.mark.parametrize("keepers_are", ["one", "two"])

@@ -15,6 +15,7 @@ import argparse
 import random
 import tempfile
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from operator import attrgetter
 from pathlib import Path
@@ -52,10 +53,7 @@ _OF_RUNTIME = attrgetter("activation", "code.turn", "code._acting_turn")  # by t
 def request_for(record: TaskRecord) -> RunRequest:
     """The paper's task, with the priority of the record."""
     task = task_of(NAVIGATE, (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
-    composer = Composer(task)
-    return RunRequest(
-        task=task.task, compose=composer.compose, usable=composer.usable, patient=True, priority=record.priority
-    )
+    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
 
 
 class KeptHistory:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import logging
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -200,7 +201,7 @@ def request_for(record: TaskRecord) -> RunRequest:
     task = complete(
         bind(read_task(turtle.parse(record.document, "t")), (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
     )
-    return RunRequest(task=task.task, compose=Composer(task).compose, patient=True)
+    return replace(RunRequest.of(Composer(task)), patient=True)
 
 
 def history(folder: Path, random: Random, each: int) -> None:
