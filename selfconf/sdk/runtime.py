@@ -1,40 +1,34 @@
 """The runtime of one component: what joins the code of a component to the bus.
 
-It holds the liveliness token, answers control calls by the table in `selfconf.protocol.activation`, and has the
+It holds the liveliness token, obeys control calls by the table in `selfconf.protocol.activation`, and has the
 component's code run what they ask for, on the thread of that code. Everything else, supervision and the watch over the
-code included, happens on the thread of the bus, so that it never waits for the code. `ComponentCode` calls the code;
-outputs, inputs, operations, supervision and blindness have modules of their own.
+code included, happens on the thread of the bus, so that it never waits for the code. `ControlCalls` reads the calls,
+`OwnState` words their answers, and `WaitingTasks` deals with the tasks that a call has to wait for; `ComponentCode`
+calls the code; outputs, inputs, operations, supervision and blindness have modules of their own.
 """
 
 from __future__ import annotations
 
 import logging
-import os
 import secrets
-import socket
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
-from selfconf.errors import PeerError
+from selfconf.bus.port import Bus, Urgency
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
 from selfconf.protocol import activation as table
-from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep, Hold
-from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys, call_of, owner_of, task_name
+from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
+from selfconf.protocol.codec import encode
+from selfconf.protocol.keys import Keys, task_name
 from selfconf.protocol.messages import (
     Apply,
-    CallAnswer,
     Cause,
-    Claim,
     Fail,
-    Free,
     Release,
     Reserve,
-    StateOf,
     Verdict,
     Wire,
 )
@@ -42,31 +36,20 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.component_timers import ComponentTimers
+from selfconf.sdk.control_calls import ControlCalls, Reply
 from selfconf.sdk.input_subscription import InputEvents
 from selfconf.sdk.inputs import InputFollower, Inputs
 from selfconf.sdk.operations import Operations
 from selfconf.sdk.other_lives import OtherLives
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
+from selfconf.sdk.own_state import OwnState
 from selfconf.sdk.supervision import Supervision
-from selfconf.termination import resident_memory
+from selfconf.sdk.waiting_tasks import WaitingTasks
 
 log = logging.getLogger(__name__)
 
-_MESSAGES: dict[str, type[Reserve] | type[Apply] | type[Release]] = {
-    "reserve": Reserve,
-    "apply": Apply,
-    "release": Release,
-}
-"""The message that each call carries, apart from `state`, which carries none."""
-OFFER = 0.2
-"""Seconds for which a component that has become free is kept for the task that has waited for it first."""
-YIELDING = 2.0
-"""Seconds that a task has to let go of a component that a task of higher priority asks for."""
-MOST_PENDING = 256
-"""How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
 LIFE_ENDS = "it is leaving the ecology"
 """What a component says that cannot act any more in this life, but does not refuse to."""
-Reply = Callable[[CallAnswer], None]
 
 
 class ComponentRuntime:
@@ -92,7 +75,6 @@ class ComponentRuntime:
         self.bus, self.keys, self.profile, self.component = bus, keys, profile, component
         self.life = life or secrets.token_hex(4)
         """Which incarnation of the component this is."""
-        self._began = bus.now()
         self.activation = Activation()
         self._superseded = superseded
         thread = code_thread or CodeThread(inline=True)
@@ -101,8 +83,6 @@ class ComponentRuntime:
         self._closed = False
         self._failure = ""
         """Why the component has failed the last time."""
-        self._preemption: Undo | None = None
-        """Set while a task of higher priority waits for those that hold the component to yield."""
         self._after_start: list[Callable[[str | None], None]] = []
         """What waits for the code to have started."""
         self._after_stop: list[Callable[[], None]] = []
@@ -133,9 +113,22 @@ class ComponentRuntime:
         )
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
-        self._free: Publisher | None = None
-        """What tells tasks that wait for the component that it is free, once one has waited."""
-        self._served = bus.serve(keys.call(profile.component), self._call)
+        self._waiting = WaitingTasks(
+            bus,
+            keys,
+            profile.component,
+            self.life,
+            lambda: self.activation,
+            self._keep,
+            lambda task, why: self._put_fail(Cause.YIELD, why, task),
+            self._let_go,
+        )
+        self._own_state = OwnState(
+            bus, profile, self.life, lambda: self.activation, self.code, self.inputs, self.outputs, self.supervision
+        )
+        self.calls = ControlCalls(
+            bus, keys, profile, self.life, self._own_state, lambda: self._pending, self._obey_at_rest
+        )
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
         self._other_lives = OtherLives(bus, keys.lives(profile.component), self.life, self._outlived)
 
@@ -156,15 +149,13 @@ class ComponentRuntime:
             return
         self._closed = True
         self._drop([hold.claim.task for hold in self.activation.holds])
-        self._served()
+        self.calls.close()
         self._token()
         self._other_lives.close()
         self.outputs.close()
         self.operations.close()
         self._fail.undeclare()
-        if self._free is not None:
-            self._free.undeclare()
-            self._free = None
+        self._waiting.close()
         self._when_at_rest(closed)
 
     # What the component does.
@@ -196,50 +187,18 @@ class ComponentRuntime:
 
     # Control calls.
 
-    def _call(self, request: Request) -> None:
-        call = call_of(request.key)
+    @property
+    def _pending(self) -> int:
+        """How many calls wait for the code to have started, or to be at rest."""
+        return len(self._after_start) + len(self._after_stop)
 
-        def reply(answer: CallAnswer) -> None:
-            request.reply(self.keys.call(self.profile.component, call), encode(answer))
-            request.finish()
-
-        try:
-            self._answer(call, request.payload, reply)
-        except PeerError as error:
-            log.warning("%s: refused a call: %s", self.profile.component.short, error)
-            request.refuse(str(error))
-            request.finish()
-
-    def _answer(self, call: str, payload: bytes, reply: Reply) -> None:
-        """Obey a call, if the table says so, and reply when that is done. Raises PeerError for what is no call."""
-        if call == "state":
-            reply(self._verdict(Verdict.DONE, decode(payload, StateOf).task if payload else "", measured=True))
-            return
-        if call not in _MESSAGES:
-            raise PeerError(f"there is no call {call!r}")
-        message: Reserve | Apply | Release = decode(payload, _MESSAGES[call])
-        if not message.task:
-            raise PeerError(f"{call!r} names no task: the program that calls speaks an older protocol; update it")
-        if not isinstance(message, Release):
-            unknown = sorted(set(message.inputs) - {port.name for port in self.profile.inputs})
-            if unknown:
-                reply(self._verdict(Verdict.REFUSED, message.task, f"it has no input {unknown[0]!r}"))
-                return
-            if not self.keys.is_configurator_life(message.supervisor):
-                raise PeerError(f"{message.supervisor!r} is no life of a configurator")
-        if len(self._after_start) + len(self._after_stop) >= MOST_PENDING:
-            raise PeerError(
-                f"{MOST_PENDING} calls wait for the code of {self.profile.component.short}; try again later"
-            )
-        if message.life not in ("", self.life):
-            reply(self._verdict(Verdict.OTHER_LIFE, message.task))
-        else:
-            self._when_at_rest(lambda: self._obey(message, reply))
+    def _obey_at_rest(self, message: Reserve | Apply | Release, reply: Reply) -> None:
+        self._when_at_rest(partial(self._obey, message, reply))
 
     def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
         if self._closed:  # while the call waited for the code to be at rest; its site may start another life
             verdict = Verdict.DONE if isinstance(message, Release) else Verdict.OTHER_LIFE
-            reply(self._verdict(verdict, message.task, LIFE_ENDS))
+            reply(self._own_state.answer(verdict, message.task, LIFE_ENDS))
             return
         before = self.activation
         after, verdict, step = table.obey(
@@ -254,9 +213,9 @@ class ComponentRuntime:
             self._become(after, step)
             detail = "it has failed" if verdict is Verdict.REFUSED else ""
             busy = verdict is Verdict.BUSY
-            reply(self._busy(message) if busy else self._verdict(verdict, message.task, detail))
-            self._ask_to_yield()
-            self._offer()
+            reply(self._own_state.busy(message) if busy else self._own_state.answer(verdict, message.task, detail))
+            self._waiting.ask_to_yield()
+            self._waiting.offer()
             return
         self._become(after, step)
         if isinstance(message, Apply):
@@ -267,11 +226,11 @@ class ComponentRuntime:
             if step is ActivationStep.STOP and self.profile.signal_outputs:
                 # For inputs that follow it all the same; it may be held by now for a task that was reserved.
                 self._put_fail(Cause.LET_GO, "it was released", epoch=0)
-            self._when_at_rest(lambda: reply(self._verdict(Verdict.DONE, message.task)))
-            self._when_at_rest(self._offer)
+            self._when_at_rest(lambda: reply(self._own_state.answer(Verdict.DONE, message.task)))
+            self._when_at_rest(self._waiting.offer)
         else:
             self._follow_what_is_left(before, message.task)
-            reply(self._verdict(Verdict.DONE, message.task))
+            reply(self._own_state.answer(Verdict.DONE, message.task))
 
     def _follow_what_is_left(self, before: Activation, task: str) -> None:
         """Follow no more what a task that the component acts for has not reserved with it, after it was given up."""
@@ -291,14 +250,14 @@ class ComponentRuntime:
             if trouble is None and not self.inputs.settled:  # the inside of a composite has been refused
                 trouble = self._failure
             if trouble is None:
-                reply(self._verdict(Verdict.DONE, message.task))
+                reply(self._own_state.answer(Verdict.DONE, message.task))
                 return
             if self._closed:
-                reply(self._verdict(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
+                reply(self._own_state.answer(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
                 return
             if step is not ActivationStep.NONE and self.activation.phase is not ActivationPhase.FAILED:
                 self._drop([message.task], message.epoch)
-            reply(self._verdict(Verdict.REFUSED, message.task, trouble))
+            reply(self._own_state.answer(Verdict.REFUSED, message.task, trouble))
 
         def answer(trouble: str | None) -> None:
             def settled() -> None:
@@ -322,7 +281,7 @@ class ComponentRuntime:
             self._after_start = [answer]
             self.code.start(message.values, partial(self._started, self._after_start))
             if self.activation.waiting:
-                self._tell_waiting("")
+                self._waiting.tell("")
         self.inputs.follow(message)
         self.operations.follow(message)
         self._rest_or_act()  # once what it lost is known to be unfed
@@ -332,88 +291,6 @@ class ComponentRuntime:
             self._after_start = []
         for answer in waiting:
             answer(trouble)
-
-    def _verdict(
-        self, verdict: Verdict, task: str, detail: str = "", *, measured: bool = False, by: Hold | None = None
-    ) -> CallAnswer:
-        """The answer with a verdict; it says how things are with the component for a task, else for its holder.
-
-        `measured`: also how old the component is, what memory it takes, and how much it has issued. `by` is the hold
-        that is in the way of a call.
-        """
-        own = self.activation.hold(task)
-        hold = by if verdict is Verdict.BUSY else own or self.activation.first
-        claim: Claim = hold.claim if hold is not None else Claim(0, "")
-        return CallAnswer(
-            verdict,
-            self.profile.component,
-            self.life,
-            self.activation.epoch_of(task),
-            self.code.started and self.inputs.settled and hold is not None and hold.active,
-            sayable(detail),
-            claim.supervisor,
-            claim.task,
-            claim.priority,
-            claim.beginning,
-            f"process {os.getpid()} on {socket.gethostname()}",
-            self.inputs.dropped,
-            self.bus.now() - self._began if measured else 0.0,
-            resident_memory() if measured else 0,
-            self.outputs.issued if measured else {},
-            outputs=self.inputs.issued,
-            callers=self.inputs.callers,
-            patience=self.inputs.patience,
-            stopping=self.code.stopping or self.inputs.ending,
-            shared=verdict is Verdict.BUSY and own is not None and own.active,
-        )
-
-    def _busy(self, message: Claim) -> CallAnswer:
-        """The answer that another task is in the way: one that holds the component, or one for which it is kept."""
-        by = table.in_the_way(self.activation, message, self.supervision.gone, self.supervision.unseen)
-        kept = (one for one in self.activation.waiting if one.task == self.activation.kept_for)
-        claim = by.claim if by is not None else next(kept, None)
-        if claim is None:
-            return self._verdict(Verdict.BUSY, message.task, "it is free, and tells so")
-        who = f"the task {task_name(claim.task)} (priority {claim.priority}, configurator {owner_of(claim.supervisor)})"
-        return self._verdict(Verdict.BUSY, message.task, f"{who} holds it", by=by)
-
-    # Becoming free for another task.
-
-    def _ask_to_yield(self) -> None:
-        """Tell those that hold the component that a task of higher priority asks for it, each time that it does."""
-        outranked = table.outranked(self.activation)
-        if not outranked:
-            return
-        claim = next(one for one in self.activation.waiting if one.task not in self.activation.lapsed)
-        detail = f"the task {task_name(claim.task)} of priority {claim.priority} asks for it"
-        for task in outranked:
-            self._put_fail(Cause.YIELD, detail, task)
-        if self._preemption is None:
-            self._preemption = self.bus.later(YIELDING, self._preempt)
-
-    def _preempt(self) -> None:
-        """Take the component from tasks that have not let go of it in time."""
-        self._preemption = None
-        outranked = table.outranked(self.activation)
-        if outranked:
-            self._let_go(outranked, "a task of higher priority asked for it, and this one has not yielded in time")
-
-    def _offer(self) -> None:
-        """Keep the component, if it is free, for the first task that waits, and tell it."""
-        self.activation, claim = table.offer(self.activation)
-        if claim is not None and not self._closed:
-            self._tell_waiting(claim.task)
-            self.bus.later(OFFER, partial(self._withdraw, claim.task))
-
-    def _withdraw(self, task: str) -> None:
-        if self.activation.kept_for == task:
-            self.activation = table.withdraw(self.activation, task)
-            self._offer()
-
-    def _tell_waiting(self, task: str) -> None:
-        if self._free is None:
-            self._free = self.bus.publisher(self.keys.free(self.profile.component), Urgency.EVENT)
-        self._free.put(encode(Free(self.profile.component, self.life, task)))
 
     # Being on and off.
 
@@ -429,10 +306,12 @@ class ComponentRuntime:
         self.supervision.watch({hold.claim.supervisor for hold in activation.holds})
         self._other_lives.follow(bool(activation.holds))
         for task in served:
-            self._tell_waiting(task)
-        if self._preemption is not None and not table.outranked(activation):
-            self._preemption()
-            self._preemption = None
+            self._waiting.tell(task)
+        self._waiting.holders_changed(activation)
+
+    def _keep(self, activation: Activation) -> None:
+        """Take on an activation that differs in nothing but the task for which the component is kept."""
+        self.activation = activation
 
     def _drop(self, tasks: Sequence[str], epoch: int = 0) -> None:
         self._become(*table.drop(self.activation, tasks, epoch))
@@ -482,7 +361,7 @@ class ComponentRuntime:
         for task in tasks:
             self._put_fail(Cause.LET_GO, why, task)
         self._drop(tasks)
-        self._when_at_rest(self._offer)
+        self._when_at_rest(self._waiting.offer)
 
     def _outlived(self, life: str) -> None:
         """Leave the ecology: another process is the same component, and stays."""

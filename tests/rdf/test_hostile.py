@@ -20,7 +20,7 @@ from selfconf.errors import AuthorError, QueryError
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Report
 from selfconf.model.wording import LONGEST_REMARK
-from selfconf.protocol import activation, codec
+from selfconf.protocol import activation, codec, json_values
 from selfconf.query import process as asking
 from selfconf.query.endpoint import ENDPOINT_PATIENCE
 from selfconf.rdf import conformance as shacl
@@ -36,7 +36,7 @@ from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.validation import checking, file_check
 from selfconf.rdf.validation.checking import SourceText, validate_texts
-from selfconf.sdk import input_subscription, operations, payloads, runtime
+from selfconf.sdk import control_calls, input_subscription, operations, payloads
 from tests.hostile_words import HONEST, KINDS, stranger
 from tests.hostile_words import TEMPLATE as TEMPLATE_FOR_STRANGERS
 
@@ -287,8 +287,8 @@ LIMITS = (
     f"{ecology_view.IN_A_ROW} in a row, then one every {ecology_view.BETWEEN_DISCOVERIES:g} s",
     f"lives of one component that are followed | {ecology_view.MOST_LIVES}, the least ones",
     f"a message of the control plane | {codec.LARGEST >> 20} MiB",
-    f"outputs that a call lets a component follow | {codec.MOST_WIRES:,} |",
-    f"calls that wait for the code of a component | {runtime.MOST_PENDING} |",
+    f"outputs that a call lets a component follow | {json_values.MOST_WIRES:,} |",
+    f"calls that wait for the code of a component | {control_calls.MOST_PENDING} |",
     f"a signal of JSON | {payloads.LARGEST_JSON >> 20} MiB",
     f"a signal whose number is {input_subscription.LATE:,} below",
     f"tasks that a site keeps | {task_folder.MOST_RECORDS:,} |",

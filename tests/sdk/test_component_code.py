@@ -19,8 +19,9 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Apply, CallAnswer, Cause, Release, Reserve, Stamp, Verdict, Wire
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component, Refused, Signal
-from selfconf.sdk.runtime import YIELDING, ComponentRuntime
+from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.waiting_tasks import YIELDING
 from tests.lab import Recorder
 from tests.sdk.living import PATIENCE, LivingStage, until
 from tests.sdk.stage import (

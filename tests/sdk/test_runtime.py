@@ -1,9 +1,7 @@
-"""The runtime of a component: the calls that it answers, which life they mean, and its end."""
+"""The runtime of a component: it starts and stops the code as it is called, and ends with its life."""
 
 from __future__ import annotations
 
-import os
-import socket
 from collections.abc import Callable
 
 import pytest
@@ -11,17 +9,14 @@ import pytest
 from selfconf.bus.port import Replies
 from selfconf.errors import ProgrammerError
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, Verdict, Wire
+from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, Verdict
 from selfconf.sdk.component import Component
 from selfconf.sdk.runtime import LIFE_ENDS
-from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,
     KEYS,
-    TASKS,
     THEM,
-    TRACKER,
     US,
     Stage,
     apply,
@@ -40,22 +35,6 @@ def test_a_component_is_idle_until_it_is_activated() -> None:
     assert stage.component.active
 
 
-def test_it_says_which_configurator_holds_it_and_a_busy_component_says_so_in_words() -> None:
-    stage = Stage()
-    assert stage.state().supervisor == ""
-    assert stage.call(apply(1, US)).supervisor == US
-    stage.others.announce(THEM)
-    answer = stage.call(apply(2, THEM))
-    assert (answer.verdict, answer.supervisor) == (Verdict.BUSY, US)
-    assert answer.detail == "the task task (priority 0, configurator us) holds it"
-    stage.component.fail("lost her")
-    stage.let_pass(0.1)
-    assert (stage.state().active, stage.state().supervisor) == (False, US)
-    stage.leave()
-    stage.let_pass(2 * GRACE)
-    assert (stage.state().active, stage.state().supervisor) == (False, "")
-
-
 def test_an_activation_that_is_repeated_starts_nothing_anew() -> None:
     stage = Stage()
     for epoch in (1, 1, 2):
@@ -70,39 +49,6 @@ def test_a_released_component_stops_and_may_be_activated_again() -> None:
     assert (answer.verdict, answer.active) == (Verdict.DONE, False)
     stage.call(apply(3, US))
     assert stage.recorder.said == [("started",), ("stopped",), ("started",)]
-
-
-def test_an_input_that_is_not_there_is_refused_and_nothing_starts() -> None:
-    stage = Stage()
-    answer = stage.call(apply(1, US, {"sonar": (Wire(TRACKER, "pose"),)}))
-    assert (answer.verdict, answer.detail) == (Verdict.REFUSED, "it has no input 'sonar'")
-    assert stage.recorder.said == []
-
-
-@pytest.mark.parametrize(
-    ("call", "payload"),
-    [
-        ("apply", b""),
-        ("apply", b"{}"),
-        ("apply", encode(release(1, US))),
-        ("dance", encode(apply(1, US))),
-        ("*", encode(apply(1, US))),
-        ("apply", encode(Apply(1, US))),
-        ("release", encode(Release(1, US))),
-        ("reserve", b"\xff"),
-        ("state", b"\xff"),
-        ("apply", encode(apply(1, "**"))),
-        ("apply", encode(apply(1, "selfconf/lab/conf/*/live/*"))),
-        ("apply", encode(apply(1, "selfconf/other/conf/us/live/1"))),
-    ],
-)
-def test_a_call_that_is_none_is_refused_and_changes_nothing(call: str, payload: bytes) -> None:
-    stage = Stage()
-    replies = stage.ask(call, payload)
-    assert replies.samples == ()
-    assert len(replies.errors) == 1
-    assert stage.recorder.said == []
-    assert stage.call(apply(1, US)).verdict is Verdict.DONE
 
 
 def test_a_component_that_is_part_of_no_ecology_says_so() -> None:
@@ -145,7 +91,7 @@ def test_a_call_that_waits_for_code_that_leaves_hears_that_this_life_is_over_and
     class Stopping(Recorder):
         def stopped(self) -> None:
             name = make.__name__
-            stage.runtime._answer(name, encode(make(1, THEM, life="life-1")), answers.append)
+            stage.runtime.calls.answer(name, encode(make(1, THEM, life="life-1")), answers.append)
 
     stage = Stage(Stopping())
     stage.call(apply(1, US))
@@ -167,36 +113,3 @@ def test_closing_an_idle_component_does_not_stop_it() -> None:
     stage = Stage()
     stage.runtime.close()
     assert stage.recorder.said == []
-
-
-OTHER_LIFE: list[Apply | Reserve | Release] = [make(1, US, life="life-0") for make in (apply, reserve, release)]
-
-
-@pytest.mark.parametrize("message", OTHER_LIFE)
-def test_a_call_that_means_another_life_changes_nothing(message: Apply | Reserve | Release) -> None:
-    stage = Stage()
-    stage.call(apply(1, US, life="life-1"))
-    answer = stage.call(message)
-    assert (answer.verdict, answer.life) == (Verdict.OTHER_LIFE, "life-1")
-    assert stage.component.active
-    assert stage.recorder.said == [("started",)]
-
-
-def test_what_a_component_says_of_itself_names_its_process_and_who_holds_it_since_when() -> None:
-    stage = Stage()
-    stage.call(apply(1, US, priority=3, beginning=12.0))
-    answer = stage.state()
-    assert (answer.task, answer.priority, answer.beginning, answer.supervisor) == (TASKS[US], 3, 12.0, US)
-    assert answer.place == f"process {os.getpid()} on {socket.gethostname()}"
-
-
-def test_the_answer_to_state_says_how_long_it_has_lived_what_it_takes_and_what_it_has_issued() -> None:
-    stage = Stage()
-    stage.call(apply(1, US))
-    stage.component.emit("velocity", 1)
-    stage.let_pass(2.0)
-    answer = stage.state()
-    assert answer.age >= 2.0
-    assert answer.memory > 0
-    assert answer.issued == {"velocity": 1}
-    assert stage.call(apply(2, US)).issued == {}

@@ -24,10 +24,10 @@ from tests.lab import ADVERTISEMENTS, Lab, iri
 def busy_in_started(lab: Lab, name: str, seconds: float) -> None:
     """Have the thread of a component be in `started` for so long: all that it is asked is heard afterwards."""
     runtime, free = lab.runtimes[name], lab.network.time + seconds
-    runtime._served()
+    runtime.calls.close()
 
     def hear(request: Request) -> None:
-        runtime.bus.later(max(0.0, free - lab.network.time), lambda: runtime._call(request))
+        runtime.bus.later(max(0.0, free - lab.network.time), lambda: runtime.calls.receive(request))
 
     runtime.bus.serve(lab.keys.call(runtime.profile.component), hear)
 
@@ -120,7 +120,7 @@ def test_a_component_that_dies_while_it_takes_long_to_start_is_replaced_at_once(
 def test_a_component_that_hangs_is_replaced(lab: Lab) -> None:
     """It lives, but answers no call."""
     runtime = lab.runtimes["tracker"]
-    runtime._served()
+    runtime.calls.close()
     runtime.bus.serve(lab.keys.call(iri("person-tracker")), lambda _: None)
     agent = lab.agent()
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, STARTING + 2 * CALL)
@@ -170,7 +170,7 @@ def test_every_call_names_the_life_that_is_meant_so_that_no_other_life_obeys_it(
     """A process that is started while the call for the one before is on its way does not act for it."""
     runtime = lab.runtimes["drive"]
     held: list[Request] = []
-    runtime._served()
+    runtime.calls.close()
     runtime.bus.serve(lab.keys.call(iri("astrid-drive")), held.append)
     agent = lab.agent()
     assert lab.until(lambda: bool(held))
@@ -201,7 +201,7 @@ def test_a_life_whose_end_was_never_heard_of_has_ended_when_only_another_answers
 def test_a_component_that_speaks_another_protocol_is_replaced(lab: Lab) -> None:
     """A component whose program speaks another protocol is replaced, not trusted."""
     runtime = lab.runtimes["tracker"]
-    runtime._served()
+    runtime.calls.close()
 
     def babble(request: Request) -> None:
         request.reply(lab.keys.call(iri("person-tracker"), "apply"), b"yes sir")

@@ -25,7 +25,7 @@ from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
 def test_nothing_acts_before_everything_is_reserved(lab: Lab) -> None:
     """The sonar array cannot be reserved: what comes before it is held, nothing else is, and nothing acts."""
     runtime = lab.runtimes["sonar"]
-    runtime._served()
+    runtime.calls.close()
     agent = lab.agent()
     assert lab.until(lambda: agent.state.phase is Phase.RESERVING)
     lab.let_pass(1.0)
@@ -92,7 +92,7 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(
     assert lab.running(agent)
     assert "tracker" in lab.active()
     runtime = lab.runtimes["tracker"]
-    runtime._served()
+    runtime.calls.close()
     runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
     agent.stop()
     assert lab.until(lambda: bool(lab.ended))
@@ -147,7 +147,7 @@ def hangs_in_reach_of_a_site(lab: Lab, lives: list[str]) -> None:
         runtime = lab.runtimes["tracker"]
         lives.append(runtime.life)
         if len(lives) < 3:
-            runtime._served()
+            runtime.calls.close()
             runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
 
     def end(request: Request) -> None:

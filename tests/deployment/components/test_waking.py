@@ -98,7 +98,7 @@ def test_a_site_hears_of_a_life_that_it_has_started_and_that_ended_before_it_obe
         lab.component("tracker")
         runtime = lab.runtimes["tracker"]
         lives.append(runtime.life)
-        runtime._served()
+        runtime.calls.close()
         runtime.bus.later(0.05, lambda: lab.crash("tracker"))
 
     def listen(request: Request) -> None:

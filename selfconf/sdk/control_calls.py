@@ -1,0 +1,90 @@
+"""The control calls of one component as they come over the bus: read, checked, and handed on to be obeyed.
+
+What strangers send is refused here, so that only a call that a configurator may make of this life of the component
+reaches the table of `selfconf.protocol.activation`.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from selfconf.bus.port import Bus, Request
+from selfconf.errors import PeerError
+from selfconf.model.profile import Profile
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, call_of
+from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, StateOf, Verdict
+from selfconf.sdk.own_state import OwnState
+
+log = logging.getLogger(__name__)
+
+_MESSAGES: dict[str, type[Reserve] | type[Apply] | type[Release]] = {
+    "reserve": Reserve,
+    "apply": Apply,
+    "release": Release,
+}
+"""The message that each call carries, apart from `state`, which carries none."""
+MOST_PENDING = 256
+"""How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
+Reply = Callable[[CallAnswer], None]
+
+
+class ControlCalls:
+    """Serves the control calls of a component, until it is closed."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        profile: Profile,
+        life: str,
+        own_state: OwnState,
+        pending: Callable[[], int],
+        obey: Callable[[Reserve | Apply | Release, Reply], None],
+    ) -> None:
+        """`pending` tells how many calls wait for the component's code; `obey` replies once a call is carried out."""
+        self._keys, self._profile, self._life, self._own_state = keys, profile, life, own_state
+        self._pending, self._obey = pending, obey
+        self.close = bus.serve(keys.call(profile.component), self.receive)
+
+    def receive(self, request: Request) -> None:
+        """Answer one request of the bus."""
+        call = call_of(request.key)
+
+        def reply(answer: CallAnswer) -> None:
+            request.reply(self._keys.call(self._profile.component, call), encode(answer))
+            request.finish()
+
+        try:
+            self.answer(call, request.payload, reply)
+        except PeerError as error:
+            log.warning("%s: refused a call: %s", self._profile.component.short, error)
+            request.refuse(str(error))
+            request.finish()
+
+    def answer(self, call: str, payload: bytes, reply: Reply) -> None:
+        """Have a call obeyed, if it can be, and reply when that is done. Raises PeerError for what is no call."""
+        if call == "state":
+            task = decode(payload, StateOf).task if payload else ""
+            reply(self._own_state.answer(Verdict.DONE, task, measured=True))
+            return
+        if call not in _MESSAGES:
+            raise PeerError(f"there is no call {call!r}")
+        message: Reserve | Apply | Release = decode(payload, _MESSAGES[call])
+        if not message.task:
+            raise PeerError(f"{call!r} names no task: the program that calls speaks an older protocol; update it")
+        if not isinstance(message, Release):
+            unknown = sorted(set(message.inputs) - {port.name for port in self._profile.inputs})
+            if unknown:
+                reply(self._own_state.answer(Verdict.REFUSED, message.task, f"it has no input {unknown[0]!r}"))
+                return
+            if not self._keys.is_configurator_life(message.supervisor):
+                raise PeerError(f"{message.supervisor!r} is no life of a configurator")
+        if self._pending() >= MOST_PENDING:
+            name = self._profile.component.short
+            raise PeerError(f"{MOST_PENDING} calls wait for the code of {name}; try again later")
+        if message.life not in ("", self._life):
+            reply(self._own_state.answer(Verdict.OTHER_LIFE, message.task))
+        else:
+            self._obey(message, reply)

@@ -1,0 +1,86 @@
+"""How things are with a component, as it says in the answer to each control call."""
+
+from __future__ import annotations
+
+import os
+import socket
+from collections.abc import Callable
+
+from selfconf.bus.port import Bus
+from selfconf.model.profile import Profile
+from selfconf.model.wording import sayable
+from selfconf.protocol import activation as table
+from selfconf.protocol.activation import Activation, Hold
+from selfconf.protocol.keys import owner_of, task_name
+from selfconf.protocol.messages import CallAnswer, Claim, Verdict
+from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.inputs import InputFollower
+from selfconf.sdk.outputs import Outputs
+from selfconf.sdk.supervision import Supervision
+from selfconf.termination import resident_memory
+
+
+class OwnState:
+    """Answers with what the parts of a component say at the moment; it changes none of them."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        profile: Profile,
+        life: str,
+        activation: Callable[[], Activation],
+        code: ComponentCode,
+        inputs: InputFollower,
+        outputs: Outputs,
+        supervision: Supervision,
+    ) -> None:
+        """`activation` tells for which tasks the component is held now; its age is counted from here on."""
+        self._bus, self._profile, self._life, self._activation = bus, profile, life, activation
+        self._code, self._inputs, self._outputs, self._supervision = code, inputs, outputs, supervision
+        self._began = bus.now()
+
+    def answer(
+        self, verdict: Verdict, task: str, detail: str = "", *, measured: bool = False, by: Hold | None = None
+    ) -> CallAnswer:
+        """The answer with a verdict; it says how things are with the component for a task, else for its holder.
+
+        `measured`: also how old the component is, what memory it takes, and how much it has issued. `by` is the hold
+        that is in the way of a call.
+        """
+        activation = self._activation()
+        own = activation.hold(task)
+        hold = by if verdict is Verdict.BUSY else own or activation.first
+        claim: Claim = hold.claim if hold is not None else Claim(0, "")
+        return CallAnswer(
+            verdict,
+            self._profile.component,
+            self._life,
+            activation.epoch_of(task),
+            self._code.started and self._inputs.settled and hold is not None and hold.active,
+            sayable(detail),
+            claim.supervisor,
+            claim.task,
+            claim.priority,
+            claim.beginning,
+            f"process {os.getpid()} on {socket.gethostname()}",
+            self._inputs.dropped,
+            self._bus.now() - self._began if measured else 0.0,
+            resident_memory() if measured else 0,
+            self._outputs.issued if measured else {},
+            outputs=self._inputs.issued,
+            callers=self._inputs.callers,
+            patience=self._inputs.patience,
+            stopping=self._code.stopping or self._inputs.ending,
+            shared=verdict is Verdict.BUSY and own is not None and own.active,
+        )
+
+    def busy(self, call: Claim) -> CallAnswer:
+        """The answer that another task is in the way: one that holds the component, or one for which it is kept."""
+        activation = self._activation()
+        by = table.in_the_way(activation, call, self._supervision.gone, self._supervision.unseen)
+        kept = (one for one in activation.waiting if one.task == activation.kept_for)
+        claim = by.claim if by is not None else next(kept, None)
+        if claim is None:
+            return self.answer(Verdict.BUSY, call.task, "it is free, and tells so")
+        who = f"the task {task_name(claim.task)} (priority {claim.priority}, configurator {owner_of(claim.supervisor)})"
+        return self.answer(Verdict.BUSY, call.task, f"{who} holds it", by=by)
