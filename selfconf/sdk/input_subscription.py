@@ -4,10 +4,7 @@
 has time. The queue is bounded: the newest signal counts of an output that promises a rate, and of one that does not as
 many are kept as events may need (`signal_queue`); `sc:depth` of the input says otherwise. What is dropped is counted.
 
-*Silence.* An input that follows an output with a promised rate reports when no signal has come for `PATIENCE` of the
-promised periods, and again as long as none comes. While this process itself stands still, as its machine stalls or it
-is suspended, no signal could have come: the time by which a look comes late counts as no silence. Looks come once in
-each promised period, or 40 times a second, so that of any such time no more than a period, or 25 ms, counts.
+*Silence.* An output that has promised a rate and issues nothing for too long (`silence_watch`) is reported, and lost.
 
 *Latching.* An input asks each output that it begins to follow for its last signal, whether or not others follow it,
 and once more one that has stood by, unless that has just issued one, or that was lost with the life of its component
@@ -23,7 +20,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from selfconf.bus.port import Bus, Replies, Sample, Undo
+from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError
 from selfconf.model.immutable import immutable
 from selfconf.protocol.codec import decode
@@ -35,15 +32,10 @@ from selfconf.sdk.component import Signal
 from selfconf.sdk.outputs import SIGNALS_FIRST
 from selfconf.sdk.payloads import read_payload
 from selfconf.sdk.signal_queue import SignalQueue
+from selfconf.sdk.silence_watch import SilenceWatch
 
 log = logging.getLogger(__name__)
 
-PATIENCE = 4.0
-"""After how many promised periods without a signal an output counts as silent."""
-LEAST_PATIENCE = 0.1
-"""Seconds without a signal that no output is blamed for: less than that is the network's and the scheduler's."""
-BEGINNING = 20.0
-"""Seconds that an output may take to issue its first signal: its component may have to be started by its site."""
 JUST_COME = 0.5
 """Seconds for which the newest signal of an output that stood by counts when the output becomes an input's own."""
 UNSEEN = 1.0
@@ -124,7 +116,7 @@ class InputSubscription:
         """Whether the output was asked for its last signal, and whether it is followed no more."""
         self._questions = 0
         """How often it was asked for its last signal."""
-        self._deadline: Undo | None = None
+        self._silence = SilenceWatch(bus, wire.period, lambda: self._heard_at, self._be_silent)
         self._declared = [bus.subscribe(keys.output(wire.component, wire.output), self._received, direct=True)]
         bus.later(SIGNALS_FIRST, self._watch)
 
@@ -160,7 +152,7 @@ class InputSubscription:
         if self._asked and not heard:
             self._bus.later(BY_ITSELF, partial(self._ask_if_quiet, self._bus.now()))
         self._bus.later(UNSEEN, partial(self._look_for_life, self._bus.now()))
-        self._expect()
+        self._silence.expect(first=not self._sequence)
         if self._queue:
             self._code.signal(self._read)
 
@@ -175,9 +167,7 @@ class InputSubscription:
         self.muted = True
         self._queue.keep(0)
         self._life, self._sequence = "", 0  # what the input follows it again for may be what it has had before
-        if self._deadline is not None:
-            self._deadline()
-            self._deadline = None
+        self._silence.end()
 
     def end(self) -> None:
         """Follow the output no more."""
@@ -403,38 +393,11 @@ class InputSubscription:
             self.lost, self._said_again = True, ("", 0)
             self._report_lost(self._port)
 
-    def _expect(self) -> None:
-        """Expect a signal within the promised time, from now on."""
-        if self._wire.period is None:
-            return
-        if self._deadline is not None:
-            self._deadline()
-        usual = max(PATIENCE * self._wire.period, LEAST_PATIENCE)
-        seconds = usual if self._sequence else max(usual, BEGINNING)
-        self._look_for_silence(self._bus.now(), usual, seconds)
-
-    def _look_for_silence(self, began: float, usual: float, seconds: float) -> None:
-        """Look from time to time whether a signal has come: within `seconds` the first, the next ones as usual."""
-        quiet_since = began
-
-        def wait(left: float) -> None:
-            pause = min(left, usual / PATIENCE)
-            self._deadline = self._bus.later(pause, partial(look, self._bus.now() + pause))
-
-        def look(due: float) -> None:
-            nonlocal quiet_since
-            now = self._bus.now()
-            quiet_since = min(now, max(quiet_since, self._heard_at) + max(0.0, now - due))
-            allowed = usual if self._heard_at >= began else seconds
-            left = quiet_since + allowed - now
-            if left > 0:
-                wait(left)
-                return
-            self._events.silent(self._wire, allowed)
-            self._lose(self._heard_at)
-            self._expect()
-
-        wait(usual)
+    def _be_silent(self, seconds: float) -> None:
+        """The output has not kept its promise."""
+        self._events.silent(self._wire, seconds)
+        self._lose(self._heard_at)
+        self._silence.expect(first=not self._sequence)
 
 
 def _is_up_to(last: tuple[str, int], stamp: Stamp) -> bool:

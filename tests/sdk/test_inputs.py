@@ -14,9 +14,10 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.blindness import TOLERATES
-from selfconf.sdk.input_subscription import JUST_COME, PATIENCE, UNSEEN
+from selfconf.sdk.input_subscription import JUST_COME, UNSEEN
 from selfconf.sdk.inputs import HANDOVER
 from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk.silence_watch import PATIENCE
 from selfconf.sdk.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.stage import (
