@@ -27,25 +27,21 @@ from selfconf.api.living_tasks import LivingTask, LivingTasks
 from selfconf.api.membership import MEMBERS, Membership
 from selfconf.api.output_sources import follow_output
 from selfconf.api.released_components import STATE_PATIENCE, ReleasedComponents
+from selfconf.api.restarting import restarted
 from selfconf.api.site_access import SiteAccess, site_accesses
-from selfconf.api.site_logs import LogSource
+from selfconf.api.site_logs import LogSource, logs_of_other_sites
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
-from selfconf.errors import AuthorError, NetworkError, PeerError
+from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
-from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import component_chunk, owner_of, task_name
+from selfconf.protocol.keys import component_chunk, task_name
 from selfconf.protocol.messages import (
-    End,
-    LogPart,
-    LogQuestion,
     Status,
-    Wake,
 )
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
@@ -56,10 +52,6 @@ if TYPE_CHECKING:
     from selfconf.api.task import TaskSpecification
     from selfconf.model.refusal import Refusal, Undecided
 
-ENDING_PROCESS = 10.0
-"""How long, in seconds, a site may take to end a process."""
-LIVES_AGAIN = 20.0
-"""How long, in seconds, a component that is started again may take until it lives."""
 PAUSES = (0.0, 0.1, 0.4)
 """Seconds before each call of the sites, until one answers: one that has just begun may not be known to its hub."""
 _Result = TypeVar("_Result")
@@ -221,27 +213,8 @@ class LivingEcology(Ecology):
         """
         self._membership.check_may_run()
         found = self.component(component)
-        one, site, keys = found.advertisement.component, found.site, self._view.keys
-        life = self._life(one)
-        if not found.startable:
-            raise NetworkError(
-                f"the site {site} cannot start {one.short}: its advertisement has no sc:command; restart its program"
-                " by what has started it"
-            )
-        if life is not None:
-            trouble = f"the site {site} did not end {one.short}"
-            self._synchronous.demand(keys.end(site), encode(End(one)), trouble, ENDING_PROCESS)
-        self._synchronous.demand(keys.wake(site), encode(Wake(one)), f"the site {site} did not start {one.short}")
-        deadline = self._bus.now() + LIVES_AGAIN
-        while self._bus.now() < deadline:
-            now = next((state for state in self.component_states() if state.component == one), None)
-            if now is not None and now.life and now.life != life:
-                return now
-            self._bus.poll(0.1)
-        raise NetworkError(
-            f"the site {site} has started {one.short}, which does not live after {LIVES_AGAIN:.0f} s;"
-            f" `selfconf log {one.short}` shows what it has said"
-        )
+        life = self._life(found.advertisement.component)
+        return restarted(self._synchronous, self._view.keys, found, life, self.component_states)
 
     def deployed(self) -> dict[str, dict[str, Any]]:
         """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
@@ -288,24 +261,8 @@ class LivingEcology(Ecology):
 
     def other_logs(self, known: Collection[str], complain: Callable[[str], None]) -> list[LogSource]:
         """The logs of the sites that live, but for those that are known; `complain` hears once of each silent one."""
-        lives = self._synchronous.living(self._view.keys.any_site_life())
-        silent = set[str]()
-        return [partial(self._log_part, site, silent, complain) for site in sorted({*map(owner_of, lives)} - {*known})]
-
-    def _log_part(self, site: str, silent: set[str], complain: Callable[[str], None], question: LogQuestion) -> LogPart:
-        """What a site tells of its log; nothing new where it does not answer."""
-        replies = self._synchronous.ask(self._view.keys.log(site), encode(question))
-        trouble = [*replies.errors, *(["that takes keys of conf.NAME"] if self._membership.looks_on_only else [])]
-        try:
-            return decode(replies.samples[0].payload, LogPart)
-        except IndexError:
-            pass
-        except PeerError as error:
-            trouble.append(str(error))
-        if site not in silent:
-            silent.add(site)
-            complain(": ".join((f"the site {site} does not tell what its components have printed", *trouble)))
-        return LogPart((), question.position)
+        hint = "that takes keys of conf.NAME" if self._membership.looks_on_only else ""
+        return logs_of_other_sites(self._synchronous, self._view.keys, known, complain, hint)
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
         """The sources of each component of a deployed task, as a configurator says; None if none runs it."""

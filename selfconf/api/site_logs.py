@@ -1,17 +1,22 @@
-"""The logs in which the sites of this machine keep what their components print.
+"""The logs in which sites keep what their components print: files on this machine, and what other sites tell.
 
-A log stays after its site has ended: what a component said before it died is in it.
+A log stays after its site has ended: what a component said before it died is in it. The site of another machine can be
+asked for its log as long as it lives.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from functools import partial
 from pathlib import Path
 
 from selfconf import this_machine
-from selfconf.errors import AuthorError, NetworkError
+from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.errors import AuthorError, NetworkError, PeerError
 from selfconf.model.setting_names import setting
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, owner_of
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.site import log_part
 
@@ -64,3 +69,31 @@ def _of_one_ecology(logs: list[Path]) -> list[Path]:
 def local_log(path: Path) -> LogSource:
     """The log of a site of this machine, as a source that answers in full."""
     return lambda question: log_part(path, question, sys.maxsize)
+
+
+def logs_of_other_sites(
+    bus: SynchronousBus, keys: Keys, known: Collection[str], complain: Callable[[str], None], hint: str = ""
+) -> list[LogSource]:
+    """The logs of the sites that live, but for those that are known, as sources that ask the sites.
+
+    `complain` hears once of each site that does not tell; `hint` is what may be the reason.
+    """
+    silent = set[str]()
+
+    def told(site: str, question: LogQuestion) -> LogPart:
+        """What a site tells of its log; nothing new where it does not answer."""
+        replies = bus.ask(keys.log(site), encode(question))
+        trouble = [*replies.errors, *filter(None, [hint])]
+        try:
+            return decode(replies.samples[0].payload, LogPart)
+        except IndexError:
+            pass
+        except PeerError as error:
+            trouble.append(str(error))
+        if site not in silent:
+            silent.add(site)
+            complain(": ".join((f"the site {site} does not tell what its components have printed", *trouble)))
+        return LogPart((), question.position)
+
+    sites = {*map(owner_of, bus.living(keys.any_site_life()))}
+    return [partial(told, site) for site in sorted(sites - {*known})]

@@ -1,4 +1,4 @@
-"""The logs of the sites of this machine: where they are found, and of which ecology."""
+"""The logs of sites: where those of this machine are found, and what the sites of others tell of theirs."""
 
 from __future__ import annotations
 
@@ -8,9 +8,15 @@ from pathlib import Path
 import pytest
 
 from selfconf import this_machine
-from selfconf.api.site_logs import local_log, names_of_log, site_logs
+from selfconf.api.site_logs import local_log, logs_of_other_sites, names_of_log, site_logs
+from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.bus.memory import Network
+from selfconf.bus.port import Request
 from selfconf.errors import AuthorError, NetworkError
-from selfconf.protocol.messages import LogQuestion
+from selfconf.model.log_line import LogLine
+from selfconf.protocol.codec import encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import LogPart, LogQuestion
 
 
 @pytest.fixture
@@ -54,3 +60,27 @@ def test_a_local_log_answers_in_full_and_its_name_says_whose_it_is(tmp_path: Pat
     path.write_text(100 * line)
     assert len(local_log(path)(LogQuestion(lines=1000)).lines) == 100
     assert names_of_log(path) == ("my-home", "site.1")
+
+
+def test_the_sites_that_live_are_asked_but_those_that_are_known_and_a_silent_one_is_named_once() -> None:
+    network, keys, complaints = Network(), Keys("lab"), list[str]()
+    part = LogPart((LogLine("12:00:00", "out", (), "hello"),), "9", False)
+
+    def site(name: str, payload: bytes) -> None:
+        def tell(request: Request) -> None:
+            request.reply(keys.log(name), payload)
+            request.finish()
+
+        node = network.node()
+        node.announce(keys.site_life(name, "1"))
+        node.serve(keys.log(name), tell)
+
+    for name, payload in (("attic", encode(part)), ("cellar", b"no log"), ("here", encode(part))):
+        site(name, payload)
+    bus = SynchronousBus(network.node())
+    attic, cellar = logs_of_other_sites(bus, keys, ["here"], complaints.append, "the hint")
+    assert attic(LogQuestion()) == part
+    assert [cellar(LogQuestion(position="3")) for _ in range(2)] == [LogPart((), "3")] * 2
+    (complaint,) = complaints
+    said = "the site cellar does not tell what its components have printed"
+    assert complaint.startswith(f"{said}: the hint: not a message")
