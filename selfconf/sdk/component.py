@@ -105,7 +105,11 @@ class Component:
         """
 
     def stopped(self) -> None:
-        """The component has been turned off; what actuates must be at rest when this returns."""
+        """The component has been turned off; what actuates must be at rest when this returns.
+
+        A component without outputs, an actuator, that raises an exception here counts as not at rest: its site ends
+        its process, and one that no site has started is out of control until it is gone.
+        """
 
     def received(self, port: str, signal: Signal) -> None:
         """A signal has arrived on an input."""

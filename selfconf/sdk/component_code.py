@@ -40,15 +40,18 @@ class ComponentCode:
         component: Component,
         fail: Callable[[str], None],
         woken: Callable[[str], None] = lambda port: None,
+        restless: Callable[[str], None] = lambda why: None,
     ) -> None:
         """`fail` raises FAIL for what breaks; `woken` is called when the code has been woken from its rest by an input.
 
-        That is on the bus's thread, and the input is empty where it was not one that had been unfed.
+        That is on the bus's thread, and the input is empty where it was not one that had been unfed. `restless` is
+        called when the code of an actuator breaks as it is to come to rest, on the thread of that code.
         """
-        self._woken = woken
+        self._woken, self._restless = woken, restless
         self._bus, self._thread, self._component, self._fail = bus, thread, component, fail
         self._parameters = {parameter.name for parameter in profile.parameters}
         self._name = profile.component.short
+        self._actuates = not profile.outputs
         self._deadline = profile.callback_deadline
         self._start_deadline = profile.start_deadline
         self.stopping = False
@@ -60,7 +63,7 @@ class ComponentCode:
         self._on = self._resting = self._lacking = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
         required = frozenset(port.name for port in profile.required if not port.is_operation)
-        self._blindness = Blindness(bus, required | {INCOMPLETE}, None if profile.outputs else tolerates, self._rest)
+        self._blindness = Blindness(bus, required | {INCOMPLETE}, tolerates if self._actuates else None, self._rest)
         self._values: dict[str, Term] = {}
 
     @property
@@ -127,10 +130,12 @@ class ComponentCode:
             done()
 
         def stop() -> None:
+            rests = True  # also where `stopped` ends the program: the caller hears first that it has obeyed
             try:
-                self._stop()
-            finally:  # also where `stopped` ends the program: the caller hears first that it has obeyed
-                self._report(lambda _: at_rest(), None)
+                rests = self._stop()
+            finally:
+                if rests:
+                    self._report(lambda _: at_rest(), None)
 
         self._thread.call(stop)
 
@@ -226,9 +231,9 @@ class ComponentCode:
                     "the configuration is incomplete" if INCOMPLETE in self._blindness.unfed else "an input is unfed"
                 )
                 log.warning("%s: %s; at rest for as long", self._name, lacking)
-                self._stop()
-                self._rests += 1
-                self._resting = True
+                if self._stop():
+                    self._rests += 1
+                    self._resting = True
 
         self._thread.call(rest)
 
@@ -265,14 +270,19 @@ class ComponentCode:
     def _started(self) -> str | None:
         return self._carried_out("started", self._start_deadline, self._component.started, "it refuses")
 
-    def _stop(self) -> None:
+    def _stop(self) -> bool:
+        """Whether the code is at rest: an actuator that broke on the way there may act on, a sensor issues nothing."""
         if not self._on:
-            return
-        self._on = False
+            return True
         try:
             self._thread.limited(self, "stopped", self._deadline, self._component.stopped)
-        except Exception:  # it is off all the same
+        except Exception as error:
             log.exception("%s broke when it was stopped", self._name)
+            if self._actuates:
+                self._restless(f"it broke in stopped: {type(error).__name__}: {error}")
+                return False
+        self._on = False
+        return True
 
     def _set(self, values: Mapping[str, Term]) -> str | None:
         for name, value in values.items():

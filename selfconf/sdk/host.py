@@ -39,7 +39,10 @@ class Host:
     """Components that share one session and one thread: the thread that calls `run` or `poll`."""
 
     def __init__(self, bus: Bus, ecology: str, hung: Callable[[str], None] = lambda what: None) -> None:
-        """`hung` is called, on the bus's thread, when code of a component does not return within its deadline."""
+        """`hung` is called, on the bus's thread, when code of a component does not return within its deadline.
+
+        So it is when an actuator breaks as it is to come to rest: either may act on, and obeys no call any more.
+        """
         self.bus, self.keys = bus, Keys(ecology)
         self.runtimes: list[ComponentRuntime] = []
         self.superseded: str | None = None
@@ -66,7 +69,17 @@ class Host:
 
         def join(done: Callable[[ComponentRuntime], None]) -> None:
             done(
-                ComponentRuntime(self.bus, self.keys, profile, component, life, self.code, self._be_superseded, fields)
+                ComponentRuntime(
+                    self.bus,
+                    self.keys,
+                    profile,
+                    component,
+                    life,
+                    self.code,
+                    self._be_superseded,
+                    fields,
+                    restless=lambda why: self._hung(f"{profile.component}: {why}"),
+                )
             )
 
         self.runtimes.append(self._on_bus_thread(join))

@@ -66,9 +66,11 @@ class ComponentRuntime:
         superseded: Callable[[str], None] = lambda reason: None,
         fields: Mapping[IRI, SignalFields] | None = None,
         inputs: InputFollower | None = None,
+        restless: Callable[[str], None] = lambda why: None,
     ) -> None:
         """`superseded` is called when another process is the same component, and this one has to go.
 
+        `restless` is called when the component, an actuator, has broken as it was to come to rest, and may act on.
         `fields` are those of the kinds of signals that the component emits, as far as they are known. `inputs` does as
         the calls of configurators say, in the place of inputs that the code reads.
         """
@@ -76,9 +78,11 @@ class ComponentRuntime:
         self.life = life or secrets.token_hex(4)
         """Which incarnation of the component this is."""
         self.activation = Activation()
-        self._superseded = superseded
+        self._superseded, self._told_restless = superseded, restless
         thread = code_thread or CodeThread(inline=True)
-        self.code = ComponentCode(bus, thread, profile, component, self.fail, lambda port: self.inputs.say_again(port))
+        self.code = ComponentCode(
+            bus, thread, profile, component, self.fail, lambda port: self.inputs.say_again(port), self._restless
+        )
         self._timers = ComponentTimers(bus, self.code)
         self._closed = False
         self._failure = ""
@@ -171,6 +175,11 @@ class ComponentRuntime:
     def hung(self, what: str, limit: float) -> None:
         """Raise FAIL for code that has not returned."""
         self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
+
+    def _restless(self, why: str) -> None:
+        """Raise FAIL for code that broke as it was to rest; a release that it broke in is not obeyed."""
+        self.fail(why)
+        self.bus.wake_up(lambda: self._told_restless(why))
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` at that interval until the component stops or fails; see `ComponentTimers`."""

@@ -9,17 +9,21 @@ import pytest
 
 from selfconf.model.wording import LONGEST_REMARK
 from selfconf.protocol.activation import ActivationPhase
-from selfconf.protocol.messages import Cause, Fail, Verdict
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Cause, Fail, Verdict, Wire
 from selfconf.sdk.component import Refused, Signal
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,
+    DRIVE_PROFILE,
     THEM,
+    TRACKER,
     US,
     Stage,
     apply,
     follow,
     release,
+    reserve,
 )
 
 
@@ -72,7 +76,7 @@ def test_a_component_that_breaks_on_a_signal_fails(caplog: pytest.LogCaptureFixt
     ]
 
 
-def test_a_component_that_breaks_when_it_is_stopped_is_off_all_the_same(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_sensor_that_breaks_when_it_is_stopped_is_off_all_the_same(caplog: pytest.LogCaptureFixture) -> None:
     class Clumsy(Recorder):
         def stopped(self) -> None:
             raise RuntimeError("stuck")
@@ -91,6 +95,44 @@ def test_a_component_that_breaks_when_it_is_stopped_is_off_all_the_same(caplog: 
         answer = stage.call(apply(4, US))
     assert (answer.verdict, answer.active) == (Verdict.DONE, True)
     assert stage.runtime.activation.phase is ActivationPhase.ACTIVE
+
+
+class Jammed(Recorder):
+    """Cannot come to rest."""
+
+    def stopped(self) -> None:
+        super().stopped()
+        raise RuntimeError("jammed")
+
+
+def test_an_actuator_that_breaks_when_it_is_released_has_not_obeyed(caplog: pytest.LogCaptureFixture) -> None:
+    stage = Stage(recorder := Jammed(), DRIVE_PROFILE)
+    stage.call(reserve(1, US))
+    stage.call(apply(1, US))
+    with caplog.at_level(logging.CRITICAL):
+        replies = stage.ask("release", encode(release(2, US)))
+    assert (replies.samples, replies.errors) == ((), ())
+    assert (stage.state().stopping, stage.state().active) == (True, False)
+    assert recorder.said == [("started",), ("stopped",)]
+    assert not stage.ask("reserve", encode(reserve(3, THEM))).samples
+
+
+def test_an_actuator_that_breaks_when_it_is_to_rest_fails_and_is_stopped_once_more_by_the_release(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    stage = Stage(recorder := Jammed(), DRIVE_PROFILE)
+    stage.neighbour()
+    stage.call(reserve(1, US))
+    stage.call(apply(2, US, {"position": (Wire(TRACKER, "pose", None),)}))
+    with caplog.at_level(logging.CRITICAL):
+        stage.call(apply(3, US, {"position": ()}))
+        stage.let_pass(2.0)
+    assert [(fail.cause, fail.detail) for fail in stage.fails] == [
+        (Cause.FAIL, "it broke in stopped: RuntimeError: jammed")
+    ]
+    with caplog.at_level(logging.CRITICAL):
+        assert not stage.ask("release", encode(release(4, US))).samples
+    assert recorder.said.count(("stopped",)) == 2
 
 
 def test_a_component_raises_fail_with_its_life_its_epoch_and_a_reason() -> None:

@@ -233,6 +233,37 @@ def test_an_actuator_whose_configurator_is_gone_comes_to_rest_though_its_termina
     assert process.wait(PATIENCE) == 0
 
 
+JAMMED = """
+from pathlib import Path
+from selfconf.sdk import Component, main
+
+class Motor(Component):
+    advertisement = Path(__file__).parent / "motor.ttl"
+
+    def stopped(self):
+        raise RuntimeError("jammed")
+
+main(Motor)
+"""
+
+
+@pytest.mark.process
+def test_a_program_that_a_site_has_started_ends_when_its_actuator_breaks_as_it_is_to_rest(programs: Programs) -> None:
+    folder = programs.stage.folder
+    (folder / "motor.ttl").write_text(f"{PREFIXES}:motor a sc:Component, :Motor .")
+    (folder / "lamp.py").write_text(JAMMED)
+    process = programs.start(**parent_environment())
+    assert until(programs.lives, 2 * PATIENCE)
+    reserved = programs.stage.call("urn:c:motor", "reserve", Reserve(1, programs.stage.supervisor, "task~1"))
+    assert until(lambda: reserved)
+    answers = programs.stage.apply("urn:c:motor")
+    assert until(lambda: answers)
+    programs.stage.leave()
+    assert process.wait(PATIENCE) == HUNG_EXIT_CODE
+    assert process.stderr is not None
+    assert "urn:c:motor: it broke in stopped: RuntimeError: jammed" in process.stderr.read()
+
+
 @pytest.mark.process
 def test_a_program_that_a_site_has_started_ends_when_its_code_hangs_though_nobody_reads_what_it_says(
     programs: Programs,
