@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from selfconf.bus.port import Bus, Undo, Urgency
+from selfconf.bus.port import Bus, Urgency
 from selfconf.configurator import (
     DEPLOYING,
     Accepted,
@@ -31,7 +31,6 @@ from selfconf.configurator import (
     Finish,
     HandedOver,
     Loss,
-    LossLasts,
     Phase,
     QueueFor,
     Ranked,
@@ -48,6 +47,7 @@ from selfconf.configurator import (
     step,
 )
 from selfconf.deployment.components import Calls, ComponentMessages, HeldLives, Liveness, PortEnds, Waking
+from selfconf.deployment.loss_looks import LossLooks
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import Retries
@@ -75,10 +75,6 @@ from selfconf.protocol.messages import Status, Wire
 
 log = logging.getLogger(__name__)
 
-LASTS = 0.05
-"""Seconds after which a component that was lost is followed no more, if nothing has taken its place by then."""
-LASTS_LONG = 1.0
-"""Seconds for which actuators act on in a configuration that lacks a component: as long as without a configurator."""
 AT_LEISURE = 0.01
 """Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
 PULSE = 0.25
@@ -125,6 +121,7 @@ class TaskRunner:
         self._liveness = Liveness(context, self._calls, self._waking)
         self._discovery = TaskDiscovery(context, self.name, self._liveness, request.without_configurator)
         self._search = TaskSearch(context, request, self._liveness, self._give_up)
+        self._loss_looks = LossLooks(context)
         self._retries = Retries(context, self._lives, request.upgrade)
         self._record = DeploymentRecord(
             bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
@@ -132,10 +129,6 @@ class TaskRunner:
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self._events: deque[Event] = deque()
         self._stepping = False
-        self._incomplete: Undo | None = None
-        """Undoes the look at what runs that comes when it has lacked a component for long; None if it lacks none."""
-        self._look_is_planned, self._lost_since_planned = False, False
-        """Whether a look is planned at what was lost, and whether more was lost since."""
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
@@ -219,9 +212,7 @@ class TaskRunner:
             self._notice(known)
         if self.state.target is None:
             self._record.taken_down()
-        if self._incomplete is not None and self.state.phase in (Phase.RUNNING, Phase.DISMANTLING):
-            self._incomplete()
-            self._incomplete = None
+        self._loss_looks.stepped()
         for effect in effects:
             self._carry_out(effect)
         if isinstance(event, Appeared) and self.state.phase is Phase.RUNNING and self.state.target is not None:
@@ -299,37 +290,7 @@ class TaskRunner:
                 self._waking.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self._report(ComponentLost(component, loss.cause.value, loss.detail))
-                self._look_whether_it_lasts()
-
-    def _look_whether_it_lasts(self) -> None:
-        """A component was lost: look a moment later whether another has taken its place, and once more when it is long.
-
-        It is long if what runs has lacked one or another component for all that time.
-        """
-        self._lost_since_planned = True
-        if not self._look_is_planned:
-            self._look_soon()
-        if self._incomplete is None and any(held.active for held in self.state.held.values()):
-            self._incomplete = self.bus.later(LASTS_LONG, self._look_when_it_is_long)
-
-    def _look_soon(self) -> None:
-        self._look_is_planned, self._lost_since_planned = True, False
-        self.bus.later(LASTS, self._look_now)
-
-    def _look_now(self) -> None:
-        """Look once for all that was lost of late, as it may be thousands; and once more if some was later."""
-        self._look_is_planned = False
-        if self._lost_since_planned:
-            self._look_soon()
-        self._step(LossLasts())
-
-    def _look_when_it_is_long(self) -> None:
-        self._incomplete = None  # what begins to act from now on may do so for as long if more is lost
-        self._step(LossLasts(frozenset(filter(self._is_actuator, self.state.held))))
-
-    def _is_actuator(self, component: IRI) -> bool:
-        found = self.ecology.discovery.found.get(component)
-        return found is not None and not found.advertisement.profile.outputs
+                self._loss_looks.lost()
 
     def _report(self, event: AnyRunEvent) -> None:
         """Note an event with its time, and report it when there is nothing more urgent to do."""

@@ -1,0 +1,62 @@
+"""When a task looks whether a loss lasts, as actuators have to rest while what runs is incomplete.
+
+Most losses are repaired within a moment, and nothing need rest for them. So the machine is fed `LossLasts` a moment
+after a loss, once for all that were lost of late, as these may be thousands; and once more when what runs has lacked
+one or another component for so long that its actuators must not act on.
+"""
+
+from __future__ import annotations
+
+from selfconf.bus.port import Undo
+from selfconf.configurator import LossLasts, Phase
+from selfconf.deployment.task_context import TaskContext
+from selfconf.model.term import IRI
+
+LASTS = 0.05
+"""Seconds after which a component that was lost is followed no more, if nothing has taken its place by then."""
+LASTS_LONG = 1.0
+"""Seconds for which actuators act on in a configuration that lacks a component: as long as without a configurator."""
+
+
+class LossLooks:
+    """The looks of one task at what it has lost."""
+
+    def __init__(self, task: TaskContext) -> None:
+        self._bus, self._ecology, self._state, self._step = task.ecology.bus, task.ecology, task.state, task.step
+        self._incomplete: Undo | None = None
+        """Undoes the look at what runs that comes when it has lacked a component for long; None if it lacks none."""
+        self._is_planned, self._lost_since_planned = False, False
+        """Whether a look is planned at what was lost, and whether more was lost since."""
+
+    def lost(self) -> None:
+        """A component was lost: look a moment later, and when what runs has lacked one or another for long."""
+        self._lost_since_planned = True
+        if not self._is_planned:
+            self._look_soon()
+        if self._incomplete is None and any(held.active for held in self._state().held.values()):
+            self._incomplete = self._bus.later(LASTS_LONG, self._look_when_it_is_long)
+
+    def stepped(self) -> None:
+        """Plan no look at what runs for long where it is complete now, or is taken down."""
+        if self._incomplete is not None and self._state().phase in (Phase.RUNNING, Phase.DISMANTLING):
+            self._incomplete()
+            self._incomplete = None
+
+    def _look_soon(self) -> None:
+        self._is_planned, self._lost_since_planned = True, False
+        self._bus.later(LASTS, self._look)
+
+    def _look(self) -> None:
+        """Look once for all that was lost of late, and once more if some was later."""
+        self._is_planned = False
+        if self._lost_since_planned:
+            self._look_soon()
+        self._step(LossLasts())
+
+    def _look_when_it_is_long(self) -> None:
+        self._incomplete = None  # what begins to act from now on may do so for as long if more is lost
+        self._step(LossLasts(frozenset(filter(self._is_actuator, self._state().held))))
+
+    def _is_actuator(self, component: IRI) -> bool:
+        found = self._ecology.discovery.found.get(component)
+        return found is not None and not found.advertisement.profile.outputs
