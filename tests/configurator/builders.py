@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom, ReserveOf
-from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Stopped
+from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Failed, Stopped
 from selfconf.configurator.machine import step
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.term import IRI, Literal
-from selfconf.protocol.messages import Verdict
+from selfconf.protocol.messages import Cause, Verdict
 
 ARM = IRI("urn:c:arm")
 TEMPLATE = IRI("urn:t:navigate")
@@ -169,3 +169,11 @@ def released(effects: list[Effect]) -> list[IRI]:
 def kinds(effects: list[Effect]) -> list[type]:
     """What is to be done, in order."""
     return [type(effect) for effect in effects]
+
+
+def lost_tracker() -> History:
+    """A task that runs loses its tracker, and the search has found odometry instead."""
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.FAIL))
+    history.composed(navigation(ODOMETRY))
+    return history
