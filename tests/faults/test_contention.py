@@ -14,7 +14,6 @@ from tests.effort import NIGHTLY, examples
 from tests.faults.contention import SENSORS, Contention, Settled
 
 SEEDS = 1_000 if NIGHTLY else examples(4)
-BATCH = 4
 
 
 @pytest.fixture(scope="module")
@@ -48,12 +47,11 @@ def deprived(contention: Contention) -> list[str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("patient", [True, False], ids=["patient", "hasty"])
 @pytest.mark.parametrize("priorities", [False, True], ids=["equal", "ranked"])
-@pytest.mark.parametrize("batch", range(0, SEEDS, BATCH))
 def test_of_tasks_that_begin_at_once_some_run_and_none_acts_on_a_part(
-    batch: int, priorities: bool, patient: bool, folder: Path
+    priorities: bool, patient: bool, folder: Path
 ) -> None:
     settled: list[Settled] = []
-    for seed in range(batch, batch + BATCH):
+    for seed in range(SEEDS):
         contention = begun(seed, folder, patient, priorities)
         settled.append(contention.settle())
         said = f"seed {seed}: {settled[-1]}"
