@@ -35,7 +35,7 @@ from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import Activation
 from selfconf.protocol.messages import Wire
-from selfconf.sdk import runtime as component_runtime
+from selfconf.sdk import own_state
 from selfconf.sdk.component import Refused
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
@@ -211,7 +211,7 @@ class History:
             with (
                 mock.patch.object(ecology_view, "MANY_LIVES", 0 if self.script.large else ecology_view.MANY_LIVES),
                 # All components are in this process: what memory it takes is news to nobody.
-                mock.patch.object(component_runtime, "resident_memory", nothing),
+                mock.patch.object(own_state, "resident_memory", nothing),
             ):
                 self._play()
         except Exception:
