@@ -7,7 +7,7 @@ import socket
 from collections.abc import Callable
 
 from selfconf.bus.port import Bus
-from selfconf.model.profile import Profile
+from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
 from selfconf.protocol import activation as table
 from selfconf.protocol.activation import Activation, Hold
@@ -26,7 +26,7 @@ class OwnState:
     def __init__(
         self,
         bus: Bus,
-        profile: Profile,
+        component: IRI,
         life: str,
         activation: Callable[[], Activation],
         code: ComponentCode,
@@ -35,7 +35,7 @@ class OwnState:
         supervision: Supervision,
     ) -> None:
         """`activation` tells for which tasks the component is held now; its age is counted from here on."""
-        self._bus, self._profile, self._life, self._activation = bus, profile, life, activation
+        self._bus, self._component, self._life, self._activation = bus, component, life, activation
         self._code, self._inputs, self._outputs, self._supervision = code, inputs, outputs, supervision
         self._began = bus.now()
 
@@ -53,7 +53,7 @@ class OwnState:
         claim: Claim = hold.claim if hold is not None else Claim(0, "")
         return CallAnswer(
             verdict,
-            self._profile.component,
+            self._component,
             self._life,
             activation.epoch_of(task),
             self._code.started and self._inputs.settled and hold is not None and hold.active,

@@ -128,7 +128,14 @@ class ComponentRuntime:
             self._let_go,
         )
         self._own_state = OwnState(
-            bus, profile, self.life, lambda: self.activation, self.code, self.inputs, self.outputs, self.supervision
+            bus,
+            profile.component,
+            self.life,
+            lambda: self.activation,
+            self.code,
+            self.inputs,
+            self.outputs,
+            self.supervision,
         )
         self.calls = ControlCalls(
             bus, keys, profile, self.life, self._own_state, lambda: self._pending, self._obey_at_rest
