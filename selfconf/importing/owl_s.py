@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from selfconf.errors import AuthorError
 from selfconf.importing.imported import ImportedComponent, ImportedDocument, ImportedPort
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import NumberedNames, absolute, stem
-from selfconf.importing.rdf_documents import read_rdf
+from selfconf.importing.rdf_documents import rdf_documents
 from selfconf.importing.sources import SourceDocument
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal, Term
@@ -52,12 +51,7 @@ _READ = frozenset(
 
 def import_services(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
     """The services that documents of RDF describe, one after the other."""
-    for source in sources:
-        try:
-            document = read_rdf(source, ledger)
-        except AuthorError as error:
-            ledger.unreadable(error)
-            continue
+    for source, document in rdf_documents(sources, ledger):
         components = [
             component
             for version in VERSIONS

@@ -28,12 +28,7 @@ DEEPEST_NODE = 20
 def import_rdf(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
     """The documents of RDF that advertise components."""
     seen: set[Node] = set()
-    for source in sources:
-        try:
-            document = read_rdf(source, ledger)
-        except AuthorError as error:
-            ledger.unreadable(error)
-            continue
+    for source, document in rdf_documents(sources, ledger):
         components = document.instances(SC.Component)
         if not components:
             ledger.leave_out("documents without components", "there is nothing to advertise in them", source)
@@ -49,8 +44,21 @@ def import_rdf(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Itera
             yield ImportedDocument(stem(source), source.name, descriptions, document.prefixes)
 
 
-def read_rdf(source: SourceDocument, ledger: ImportLedger) -> Document:
-    """A document of RDF; relative IRIs count from its name in the namespace, wherever it lies. Raises AuthorError."""
+def rdf_documents(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[tuple[SourceDocument, Document]]:
+    """The documents of RDF that can be read, with their sources; the others are noted.
+
+    Relative IRIs count from the name of a document in the namespace, wherever it lies.
+    """
+    for source in sources:
+        try:
+            document = _read(source, ledger)
+        except AuthorError as error:
+            ledger.unreadable(error)
+        else:
+            yield source, document
+
+
+def _read(source: SourceDocument, ledger: ImportLedger) -> Document:
     namespace = ledger.namespace.removesuffix("#") + "/" * ledger.namespace.endswith("#")  # a base has no fragment
     try:
         return read_ontology(source.octets, source.shown, namespace + stem(source))
