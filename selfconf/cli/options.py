@@ -149,6 +149,18 @@ def _counted(text: str, what: str) -> int:
     return int(text)
 
 
+def add_answer_seconds_argument(parser: argparse.ArgumentParser, what: str, default: float) -> None:
+    """The option for how long an answer may take; `what` says which."""
+    parser.add_argument(
+        "--seconds",
+        dest="answer_seconds",  # the key `seconds` of a project file limits searches
+        metavar="S",
+        type=seconds_option,
+        default=default,
+        help=f"how long {what} may take (default: %(default)g)",
+    )
+
+
 def seconds_option(text: str) -> float:
     """A number of seconds that something may take, as an option takes it."""
     seconds = _number(text)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from selfconf import files
 from selfconf.cli.options import (
     add_ads_argument,
+    add_answer_seconds_argument,
     add_ecology_arguments,
     add_endpoint_argument,
     add_ontology_argument,
@@ -17,7 +18,6 @@ from selfconf.cli.options import (
     given_ecology,
     one_stdin,
     rows_option,
-    seconds_option,
 )
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
@@ -48,14 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         " provenance; alone, or together with --ads",
     )
     parser.add_argument("--format", choices=ANSWER_FORMATS, default=ANSWER_FORMATS[0], help="default: %(default)s")
-    parser.add_argument(
-        "--seconds",
-        dest="answer_seconds",  # the key `seconds` of a project file limits searches
-        metavar="S",
-        type=seconds_option,
-        default=SECONDS,
-        help="how long the answer may take (default: %(default)g)",
-    )
+    add_answer_seconds_argument(parser, "the answer", SECONDS)
     parser.add_argument(
         "--rows",
         metavar="N",

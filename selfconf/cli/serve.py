@@ -7,7 +7,7 @@ import importlib.util
 import re
 from pathlib import Path
 
-from selfconf.cli.options import add_ecology_arguments, joined, seconds_option
+from selfconf.cli.options import add_answer_seconds_argument, add_ecology_arguments, joined
 from selfconf.errors import InstallationError
 
 EXAMPLE = """  selfconf serve --port 8000
@@ -27,14 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--port", metavar="N", type=_port, default=PORT, help="0 for any free one (default: %(default)s)"
     )
-    parser.add_argument(
-        "--seconds",
-        dest="answer_seconds",  # the key `seconds` of a project file limits searches
-        metavar="S",
-        type=seconds_option,
-        default=QUERY_SECONDS,
-        help="how long a SPARQL query may take (default: %(default)g)",
-    )
+    add_answer_seconds_argument(parser, "a SPARQL query", QUERY_SECONDS)
     parser.add_argument(
         "--history",
         metavar="DIR",
