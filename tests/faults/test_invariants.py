@@ -67,7 +67,7 @@ def sets_late(self: ComponentCode, *arguments: Any) -> str | None:
 def lets_go_silently(self: ComponentRuntime, tasks: Sequence[str], why: str) -> None:
     """A component that does not tell that it has let go of a task, as an older one."""
     self._drop(tasks)
-    self._when_at_rest(self._offer)
+    self._when_at_rest(self._waiting.offer)
 
 
 def calls_a_stranger(self: Operations, message: Apply) -> None:
