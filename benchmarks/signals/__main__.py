@@ -40,7 +40,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Apply, CallAnswer, Reserve, Verdict, Wire
-from selfconf.sdk.signal_queue import EVENT_BYTES
+from selfconf.sdk.inputs.signal_queue import EVENT_BYTES
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "signals.md"
 PROGRAMS = ("bare", "selfconf")

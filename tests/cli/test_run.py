@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.access import believe
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.cli import command
 from tests.cli.endpoints import oxigraph
 from tests.cli.processes import NO_NOHUP, Home, component_of, dormant

@@ -14,7 +14,7 @@ from selfconf.model.refusal import TooFewEligible
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Release, Verdict
 from selfconf.render.run_events import event_body
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, Lab, Recorder, iri
 

@@ -35,11 +35,10 @@ from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import Activation
 from selfconf.protocol.messages import Wire
-from selfconf.sdk import own_state
 from selfconf.sdk.component import Refused
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
-from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk.runtime import ComponentRuntime, own_state
 from selfconf.site import Site
 from tests.faults.harsh import KINDS as HARSH
 from tests.faults.harsh import calm, promising

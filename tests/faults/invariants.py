@@ -23,7 +23,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.sdk.blindness import TOLERATES
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.faults.histories import ASKED, History, Life, looked_up_once
 
 CALLS = 2.0

@@ -29,7 +29,7 @@ from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.deployment.keeper import keeper_of
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.lab import NAVIGATE, Lab, task_of
 
 KEEPING = ("a", "b", "c")

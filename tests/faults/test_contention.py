@@ -99,7 +99,7 @@ def test_of_tasks_that_wait_for_the_same_the_one_that_began_first_runs_first(see
 @pytest.mark.parametrize(
     ("name", "value", "wrong"),
     [
-        ("selfconf.sdk.waiting_tasks.YIELDING", 0.0, "acts for"),
+        ("selfconf.sdk.runtime.waiting_tasks.YIELDING", 0.0, "acts for"),
         ("selfconf.protocol.activation._blocked", lambda *_: False, "is held for"),
         ("selfconf.configurator.phases.resting_next", lambda wires, left: tuple(left), "acts for"),
         ("selfconf.configurator.deploying._may_begin", lambda *_: True, "is started before"),

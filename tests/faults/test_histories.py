@@ -123,7 +123,7 @@ def test_an_action_that_is_not_possible_does_nothing(folder: Path) -> None:
 @pytest.mark.slow
 def test_a_history_that_goes_wrong_is_shrunk_to_what_is_needed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A component that is deaf to the end of its supervisor acts for nobody."""
-    monkeypatch.setattr("selfconf.sdk.supervision.GRACE", 1e9)
+    monkeypatch.setattr("selfconf.sdk.runtime.supervision.GRACE", 1e9)
     seed = next(seed for seed in range(100) if played(write(seed), folder).watch.names)
     script = shrink(write(seed), folder)
     assert 1 < len(script.actions) < len(write(seed).actions)

@@ -115,6 +115,7 @@ class Mutation(NamedTuple):
 INPUTS = "selfconf.sdk.inputs.Inputs"
 CALLING, CALLS, LIVENESS = (f"selfconf.deployment.components.{name}" for name in ("calling", "calls", "liveness"))
 RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
+GRACE = "selfconf.sdk.runtime.supervision.GRACE"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
 SHARES_ALL = {
     "selfconf.protocol.activation._blocked": lambda *_: False,
@@ -141,7 +142,9 @@ MUTATIONS = {
         },
         (Action(1.0, "crash", "drive"), Action(2.0, "twins", "drive")),
     ),
-    "nobody acts for nobody": Mutation({"selfconf.sdk.supervision.GRACE": 1e9}, (Action(2.0, "crash_task", "task-1"),)),
+    "nobody acts for nobody": Mutation(
+        {"selfconf.sdk.runtime.supervision.GRACE": 1e9}, (Action(2.0, "crash_task", "task-1"),)
+    ),
     "who acts is known": RELEASES_NOTHING,
     "running means running": Mutation(SILENT, (LATER,), Faults(most_event_delay=2.0)),
     "each runs with its own": Mutation(SHARES_ALL, (SECOND,)),
@@ -173,7 +176,7 @@ MUTATIONS = {
             "selfconf.sdk.component_code.ComponentCode._start": sets_late,
         }
     ),
-    "the last signal is heard": Mutation({"selfconf.sdk.input_subscription.InputSubscription._read": nothing}),
+    "the last signal is heard": Mutation({"selfconf.sdk.inputs.input_subscription.InputSubscription._read": nothing}),
     "who calls is connected": Mutation(
         {
             "selfconf.sdk.operations.Operations.follow": calls_a_stranger,
@@ -189,7 +192,7 @@ MUTATIONS = {
     ),
     "what is needed is answered": Mutation({"selfconf.sdk.operations.Operations._ask": nothing}, ecology=COMPOSED),
     "nothing rests for nothing": Mutation(
-        {"selfconf.sdk.input_subscription.InputSubscription._ask_if_lost": nothing},
+        {"selfconf.sdk.inputs.input_subscription.InputSubscription._ask_if_lost": nothing},
         (Action(2.0, "mute", "planner", "mower"), Action(3.0, "mend", "planner", "mower")),
         ecology=LATCHED,
     ),

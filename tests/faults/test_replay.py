@@ -34,7 +34,7 @@ def test_the_command_that_a_test_prints_as_it_fails_plays_its_history(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A component that is deaf to the end of its supervisor acts for nobody."""
-    monkeypatch.setattr("selfconf.sdk.supervision.GRACE", 1e9)
+    monkeypatch.setattr("selfconf.sdk.runtime.supervision.GRACE", 1e9)
     recipes = (Recipe(seed, busy=True, large=True) for seed in range(100))
     recipe = next(one for one in recipes if played(one.script, tmp_path / PAPER.name).broken)
     with pytest.raises(AssertionError) as failure:

@@ -16,8 +16,8 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Cause
-from selfconf.sdk.input_subscription import JUST_COME
-from selfconf.sdk.inputs import HANDOVER, Inputs
+from selfconf.sdk.inputs.input_subscription import JUST_COME
+from selfconf.sdk.inputs.inputs import HANDOVER, Inputs
 from tests.faults.histories import History, Life
 from tests.faults.invariants import Invariant, acting, awake, disagreeing, feeds, node_of
 

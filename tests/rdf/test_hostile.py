@@ -36,7 +36,9 @@ from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.validation import checking, file_check
 from selfconf.rdf.validation.checking import SourceText, validate_texts
-from selfconf.sdk import control_calls, input_subscription, operations, payloads
+from selfconf.sdk import operations, payloads
+from selfconf.sdk.inputs import input_subscription
+from selfconf.sdk.runtime import control_calls
 from tests.hostile_words import HONEST, KINDS, stranger
 from tests.hostile_words import TEMPLATE as TEMPLATE_FOR_STRANGERS
 

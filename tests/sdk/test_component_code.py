@@ -20,8 +20,8 @@ from selfconf.protocol.messages import Apply, CallAnswer, Cause, Release, Reserv
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component, Refused, Signal
 from selfconf.sdk.runtime import ComponentRuntime
-from selfconf.sdk.supervision import GRACE
-from selfconf.sdk.waiting_tasks import YIELDING
+from selfconf.sdk.runtime.supervision import GRACE
+from selfconf.sdk.runtime.waiting_tasks import YIELDING
 from tests.lab import Recorder
 from tests.sdk.living import PATIENCE, LivingStage, until
 from tests.sdk.stage import (

@@ -46,8 +46,8 @@ MOST_REOPENINGS, REOPENINGS_WITHIN = 6, 60.0
 SETTLING = 1.0
 """Seconds that other nodes may take to be connected again after this one.
 
-It is the grace period of components (`selfconf.sdk.supervision.GRACE`): after it, each has turned itself off or has
-seen its supervisor again.
+It is the grace period of components (`GRACE` of `selfconf.sdk.runtime.supervision`): after it, each has turned itself
+off or has seen its supervisor again.
 """
 
 

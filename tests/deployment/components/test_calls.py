@@ -14,8 +14,8 @@ from selfconf.deployment.components.calls import SITE_ENDS
 from selfconf.deployment.components.liveness import SETTLING
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import End, Page, Release, Wake
-from selfconf.sdk.runtime import LIFE_ENDS
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.runtime import LIFE_ENDS
+from selfconf.sdk.runtime.supervision import GRACE
 from selfconf.site.component_program import TERMINATION
 from tests.deployment.simulated import home, living_room, slow_code
 from tests.deployment.tasks import TASK

@@ -19,7 +19,7 @@ from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Page
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
 

@@ -6,7 +6,7 @@ import os
 import socket
 
 from selfconf.protocol.messages import Verdict
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.sdk.stage import (
     TASKS,
     THEM,

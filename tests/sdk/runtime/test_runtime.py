@@ -11,7 +11,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, Verdict
 from selfconf.sdk.component import Component
-from selfconf.sdk.runtime import LIFE_ENDS
+from selfconf.sdk.runtime.runtime import LIFE_ENDS
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.sdk.silence_watch import BEGINNING, PATIENCE
+from selfconf.sdk.inputs.silence_watch import BEGINNING, PATIENCE
 from tests.sdk.stage import TRACKER, US, Stage, apply, follow, silence
 
 

@@ -14,11 +14,11 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.blindness import TOLERATES
-from selfconf.sdk.input_subscription import JUST_COME, UNSEEN
-from selfconf.sdk.inputs import HANDOVER
+from selfconf.sdk.inputs.input_subscription import JUST_COME, UNSEEN
+from selfconf.sdk.inputs.inputs import HANDOVER
+from selfconf.sdk.inputs.silence_watch import PATIENCE
 from selfconf.sdk.runtime import ComponentRuntime
-from selfconf.sdk.silence_watch import PATIENCE
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,

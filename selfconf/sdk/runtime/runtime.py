@@ -35,16 +35,15 @@ from selfconf.protocol.messages import (
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
-from selfconf.sdk.component_timers import ComponentTimers
-from selfconf.sdk.control_calls import ControlCalls, Reply
-from selfconf.sdk.input_subscription import InputEvents
-from selfconf.sdk.inputs import InputFollower, Inputs
+from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
 from selfconf.sdk.operations import Operations
-from selfconf.sdk.other_lives import OtherLives
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
-from selfconf.sdk.own_state import OwnState
-from selfconf.sdk.supervision import Supervision
-from selfconf.sdk.waiting_tasks import WaitingTasks
+from selfconf.sdk.runtime.component_timers import ComponentTimers
+from selfconf.sdk.runtime.control_calls import ControlCalls, Reply
+from selfconf.sdk.runtime.other_lives import OtherLives
+from selfconf.sdk.runtime.own_state import OwnState
+from selfconf.sdk.runtime.supervision import Supervision
+from selfconf.sdk.runtime.waiting_tasks import WaitingTasks
 
 log = logging.getLogger(__name__)
 

@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Verdict
-from selfconf.sdk.supervision import GRACE
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.sdk.stage import CAP_PROFILE, TASKS, THEM, US, Stage, apply, release, reserve
 
 

@@ -9,11 +9,11 @@ from selfconf.bus.port import Request, Urgency
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.sdk.blindness import TOLERATES
-from selfconf.sdk.input_subscription import (
+from selfconf.sdk.inputs import Inputs
+from selfconf.sdk.inputs.input_subscription import (
     UNSEEN,
     InputSubscription,
 )
-from selfconf.sdk.inputs import Inputs
 from tests.sdk.stage import (
     CAP,
     DRIVE_PROFILE,

@@ -15,7 +15,7 @@ from selfconf.model.profile import Profile
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of
 from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, StateOf, Verdict
-from selfconf.sdk.own_state import OwnState
+from selfconf.sdk.runtime.own_state import OwnState
 
 log = logging.getLogger(__name__)
 

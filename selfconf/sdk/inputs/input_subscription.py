@@ -29,10 +29,10 @@ from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.protocol.stamps import StampReader
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
+from selfconf.sdk.inputs.signal_queue import SignalQueue
+from selfconf.sdk.inputs.silence_watch import SilenceWatch
 from selfconf.sdk.outputs import SIGNALS_FIRST
 from selfconf.sdk.payloads import read_payload
-from selfconf.sdk.signal_queue import SignalQueue
-from selfconf.sdk.silence_watch import SilenceWatch
 
 log = logging.getLogger(__name__)
 

@@ -30,9 +30,9 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Apply, Wire
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.input_subscription import InputEvents, InputSubscription
-from selfconf.sdk.signal_queue import SignalQueue
-from selfconf.sdk.silence_watch import BEGINNING, PATIENCE
+from selfconf.sdk.inputs.input_subscription import InputEvents, InputSubscription
+from selfconf.sdk.inputs.signal_queue import SignalQueue
+from selfconf.sdk.inputs.silence_watch import BEGINNING, PATIENCE
 
 HANDOVER = 2.0
 """Seconds in which an output that an input is handed over to has to issue a signal: more where it promises one only in

@@ -16,7 +16,7 @@ from selfconf.protocol.messages import CallAnswer, Claim, Verdict
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputFollower
 from selfconf.sdk.outputs import Outputs
-from selfconf.sdk.supervision import Supervision
+from selfconf.sdk.runtime.supervision import Supervision
 from selfconf.termination import resident_memory
 
 

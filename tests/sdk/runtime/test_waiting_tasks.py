@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from selfconf.bus.port import Publisher, Urgency
 from selfconf.protocol.messages import Cause, Verdict
-from selfconf.sdk.waiting_tasks import OFFER, YIELDING
+from selfconf.sdk.runtime.waiting_tasks import OFFER, YIELDING
 from tests.sdk.stage import (
     CAP,
     KEYS,

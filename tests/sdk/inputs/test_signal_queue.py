@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.bus.port import Sample
-from selfconf.sdk.signal_queue import EVENT_BYTES, EVENTS, SignalQueue
+from selfconf.sdk.inputs.signal_queue import EVENT_BYTES, EVENTS, SignalQueue
 
 
 def waiting(queue: SignalQueue) -> list[int]:

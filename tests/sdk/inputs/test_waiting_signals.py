@@ -15,11 +15,11 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Stamp
 from selfconf.sdk.code_thread import CodeThread
-from selfconf.sdk.input_subscription import (
+from selfconf.sdk.inputs import Inputs
+from selfconf.sdk.inputs.input_subscription import (
     InputEvents,
 )
-from selfconf.sdk.inputs import Inputs
-from selfconf.sdk.signal_queue import EVENTS
+from selfconf.sdk.inputs.signal_queue import EVENTS
 from tests.sdk.stage import (
     CAP_PROFILE,
     KEYS,
