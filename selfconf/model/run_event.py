@@ -141,9 +141,11 @@ class ParametersSet(CallAnswered):
 
 @immutable
 class ComponentReleased(CallAnswered):
-    """A component was turned off."""
+    """A component was turned off, or goes on for others that share it."""
 
     act: ClassVar[Literal["released"]] = "released"
+    holder: str = ""
+    """The name of a task for which it acts on; empty if it is off."""
 
 
 @immutable

@@ -11,6 +11,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import (
     ComponentLost,
+    ComponentReleased,
     EcologyDiscovered,
     RunEvent,
     SearchEnded,
@@ -39,7 +40,7 @@ SENTENCES: Mapping[str, str] = {
     "declined": "       {component} declines: {detail}",
     "unreachable": "       {component} cannot be reached: {detail}",
     "lost": "LOST   {component}: {loss}",
-    "released": "       {component} is off",
+    "released": "       {component} {state}",
     "running": "       running",
     "waiting": "       waiting for the ecology to change",
     "refused": "",
@@ -58,6 +59,8 @@ def sentence(event: RunEvent, name: Name) -> str:
     facts: dict[str, Any] = {one.name: _word(getattr(event, one.name), name) for one in fields(event)}
     if isinstance(event, ComponentLost):
         facts["loss"] = f"{event.cause}, {event.detail}" if event.detail else event.cause
+    if isinstance(event, ComponentReleased):
+        facts["state"] = f"acts on for the task {event.holder}" if event.holder else "is off"
     if isinstance(event, SearchEnded):
         facts |= {"found": _outcome(event), "milliseconds": event.seconds * 1000}
     if isinstance(event, EcologyDiscovered):

@@ -31,6 +31,8 @@ def test_two_tasks_share_a_component_that_takes_no_orders_and_it_acts_until_both
     second.stop()
     lab.let_pass(1.0)
     assert lab.active() == set()
+    tracker = [event.holder for event in lab.acts("released") if event.component == iri("person-tracker")]
+    assert tracker == ["watch", ""]
 
 
 def test_two_tasks_use_different_components_where_one_cannot_be_shared(

@@ -15,6 +15,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import (
     CallDeclined,
     ComponentLost,
+    ComponentReleased,
     ComponentWoken,
     EcologyAsked,
     EcologyDiscovered,
@@ -36,6 +37,7 @@ EVENTS = sorted(
 )
 FACTS: dict[str, Any] = {
     "component": CLOCK,
+    "holder": "patrol",
     "source": CLOCK,
     "sink": SCREEN,
     "output": "time",
@@ -87,13 +89,18 @@ def test_every_event_has_a_body_with_act_time_message_process_and_its_facts(kind
     assert json.loads(json.dumps(body, allow_nan=False)) == body
 
 
+def test_a_component_that_others_share_is_not_said_to_be_off() -> None:
+    assert sentence(ComponentReleased(CLOCK, "done"), short).strip() == "clock is off"
+    assert sentence(ComponentReleased(CLOCK, "done", "patrol"), short).strip() == "clock acts on for the task patrol"
+
+
 def test_each_sentence_belongs_to_an_event() -> None:
     assert SENTENCES.keys() == {kind.act for kind in EVENTS}
     assert len(EVENTS) == len(SENTENCES)
 
 
 def test_a_sentence_speaks_of_nothing_that_its_event_does_not_have() -> None:
-    computed = {"missing", "found", "milliseconds", "loss"}
+    computed = {"missing", "found", "milliseconds", "loss", "state"}
     for kind in EVENTS:
         named = {name for _, name, _, _ in string.Formatter().parse(SENTENCES[kind.act]) if name}
         assert named <= {one.name for one in fields(kind)} | computed

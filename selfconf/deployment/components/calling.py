@@ -28,7 +28,7 @@ from selfconf.model.run_event import (
 )
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import component_chunk, owner_of
+from selfconf.protocol.keys import component_chunk, owner_of, task_name
 from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, StateOf, Verdict
 
 log = logging.getLogger(__name__)
@@ -129,7 +129,8 @@ class Calling:
                 self._report(CallDeclined(component, detail))
         elif call is Call.RELEASE:
             if self.lives.has_obeyed(component, answer.life):  # else this task has only waited for it
-                self._report(ComponentReleased(component, detail))
+                goes_on_for = task_name(answer.task) if answer.active else ""
+                self._report(ComponentReleased(component, detail, goes_on_for))
             self.lives.released(component)
         elif isinstance(message, Apply):
             if message.values:
