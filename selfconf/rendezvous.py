@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from selfconf.bus.credentials import Credentials
@@ -147,9 +148,22 @@ def find(ecology: str | None, connect: Sequence[str], credentials: Credentials |
     return names[0], list(dict.fromkeys([*(site.endpoint for site in found), *usual]))
 
 
+@contextmanager
+def suspended_sites_named(endpoints: Sequence[str]) -> Iterator[None]:
+    """Where no site answers at some endpoints, have the NetworkError name those of this machine that are suspended."""
+    try:
+        yield
+    except NetworkError:
+        suspended = [str(site) for site in local_sites() if site.endpoint in endpoints and site.is_suspended()]
+        if suspended:
+            raise NetworkError("; ".join(suspended)) from None
+        raise
+
+
 def _ecology_at(endpoints: list[str], credentials: Credentials | None) -> str:
     """The one ecology that has a site behind some endpoints. Raises NetworkError if there is none, or several."""
-    bus = client(endpoints, credentials=credentials)
+    with suspended_sites_named(endpoints):
+        bus = client(endpoints, credentials=credentials)
     try:
         heard: list[tuple[str, ...]] = []
         bus.roll_call(any_ecology(), ECOLOGY_ANSWER, heard.append)

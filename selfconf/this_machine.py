@@ -41,6 +41,16 @@ class LocalSite:
     log: str = field(default="", compare=False)
     """The file in which it keeps what its components print; empty from a site of before that does not say it."""
 
+    def __str__(self) -> str:
+        return (
+            f"process {self.process} of this machine, the site {self.site!r} of ecology {self.ecology!r}, is suspended;"
+            f" `kill -CONT {self.process}` lets it go on"
+        )
+
+    def is_suspended(self) -> bool:
+        """Whether the process was stopped by a signal and has not gone on, as after Ctrl-Z."""
+        return stopped(self.process)
+
 
 def runtime_folder() -> Path:
     """Where the files are: `$SELFCONF_RUNTIME_DIR`, or `selfconf` in the user's runtime folder."""
@@ -273,4 +283,4 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
 
 def suspended_sites(ecology: str) -> tuple[str, ...]:
     """The names of the sites of an ecology that run on this machine and were stopped by a signal, as after Ctrl-Z."""
-    return tuple(site.site for site in local_sites(ecology) if stopped(site.process))
+    return tuple(site.site for site in local_sites(ecology) if site.is_suspended())

@@ -13,6 +13,7 @@ from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.term import IRI
 from selfconf.rendezvous import usual_endpoints
 from selfconf.this_machine import LocalSite
+from tests.suspended_run import suspended_run
 from tests.test_this_machine import meeting
 
 
@@ -45,6 +46,16 @@ def test_an_endpoint_that_several_sites_share_is_found_once() -> None:
     this_machine.announce(shared)
     this_machine.announce(LocalSite("home", "b", shared.endpoint, os.getpid(), relays=False))
     assert rendezvous.find("home", []) == ("home", [shared.endpoint, *usual_endpoints("home")])
+
+
+def test_where_no_site_answers_the_suspended_one_of_this_machine_is_named() -> None:
+    with suspended_run("home", "patrol") as program:
+        this_machine.announce(meeting(process=program.pid))
+        suspended = rf"process {program.pid} of this machine, the site 'a' of ecology 'home', is suspended; `kill -CONT"
+        with pytest.raises(NetworkError, match=suspended), rendezvous.suspended_sites_named([meeting().endpoint]):
+            raise NetworkError("nothing answers")
+        with pytest.raises(NetworkError, match="nothing"), rendezvous.suspended_sites_named(["tcp/127.0.0.1:1"]):
+            raise NetworkError("nothing answers")
 
 
 def test_where_no_site_runs_it_is_said_what_to_start() -> None:

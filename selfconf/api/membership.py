@@ -9,6 +9,7 @@ from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.discovery import Beliefs
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
+from selfconf.rendezvous import suspended_sites_named
 
 MEMBERS = ("conf", "read", "site")
 """The kinds of certificates that a program of a person may show: what it does is more or less, and the sites judge."""
@@ -25,7 +26,8 @@ class Membership:
 
     def connect(self) -> ZenohBus:
         """A bus that is connected to a hub which lets this program in. Raises NetworkError."""
-        bus = client(list(self.endpoints), credentials=self.credentials)
+        with suspended_sites_named(self.endpoints):
+            bus = client(list(self.endpoints), credentials=self.credentials)
         if self.credentials is not None:
             from selfconf.access import CertificateWatch, introduce  # what it needs is an extra
 

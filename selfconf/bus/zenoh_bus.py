@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import atexit
 import logging
+import socket
 import time
 import weakref
 from collections.abc import Callable, Sequence
@@ -38,6 +39,7 @@ from selfconf.bus.zenoh_relay import Hub, Relay
 from selfconf.bus.zenoh_roll_call import RollCalls
 from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
 from selfconf.errors import NetworkError
+from selfconf.protocol.endpoints import endpoint_host, endpoint_port
 
 log = logging.getLogger(__name__)
 
@@ -62,6 +64,8 @@ _QUALITY: dict[Urgency, dict[str, Any]] = {
 }
 
 
+LISTENS = 0.5
+"""Seconds that the host of an endpoint may take to take a connection."""
 _LAST_WORDS = 1.0
 """Seconds that a thread that reads a channel may take to end when its session has been closed."""
 _OPEN: weakref.WeakSet[ZenohBus] = weakref.WeakSet()
@@ -118,9 +122,19 @@ def client(
             if credentials is not None:
                 _raise_if_refused(connect, credentials)
             elif time.monotonic() - began > HANDSHAKE_MS / 1000:
-                where = ", ".join(connect)
+                where = ", ".join(filter(_listens, connect)) or ", ".join(connect)
                 raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
     return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security))
+
+
+def _listens(endpoint: str) -> bool:
+    """Whether a connection to an endpoint such as `tcp/127.0.0.1:7447` is taken, whatever comes after that."""
+    port = endpoint_port(endpoint)
+    try:
+        socket.create_connection((endpoint_host(endpoint), port or 0), LISTENS).close()
+    except (OSError, ValueError, OverflowError):
+        return False
+    return True
 
 
 def _raise_if_refused(connect: Sequence[str], credentials: Credentials) -> None:

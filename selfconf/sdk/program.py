@@ -80,7 +80,8 @@ def open_host(
     components = [] if rendezvous.keys_folder(keys) is None else [profile_of(kind).component for kind in kinds]
     shown = rendezvous.component_credentials(keys, components)
     name, endpoints = rendezvous.find(ecology, connect, shown)
-    bus = client(endpoints, shared_memory=True, credentials=shown)
+    with rendezvous.suspended_sites_named(endpoints):
+        bus = client(endpoints, shared_memory=True, credentials=shown)
     if shown is not None:
         from selfconf.access import CertificateWatch, introduce  # what it needs is an extra
 
