@@ -117,8 +117,8 @@ def _appeared(state: State, event: Appeared) -> Reaction:
     owed = event.lives.keys() & state.owed.keys() - set(state.unreleased)  # those come to rest in their turn
     effects = [ReleaseFrom(component, state.owed[component]) for component in sorted(owed)]
     known = replace(state, lost=lost, news=True)
-    if state.phase is Phase.REFUSED:
-        return then(effects, phases.discover(known))
+    if state.phase is Phase.REFUSED:  # what was kept for it when it was refused is kept no more
+        return then(effects, phases.discover(replace(known, offered=frozenset())))
     return known, tuple(effects)
 
 

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from selfconf.configurator.deploying import Reaction, then
 from selfconf.configurator.effects import (
     Compose,
+    Decline,
     Discover,
     Effect,
     Finish,
@@ -75,7 +76,7 @@ def dismantle(state: State, afterwards: Phase) -> Reaction:
         pending=frozenset(),
         unreleased=tuple(owed),
         queued=state.queued - owed.keys(),
-        offered=frozenset(),
+        offered=state.offered - owed.keys(),
         fallback=None,
         owed=owed,
         watched=frozenset(),
@@ -119,10 +120,16 @@ def _wait_no_more(state: State) -> Reaction:
 
 
 def queue(state: State) -> Reaction:
-    """Ask for each component that another task holds, so that it tells when it is free."""
-    queued = state.queued.union(component for component, loss in state.lost.items() if loss.busy)
-    effects = tuple(QueueFor(component, state.epoch) for component in sorted(queued - state.owed.keys()))
-    return replace(state, queued=queued), effects
+    """Ask for each component that another task holds, so that it tells when it is free, and for no other any more.
+
+    A task of lower priority may hold another one by now, and would have to yield it for nothing. But what is kept for
+    this task, or was a moment ago, is not given away.
+    """
+    busy = frozenset(component for component, loss in state.lost.items() if loss.busy)
+    left = state.queued - busy - state.offered
+    effects: list[Effect] = [QueueFor(component, state.epoch) for component in sorted(busy - state.owed.keys())]
+    effects += [Decline(component, state.epoch) for component in sorted(left - state.owed.keys())]
+    return replace(state, queued=state.queued - left | busy), tuple(effects)
 
 
 def stand_down(state: State) -> Reaction:

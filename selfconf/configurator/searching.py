@@ -36,7 +36,7 @@ def heed_discovery(state: State, event: Discovered) -> Reaction:
     if state.phase is not Phase.DISCOVERING and not state.improving:
         return state, ()
     taken, sharers = (
-        {c: one for c, one in holders.items() if one.priority >= state.priority and c not in state.free}
+        {c: one for c, one in holders.items() if one.priority >= state.priority and c not in state.free | state.offered}
         for holders in (event.holders, event.sharers)
     )
     taken = {component: holder for component, holder in taken.items() if component not in state.held}

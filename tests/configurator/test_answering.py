@@ -32,10 +32,12 @@ from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
     CONTROL,
     DRIVE,
+    LOWER,
     ODOMETRY,
     OTHERS,
     PATIENT,
     REFUSAL,
+    RESERVING,
     TASK,
     TRACKER,
     History,
@@ -131,6 +133,30 @@ def test_a_component_that_says_that_it_is_free_is_believed_more_than_its_last_ho
     history.composed(REFUSAL)
     history.hear(Appeared({ODOMETRY: "1"}))
     assert history.hear(Discovered({TRACKER: OTHERS}))[-1] == Compose(4, frozenset({TRACKER}), None)
+
+
+def test_what_is_kept_for_a_task_stays_free_for_it_while_it_waits_for_the_rest() -> None:
+    """A task that means to have both, and has reserved neither yet, says that it holds them."""
+    meant = {TRACKER: RESERVING, CONTROL: RESERVING}
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered(meant))
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    assert history.hear(Freed(TRACKER), Discovered(meant)) == [Compose(3, frozenset({CONTROL}), None)]
+    history.composed(REFUSAL)
+    again = history.composed(navigation())
+    assert again == [QueueFor(CONTROL, history.state.epoch)], "the other is neither asked for again nor given away"
+    assert history.hear(Freed(CONTROL), Discovered(meant)) == [Compose(5, frozenset(), None)]
+
+
+def test_a_task_waits_no_more_for_what_is_not_in_its_way() -> None:
+    """A task of lower priority that holds it by now would yield it to one that cannot run."""
+    history = waiting()
+    history.hear(Appeared({ODOMETRY: "1"}), Discovered({TRACKER: LOWER, CONTROL: OTHERS}))
+    history.composed(REFUSAL)
+    epoch = history.state.epoch + 1
+    assert history.composed(navigation()) == [QueueFor(CONTROL, epoch), Decline(TRACKER, epoch)]
+    assert history.state.queued == {CONTROL}
 
 
 def test_a_patient_task_that_has_found_something_else_waits_no_more() -> None:

@@ -9,6 +9,7 @@ from statistics import median
 import pytest
 
 from selfconf.configurator.state import Phase
+from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.configuration import Configuration
 from tests.effort import NIGHTLY, examples
 from tests.faults.contention import SENSORS, Contention, Settled
@@ -61,6 +62,17 @@ def test_of_tasks_that_begin_at_once_some_run_and_none_acts_on_a_part(
         if patient:  # a hasty task that is refused does not come back when what it lacked is free again
             assert not deprived(contention), said
     assert median(one.seconds for one in settled) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("seed", "priorities"),
+    [
+        pytest.param(34, True, id="what a task does not wait for any more is not taken from another for it"),
+        pytest.param(157, True, id="what is kept for a task stays free for it until it has the rest"),
+    ],
+)
+def test_nobody_waits_for_the_time_at_which_tasks_look_again(seed: int, priorities: bool, folder: Path) -> None:
+    assert begun(seed, folder, True, priorities).settle().seconds < TRY_AGAIN / 4
 
 
 @pytest.mark.slow
