@@ -17,8 +17,8 @@ from tests.faults.script import Action, Recipe, Script, TaskPlan
 from tests.faults.test_histories import folder
 
 __all__ = ["folder"]
-HARSH = 4_000 if NIGHTLY else 40
-BATCH = 40
+HARSH, BATCH = (4_000, 200) if NIGHTLY else (40, 40)
+"""How many histories there are, and of how many together each kind happens: one that comes to nothing is none."""
 
 
 def recipe(seed: int) -> Recipe:
