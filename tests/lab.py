@@ -23,6 +23,7 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import RunEvent
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.tasks import TaskDocument, bindings, templates
@@ -40,6 +41,8 @@ PREFIXES = """@prefix sc:  <https://w3id.org/selfconf#> .
 @prefix :    <https://example.org/peis-home#> .
 """
 
+BOUND = (("robot", ":Astrid"), ("goal", "(AT BEDROOM)"))
+"""The parameters of the paper's task."""
 NAVIGATE = (
     PREFIXES
     + """
@@ -188,6 +191,11 @@ def task_of(template: str, bound: tuple[tuple[str, str], ...]) -> TaskDocument:
     return bindings.complete(bindings.bind(templates.read_task(turtle.parse(template, "template.ttl")), bound))
 
 
+def request_for(record: TaskRecord, template: str = NAVIGATE, bound: tuple[tuple[str, str], ...] = BOUND) -> RunRequest:
+    """The request by which a site runs a task that it keeps; by default that is the paper's."""
+    return replace(RunRequest.of(Composer(task_of(template, bound))), patient=True, priority=record.priority)
+
+
 class Lab:
     """Two hosts and a configurator in simulated time; every component is a node of its own."""
 
@@ -258,7 +266,7 @@ class Lab:
     def agent(
         self,
         template: str = NAVIGATE,
-        bound: tuple[tuple[str, str], ...] = (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")),
+        bound: tuple[tuple[str, str], ...] = BOUND,
         policy: Policy = Policy.REPAIR,
         patient: bool = False,
         clock: float = 0.0,

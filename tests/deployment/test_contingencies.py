@@ -21,7 +21,7 @@ from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from tests.deployment.tasks import DRIVEN, SPARE, TASK
-from tests.lab import ADVERTISEMENTS, NAVIGATE, Lab, iri, task_of
+from tests.lab import ADVERTISEMENTS, BOUND, NAVIGATE, Lab, iri, task_of
 
 Question = tuple[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"]
 
@@ -104,7 +104,7 @@ def test_two_losses_before_the_repair_are_searched_for(lab: Lab) -> None:
 
 
 def test_nothing_is_known_about_an_ecology_that_has_changed(lab: Lab) -> None:
-    task = task_of(NAVIGATE, (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
+    task = task_of(NAVIGATE, BOUND)
     agent = lab.agent()
     assert lab.running(agent)
     running = agent.state.target
@@ -128,7 +128,7 @@ def test_nothing_is_known_about_an_ecology_that_has_changed(lab: Lab) -> None:
 
 def test_what_is_known_is_what_the_search_answers(lab: Lab) -> None:
     """Asked at random, of ecologies at random."""
-    task = task_of(NAVIGATE, (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
+    task = task_of(NAVIGATE, BOUND)
     agent = lab.agent()
     assert lab.running(agent)
     everything = {one: f.advertisement for one, f in agent.ecology.discovery.found.items()}

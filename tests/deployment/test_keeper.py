@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,6 @@ import pytest
 from selfconf.bus.memory import Faults
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Bus, Urgency
-from selfconf.composition import Composer
 from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
@@ -22,19 +22,13 @@ from selfconf.deployment.keeper import keeper_of
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
-from selfconf.rdf import turtle
-from selfconf.rdf.tasks import bind, complete, read_task
 from tests.deployment.tasks import DRIVEN, SPARE, TASK
 from tests.faults.ecologies import COMPOSED
-from tests.lab import NAVIGATE, Lab, iri
+from tests.lab import Lab, iri, request_for
 
 RECORD = TaskRecord("patrol~1", 1, priority=1, beginning=5.0)
-
-
-def request_for(record: TaskRecord) -> RunRequest:
-    """The paper's task."""
-    task = complete(bind(read_task(turtle.parse(NAVIGATE, "t")), (("robot", ":Astrid"), ("goal", "(AT BEDROOM)"))))
-    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
+DRIVES = partial(request_for, template=DRIVEN, bound=())
+"""The request for a task for which either of two components will do."""
 
 
 class Keepers:
@@ -236,12 +230,6 @@ def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
     return first, keeper_of(task, {*sites} - {first})
 
 
-def composed(record: TaskRecord) -> RunRequest:
-    """A task that needs a composite."""
-    task = complete(read_task(turtle.parse(COMPOSED.whole, "t")))
-    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
-
-
 def following(folder: Path, seed: int) -> tuple[Keepers, str, str, str]:
     """A task that needs a composite and runs, its name, the site that runs it, and the next one."""
     lab = Lab(folder, seed, Faults(most_delay=0.1), COMPOSED.advertisements)
@@ -249,7 +237,7 @@ def following(folder: Path, seed: int) -> tuple[Keepers, str, str, str]:
         lab.site(site, *names)
     for name in COMPOSED.processes:
         lab.component(name)
-    keepers = Keepers(lab, folder / "disks", composed)
+    keepers = Keepers(lab, folder / "disks", partial(request_for, template=COMPOSED.whole, bound=()))
     sites = (*COMPOSED.sites, *"abc")
     task = next(
         one
@@ -300,12 +288,6 @@ def test_nothing_stops_when_the_first_site_is_back_while_the_next_one_takes_over
     assert (keepers.running(), calls) == ([first], [])
 
 
-def drives(record: TaskRecord) -> RunRequest:
-    """A task for which either of two components will do."""
-    task = complete(read_task(turtle.parse(DRIVEN, "t")))
-    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
-
-
 @pytest.mark.parametrize("keepers_are", ["one", "two"])
 @pytest.mark.parametrize("priority", [0, 2])
 @pytest.mark.parametrize("seed", range(3))
@@ -316,7 +298,7 @@ def test_a_task_that_has_lost_something_takes_nothing_from_one_that_changes_hand
     lab = Lab(tmp_path, seed, Faults(most_delay=0.1), SPARE)
     lab.site("shared", *SPARE)
     lab.component("right")
-    keepers = Keepers(lab, tmp_path / "disks", drives)
+    keepers = Keepers(lab, tmp_path / "disks", DRIVES)
     named = {task: keepers_in_turn(task, "shared", *"abc") for task in (f"task~{number}" for number in range(99))}
     (first, (ended, next_of_first)), *rest = ((t, sites) for t, sites in named.items() if "shared" not in sites)
     second = next(
@@ -348,7 +330,7 @@ def test_the_time_to_go_on_with_tasks_does_not_grow_with_their_square(
     lab.site("shared", *many)
     for name in many:
         lab.component(name)
-    keepers = Keepers(lab, tmp_path / "disks", drives)
+    keepers = Keepers(lab, tmp_path / "disks", DRIVES)
     for number, task in enumerate(named):
         keepers.hand_over(TaskRecord(task, 1, beginning=float(number)))
     assert lab.until(lambda: lab.active() == {*many}, 60.0)

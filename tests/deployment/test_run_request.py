@@ -6,7 +6,7 @@ from selfconf.composition import Composer
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.model.refusal import Undecided
 from selfconf.protocol.keys import task_identity
-from tests.lab import NAVIGATE, Lab, task_of
+from tests.lab import BOUND, NAVIGATE, Lab, task_of
 
 
 def test_the_name_of_a_task_is_the_part_that_its_user_knows() -> None:
@@ -26,7 +26,7 @@ def test_a_task_begins_when_its_configurator_does(lab: Lab) -> None:
 
 
 def test_a_request_asks_the_composer_of_its_task_everything_but_what_is_given_in_its_place() -> None:
-    composer = Composer(task_of(NAVIGATE, (("robot", ":Astrid"), ("goal", "(AT BEDROOM)"))))
+    composer = Composer(task_of(NAVIGATE, BOUND))
     request, other = RunRequest.of(composer), RunRequest.of(composer, lambda found, lost, running: Undecided())
     assert request.task is composer.task.task
     for asked in ("compose", "not_judged", "usable", "standby", "passed_over"):

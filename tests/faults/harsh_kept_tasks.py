@@ -20,7 +20,8 @@ from selfconf.bus.memory_bus import MemoryBus
 from selfconf.deployment import Keeper, TaskFolder
 from selfconf.protocol.messages import TaskRecord
 from tests.faults.harsh import AWHILE, STALLS, STEPS
-from tests.faults.kept_tasks import BEGAN, CLOCKS, FAULTY, KEEPING, SETTLED, KeptHistory, main, request_for
+from tests.faults.kept_tasks import BEGAN, CLOCKS, FAULTY, KEEPING, SETTLED, KeptHistory, main
+from tests.lab import request_for
 
 KINDS = (
     "fill_disk",

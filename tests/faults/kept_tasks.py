@@ -15,7 +15,6 @@ import argparse
 import random
 import tempfile
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 from operator import attrgetter
 from pathlib import Path
@@ -23,14 +22,13 @@ from pathlib import Path
 from selfconf.bus.memory import Faults
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.bus.port import Replies
-from selfconf.composition import Composer
 from selfconf.configurator.state import Phase
-from selfconf.deployment import Keeper, RunRequest, TaskFolder
+from selfconf.deployment import Keeper, TaskFolder
 from selfconf.deployment.keeper import keeper_of
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.sdk.runtime.supervision import GRACE
-from tests.lab import NAVIGATE, Lab, task_of
+from tests.lab import Lab, request_for
 
 KEEPING = ("a", "b", "c")
 """The sites that suffer; the two of the lab, which advertise the components, keep tasks as well, and are spared."""
@@ -48,12 +46,6 @@ TWO_RUN = 12.0
 """Seconds for which two sites may believe that they run one task: no component acts for both meanwhile."""
 
 _OF_RUNTIME = attrgetter("activation", "code.turn", "code._acting_turn")  # by the turns it is decided whether it acts
-
-
-def request_for(record: TaskRecord) -> RunRequest:
-    """The paper's task, with the priority of the record."""
-    task = task_of(NAVIGATE, (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
-    return replace(RunRequest.of(Composer(task)), patient=True, priority=record.priority)
 
 
 class KeptHistory:

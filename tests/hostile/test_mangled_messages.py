@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from selfconf.bus.port import Replies, Request, Urgency
-from selfconf.composition import Composer
+from selfconf.composition.composer import Composer
 from selfconf.deployment import Keeper, RunRequest, TaskFolder, TaskRunner
 from selfconf.errors import PeerError
 from selfconf.model.log_line import LogLine
@@ -49,14 +49,12 @@ from selfconf.protocol.messages import (
     Wake,
     Wire,
 )
-from selfconf.rdf import turtle
-from selfconf.rdf.tasks import bind, complete, read_task
 from selfconf.sdk.payloads import ELEMENT_FORMATS, read_payload
 from selfconf.serve.watcher import EcologyWatcher
 from tests.effort import examples
 from tests.hostile.bounded import bounded
 from tests.hostile.mangling import in_time, mangled, mangled_either, mangled_json, some_mangled
-from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, iri
+from tests.lab import ADVERTISEMENTS, BOUND, NAVIGATE, PREFIXES, Lab, iri, task_of
 
 WHEELS, CONTROL = iri("wheels"), iri("thinking-cap")
 SUPERVISOR = "selfconf/lab/conf/stranger/live/1"
@@ -197,11 +195,8 @@ class Stranger:
 
 
 def request_for(record: TaskRecord) -> RunRequest:
-    """The task of a record, as a site reads it."""
-    task = complete(
-        bind(read_task(turtle.parse(record.document, "t")), (("robot", ":Astrid"), ("goal", "(AT BEDROOM)")))
-    )
-    return replace(RunRequest.of(Composer(task)), patient=True)
+    """The request for the task that a record says, as a site reads it."""
+    return replace(RunRequest.of(Composer(task_of(record.document, BOUND))), patient=True)
 
 
 def history(folder: Path, random: Random, each: int) -> None:
