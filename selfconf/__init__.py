@@ -19,8 +19,8 @@ tried without a network by `selfconf.testing`.
 from selfconf.late_names import TYPE_CHECKING, late_names
 
 if TYPE_CHECKING:
-    from selfconf.api.answer import configure
     from selfconf.api.ecology import Ecology
+    from selfconf.api.inquiry import configure
     from selfconf.api.living import LivingEcology, join
     from selfconf.api.local_site import sites
     from selfconf.api.partition_table import partition
@@ -54,7 +54,7 @@ __all__ = [
 ]
 
 _HOME = {
-    "configure": "api.answer",
+    "configure": "api.inquiry",
     "Ecology": "api.ecology",
     "LivingEcology": "api.living",
     "join": "api.living",

@@ -8,8 +8,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from selfconf.api.answer import Method, refusal_with_places
 from selfconf.api.arguments import checked_priority, checked_text, checked_upgrade, option
+from selfconf.api.inquiry import refusal_with_places
+from selfconf.api.method import Method
 from selfconf.api.run_outcomes import composing, searched_ecology
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer

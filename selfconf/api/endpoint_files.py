@@ -9,8 +9,8 @@ from ipaddress import ip_address
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from selfconf.api.answer import Method
 from selfconf.api.ecology import EndpointEcology
+from selfconf.api.method import Method
 from selfconf.api.task import TaskSpecification
 from selfconf.errors import AuthorError
 from selfconf.model.left_out import LeftOut

@@ -303,7 +303,7 @@ class LivingEcology(Ecology):
         what_if: bool = False,
     ) -> Answer | Refusal | Undecided:
         """What `selfconf.configure` answers for this ecology, as it is now. Changes nothing."""
-        from selfconf.api.answer import configure  # here and below: who only looks on needs no search and no machine
+        from selfconf.api.inquiry import configure  # here and below: who only looks on needs no search and no machine
 
         return configure(
             task,
@@ -339,8 +339,8 @@ class LivingEcology(Ecology):
         `upgrade` are the seconds, zero or more, after which a component that the strategy would rather have is changed
         to; without it, none is.
         """
-        from selfconf.api.answer import Method
         from selfconf.api.detached import TaskOptions
+        from selfconf.api.method import Method
         from selfconf.api.run import Run
 
         self._synchronous.check()
@@ -367,8 +367,8 @@ class LivingEcology(Ecology):
         The arguments are those of `run`; the task waits where there is no configuration. Raises NetworkError if no
         site keeps it, or if a task of that name lives.
         """
-        from selfconf.api.answer import Method
         from selfconf.api.detached import TaskOptions, task_record
+        from selfconf.api.method import Method
         from selfconf.api.task import completed
 
         self._membership.check_may_run()

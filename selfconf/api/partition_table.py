@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 
-from selfconf.api.answer import Inquiry, Method
 from selfconf.api.arguments import Paths
 from selfconf.api.ecology import Ecology
+from selfconf.api.inquiry import Inquiry
+from selfconf.api.method import Method
 from selfconf.api.tables import Tabular
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import ranked_exclusions

@@ -10,10 +10,12 @@ from types import TracebackType
 from typing import NamedTuple
 
 from selfconf import this_machine
-from selfconf.api.answer import Answer, Method, refusal_with_places
+from selfconf.api.answer import Answer
 from selfconf.api.detached import AS_USUAL, TaskOptions, task_record
+from selfconf.api.inquiry import refusal_with_places
 from selfconf.api.living_tasks import LivingTasks
 from selfconf.api.membership import Membership
+from selfconf.api.method import Method
 from selfconf.api.places import Places
 from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus

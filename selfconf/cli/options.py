@@ -16,9 +16,9 @@ from selfconf.model.seconds import DELAY_IN_WORDS, LIMIT_IN_WORDS, is_delay, is_
 from selfconf.project import REASONING, STRATEGIES
 
 if TYPE_CHECKING:
-    from selfconf.api.answer import Method
     from selfconf.api.ecology import Ecology
     from selfconf.api.living import LivingEcology
+    from selfconf.api.method import Method
     from selfconf.api.task import TaskSpecification, Value
     from selfconf.model.left_out import LeftOut
     from selfconf.project import Project
@@ -209,7 +209,7 @@ def _project_bindings(project: Project, task: TaskSpecification, typed: Mapping[
 
 def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
     """How the arguments ask a task to be composed."""
-    from selfconf.api.answer import Method
+    from selfconf.api.method import Method
 
     complain_of_strategy(given, task)
     steps, seconds = getattr(given, "steps", None), getattr(given, "seconds", None)

@@ -30,8 +30,8 @@ from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, NetworkError, reason
 
 if TYPE_CHECKING:
-    from selfconf.api.answer import Method
     from selfconf.api.local_site import SiteProcess
+    from selfconf.api.method import Method
     from selfconf.api.run import Run
     from selfconf.api.task import TaskSpecification
     from selfconf.model.term import IRI

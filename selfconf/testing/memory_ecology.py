@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from selfconf import files, library
-from selfconf.api.answer import Answer, Method, refusal_with_places
+from selfconf.api.answer import Answer
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
+from selfconf.api.inquiry import refusal_with_places
+from selfconf.api.method import Method
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology

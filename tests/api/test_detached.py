@@ -12,9 +12,9 @@ import pyoxigraph as ox
 import pytest
 
 import selfconf as sc
-from selfconf.api.answer import Method
 from selfconf.api.detached import TaskOptions, request_of, task_record
 from selfconf.api.explaining import explained_refusal
+from selfconf.api.method import Method
 from selfconf.api.role_fits import role_fits
 from selfconf.errors import AuthorError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration

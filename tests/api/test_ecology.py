@@ -18,6 +18,7 @@ from selfconf.errors import NetworkError, ProgrammerError, QueryError
 from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
 from selfconf.query import Question
 from selfconf.rdf.vocabulary import RDF, XSD
+from tests.api.navigation import EVERYTHING
 from tests.cli.endpoints import Scripted, http
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
@@ -137,9 +138,6 @@ def test_more_rows_than_asked_for_are_cut_and_more_than_a_screen_are_counted(hom
 def test_what_is_no_query_is_refused_in_a_sentence(query: str, home: sc.Ecology) -> None:
     with pytest.raises(QueryError):
         home.query(query)
-
-
-EVERYTHING = PREFIXES + "\n".join(ADVERTISEMENTS.values())
 
 
 @pytest.fixture(scope="module")

@@ -8,9 +8,9 @@ import pytest
 
 import selfconf as sc
 from selfconf import template
-from selfconf.api.answer import Method
 from selfconf.api.ecology import EndpointEcology
 from selfconf.api.endpoint_files import endpoint_files
+from selfconf.api.method import Method
 from selfconf.errors import AuthorError, BindingError, NetworkError
 from tests.cli.endpoints import oxigraph
 from tests.lab import NAVIGATE

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import selfconf as sc
-from selfconf.api.answer import Method
 from selfconf.api.detached import task_record
+from selfconf.api.method import Method
 from selfconf.api.role_fits import role_fits
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord

@@ -12,8 +12,8 @@ import pytest
 
 import selfconf as sc
 from selfconf import read, template
-from selfconf.api.answer import Method
 from selfconf.api.membership import Membership
+from selfconf.api.method import Method
 from selfconf.api.run import Run, WorkQueue
 from selfconf.composition import Composer, TimeLimit
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
