@@ -102,8 +102,11 @@ class Keeper:
             record = decode(request.payload, TaskRecord)
             self._learn(record)
             request.reply(self.keys.keep(self.site), encode(self.folder.records[record.task]))
-        except (PeerError, OSError) as error:
+        except PeerError as error:
             request.refuse(f"site {self.site} cannot keep the task: {error}")
+        except OSError as error:
+            why = f"site {self.site} cannot keep the task on its disk: {error.strerror}"
+            request.refuse(f"{why}; mend that, or give the site another folder for its tasks")
         finally:
             request.finish()
 

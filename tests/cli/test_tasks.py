@@ -136,7 +136,9 @@ def test_a_detached_task_that_no_site_can_keep_does_not_run(house: Home, capsys:
     (house.folder / "state").touch()
     house.site("kitchen", CLOCK, options=("--state", "state"))
     where = house.arguments()
-    assert run(capsys, "run", TEMPLATE, "--detach", *where).is_one_sentence("site kitchen cannot keep the task")
+    assert run(capsys, "run", TEMPLATE, "--detach", *where).is_one_sentence(
+        "site kitchen cannot keep the task on its disk: Not a directory; mend that"
+    )
     # A site looks every second what it is to run.
     assert not house.until(lambda: "tell-the-time" in run(capsys, "tasks", *where).out, 2.5)
 
