@@ -128,17 +128,23 @@ class Problem:
 
     def feeding(self, role: int, name: str | None) -> Sources:
         """Return what may feed an input of a role, by its name; None stands for one that no interaction names."""
-        known = self._feeding.get(role)
-        if known is None:
-            known = self._feeding[role] = self._feeding_by_name(role)
+        known = self.feeding_by_name(role)
         return known[name] if name in known else known[None]
 
-    def _feeding_by_name(self, role: int) -> dict[str | None, Sources]:
+    def feeding_by_name(self, role: int) -> Mapping[str | None, Sources]:
         """Return what may feed the inputs of a role by their names, as far as interactions name them, and by None."""
-        found: dict[str | None, dict[Feeder, None]] = {
-            name: {} for name in (None, *(w for _, _, w in self.links[role]))
-        }
-        for source, output, wanted in self.links[role]:
+        known = self._feeding.get(role)
+        if known is None:
+            known = self._feeding[role] = self._named_sources(role)
+        return known
+
+    def _named_sources(self, role: int) -> dict[str | None, Sources]:
+        links = self.links[role]
+        names = [link.input for link in links]
+        if not any(names):
+            return {None: tuple(dict.fromkeys([Feeder(source, output) for source, output, _ in links]))}
+        found: dict[str | None, dict[Feeder, None]] = {name: {} for name in (None, *names)}
+        for source, output, wanted in links:
             feeder = Feeder(source, output, output is not None and wanted is not None)
             for some in found.values() if wanted is None else (found[wanted],):
                 some[feeder] = None

@@ -118,24 +118,20 @@ class Wiring:
         self._untyped: list[dict[tuple[bool, str], list[int]]] = [{} for _ in problem.roles]
         """For each role the needs that an output of this name feeds without a type, or (True) whatever its type."""
 
-    def needed(self, role: int, inputs: Iterable[tuple[Input, ...]]) -> list[tuple[int, ...]]:
+    def needed(self, role: int, inputs: Sequence[tuple[Input, ...]]) -> list[tuple[int, ...]]:
         """Return for the inputs of each class of a role the numbers of the needs that they are."""
-        named = any(link.input for link in self.problem.links[role])
+        if not any(inputs):
+            return [()] * len(inputs)
+        by_name = self._numberings(role)
+        named, unnamed = len(by_name) > 1, by_name[None]
         spared, scopes, ports = self.problem.spared[role], self.needs.scopes, self.needs.ports
-        alike: dict[Sources, _Numbering] = {}
-        by_name: dict[str | None, _Numbering | None] = {}
         found: list[tuple[int, ...]] = []
         for some in inputs:
             numbers: list[int] = []
             for port in some:
                 name, signals, _, optional, condition = port
-                if optional:
-                    continue
-                called = name if named else None
-                if called not in by_name:
-                    by_name[called] = self._numbering(role, called, named, alike)
-                numbering = by_name[called]
-                if numbering is None or (spared and (signals, condition) in spared):
+                numbering = by_name.get(name, unnamed) if named else unnamed
+                if optional or numbering is None or (spared and (signals, condition) in spared):
                     continue
                 if condition is None and len(signals) == 1:
                     number = numbering.plain.setdefault(signals[0], len(ports))
@@ -146,22 +142,31 @@ class Wiring:
                     ports.append(port)
                 numbers.append(number)
             found.append(tuple(numbers) if len(set(numbers)) == len(numbers) else tuple(dict.fromkeys(numbers)))
-        self._note_particular(role, alike.values())
+        self._note_particular(role, dict.fromkeys(one for one in by_name.values() if one is not None))
         return found
 
-    def _numbering(
-        self, role: int, called: str | None, named: bool, alike: dict[Sources, _Numbering]
-    ) -> _Numbering | None:
-        """Return where inputs of a name are numbered, with all that the same links feed; None if they are no needs."""
-        sources = self.problem.feeding(role, called)
-        if self._roles < len(self.problem.roles) and any(source.role >= self._roles for source in sources):
+    def _numberings(self, role: int) -> dict[str | None, _Numbering | None]:
+        """Return where inputs are numbered, by their names, and by None: one for all that the same links feed.
+
+        It is None where a role that does not count may feed them: such inputs are no needs.
+        """
+        by_name = self.problem.feeding_by_name(role)
+        alike: dict[Sources, _Numbering | None] = {}
+        found: dict[str | None, _Numbering | None] = {}
+        for name, sources in by_name.items():
+            if sources in alike:
+                found[name] = alike[sources]
+            else:
+                found[name] = alike[sources] = self._numbering(NeedScope(role, sources, len(by_name) > 1))
+        return found
+
+    def _numbering(self, scope: NeedScope) -> _Numbering | None:
+        if self._roles < len(self.problem.roles) and any(source.role >= self._roles for source in scope.sources):
             return None
-        found = alike.get(sources)
-        if found is None:
-            found = alike[sources] = _Numbering(NeedScope(role, sources, named))
-            for source, output, _ in sources:
-                if output is None:
-                    self._feeds[source].append(found)
+        found = _Numbering(scope)
+        for source, output, _ in scope.sources:
+            if output is None:
+                self._feeds[source].append(found)
         return found
 
     def _note_particular(self, role: int, numberings: Iterable[_Numbering]) -> None:
@@ -188,20 +193,14 @@ class Wiring:
                 for signal in self.needs.ports[number].signals:
                     self._fed_by_name[source].setdefault((signal, output), []).append(number)
 
-    def supported(self, role: int, outputs: Iterable[tuple[Output, ...]]) -> list[tuple[int, ...]]:
+    def supported(self, role: int, outputs: Sequence[tuple[Output, ...]]) -> list[tuple[int, ...]]:
         """Return for the outputs of each class of a role the needs that they support."""
         by_signal = not (self._fed_by_name[role] or self._untyped[role] or self._conditions)
-        fits = self._of_signals if by_signal else self._of_outputs
         fed = self._fed(role)
-        found: list[tuple[int, ...]] = []
-        for some in outputs:
-            numbers = fits(role, some, fed)
-            if len(numbers) > 1:
-                if len(set(numbers)) < len(numbers):
-                    numbers = list(dict.fromkeys(numbers))
-                numbers.sort()  # at once, as they are nearly in order; not if they came out of a set
-            found.append(tuple(numbers))
-        return found
+        if by_signal and not fed:
+            return [()] * len(outputs)
+        fits = self._of_signals(outputs, fed) if by_signal else [self._of_outputs(role, some, fed) for some in outputs]
+        return [tuple(numbers) if len(numbers) < 2 else _ascending(numbers) for numbers in fits]
 
     def _fed(self, role: int) -> dict[IRI, tuple[int, ...]]:
         """Return for each signal the needs that any output of a role feeds with it."""
@@ -218,13 +217,19 @@ class Wiring:
                     fed[signal] = (*fed.get(signal, ()), number)
         return fed
 
-    def _of_signals(self, _: int, outputs: tuple[Output, ...], fed: Mapping[IRI, tuple[int, ...]]) -> list[int]:
-        """Return the needs that outputs support, where their signals alone decide that."""
+    def _of_signals(self, outputs: Sequence[tuple[Output, ...]], fed: Mapping[IRI, tuple[int, ...]]) -> list[list[int]]:
+        """Return the needs that the outputs of each class support, where their signals alone decide that."""
         # One loop without a call: an ecology may have a million outputs.
         if self.problem.hierarchy.flat:
-            return [need for output in outputs for signal in output[1] if signal in fed for need in fed[signal]]
+            return [
+                [need for output in some for signal in output[1] if signal in fed for need in fed[signal]]
+                for some in outputs
+            ]
         served = self.problem.hierarchy.served
-        return [need for output in outputs for signal in served(output[1]) for need in fed.get(signal, ())]
+        return [
+            [need for output in some for signal in served(output[1]) for need in fed.get(signal, ())]
+            for some in outputs
+        ]
 
     def _of_outputs(self, role: int, outputs: tuple[Output, ...], fed: Mapping[IRI, tuple[int, ...]]) -> list[int]:
         """Return the needs that outputs support, by their signals, their names and what conditions ask of them."""
@@ -248,3 +253,11 @@ class Wiring:
         """Return those of some needs whose conditions an output meets."""
         conditions = self._conditions
         return [one for one in needs if one not in conditions or conditions[one].met_by(output)]
+
+
+def _ascending(numbers: list[int]) -> tuple[int, ...]:
+    """Return numbers without repetitions, in ascending order."""
+    if len(set(numbers)) < len(numbers):
+        numbers = list(dict.fromkeys(numbers))
+    numbers.sort()  # at once, as they are nearly in order; not if they came out of a set
+    return tuple(numbers)
