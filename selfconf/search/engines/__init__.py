@@ -7,9 +7,9 @@
   no matching; a `MaintainedMatching` follows a depth-first search.
 * `value_cases` are the cases of a problem by the values of free parameters.
 * `probed` removes options that would leave other roles too few components.
-* `counted_needs` are needs that every solution has to supply by a slot each; `supplied` removes options that leave some
-  of them unsupplied, or says which of them have too few slots (an `Undersupply`), and `limits` says how many slots
-  may be spent on options that supply none.
+* `counted_needs` are needs that every solution has to supply by a slot each (`CountedNeeds`); `supplied` removes
+  options that leave some of them unsupplied, or says which of them have too few slots (an `Undersupply`), and `limits`
+  says how many slots may be spent on options that supply none.
 * `exclusive_groups` are groups of options of which at most one can play, and what counting them proves.
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
   `least_by_clauses` find any or the least solution by several of them, `least_of_clauses` the least one of the clauses
@@ -27,7 +27,7 @@ from selfconf.search.engines.hitting_sets import smallest_core
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses, least_of_clauses
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
-from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
+from selfconf.search.engines.need_counting import CountedNeeds, Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.probing import probed
 from selfconf.search.engines.reduced_search import ReducedSearch, first_solution
 
@@ -35,6 +35,7 @@ __all__ = [
     "SLOT_HEADROOM",
     "CandidateSearch",
     "ClauseSolver",
+    "CountedNeeds",
     "FoundedSolver",
     "HallSet",
     "MaintainedMatching",

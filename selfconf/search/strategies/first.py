@@ -40,6 +40,7 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines import (
     SLOT_HEADROOM,
     CandidateSearch,
+    CountedNeeds,
     HallSet,
     MaintainedMatching,
     Undersupply,
@@ -47,6 +48,7 @@ from selfconf.search.engines import (
     counted_needs,
     exclusive_groups,
     first_solution,
+    hall_set,
     least_by_clauses,
     limits,
     probed,
@@ -161,23 +163,18 @@ def least_of(
     remaining = pruned(given)
     if remaining.wiped_out() is not None:
         return None
-    components = remaining.components()
-    matching: MaintainedMatching[IRI] | None = None
-    # Where no component is an option of two roles, every choice is a matching.
-    if len(set().union(*components)) < sum(map(len, components)):
-        matching = MaintainedMatching(remaining.slots, components)
-        if matching.hall_set is not None:
-            return None
+    matching = _matching(remaining)
+    if matching is not None and matching.hall_set is not None:
+        return None
     chosen = first_solution(remaining, budget, matching=matching, pace=REDUCED_PACE)
     if not isinstance(chosen, Undecided) or budget.steps == 0:
         return chosen
-    counted = counted_needs(remaining)
+    supplying = _supplying(remaining)
+    if supplying is None:
+        return None
+    remaining, counted = supplying
     if counted:
-        supplying = supplied(remaining, counted)
-        if isinstance(supplying, Undersupply):
-            return None
-        if supplying is not remaining:
-            return least_of(supplying, budget, by_clauses, probing)
+        matching = _matching(remaining)
         chosen = first_solution(remaining, budget, matching=matching, pace=REDUCED_PACE, counted=counted)
         if not isinstance(chosen, Undecided) or budget.steps == 0:
             return chosen
@@ -185,6 +182,33 @@ def least_of(
     if matching is not None:
         return _least_of_sharing(remaining, budget, by_clauses, probing)
     return _by_clauses(remaining, budget, by_clauses)
+
+
+def _supplying(given: ReducedProblem) -> tuple[ReducedProblem, list[CountedNeeds]] | None:
+    """Return a problem without options that leave counted needs unsupplied, and these needs; None if it is impossible.
+
+    What is left may make more needs unavoidable, so that they are counted until no option is removed: to search in
+    between takes longer, and finds little.
+    """
+    counted = counted_needs(given)
+    while (left := supplied(given, counted)) is not given:
+        if isinstance(left, Undersupply):
+            return None
+        given = pruned(left)
+        if given.wiped_out() is not None or hall_set(given.slots, given.components()) is not None:
+            return None
+        counted = counted_needs(given)
+    return given, counted
+
+
+def _matching(given: ReducedProblem) -> MaintainedMatching[IRI] | None:
+    """Return a matching of slots and components; None where no component is an option of two roles.
+
+    There every choice is a matching.
+    """
+    components = given.components()
+    shared = len(set[IRI]().union(*components)) < sum(map(len, components))
+    return MaintainedMatching(given.slots, components) if shared else None
 
 
 def _least_of_sharing(
@@ -211,9 +235,7 @@ def _by_clauses(given: ReducedProblem, budget: Budget, by_clauses: Engine) -> li
     """Return a solution by clause learning, or by depth-first search without an end where there is no solver."""
     if solver_available():
         return by_clauses(given, budget)
-    components = given.components()
-    shared = len(set[IRI]().union(*components)) < sum(map(len, components))
-    matching = MaintainedMatching(given.slots, components) if shared else None
+    matching = _matching(given)
     if exclusive_groups(given).impossible:
         return None
     return first_solution(given, budget, matching=matching, counted=counted_needs(given))

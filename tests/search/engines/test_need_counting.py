@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from benchmarks.search.families import profile
 from benchmarks.search.further_families import counted
 from selfconf.model.partition import Candidate
-from selfconf.model.refusal import Conflict, Refusal
+from selfconf.model.refusal import Conflict, Refusal, Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines import Undersupply, counted_needs, first_solution, supplied
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, pruned, reduced
+from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
 from selfconf.search.strategies import first, solution
 from tests.search.comparison import least_numbers, numbers
 from tests.search.oracle import World
@@ -93,8 +93,47 @@ def test_slots_to_spare_are_spent_on_the_first_components(signals: int, slots: i
     assert {f"urn:bench:s{k}" for k in range(signals)} <= issued
 
 
+def test_what_counting_makes_unavoidable_is_counted_before_another_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two slots for two signals spare none for the idle one, which alone needs no power; and none is left for that."""
+    workers = [Candidate(profile(name, ["power"], [name])) for name in ("lift", "turn")]
+    crew = [Candidate(profile("idle")), *workers]
+    plant = [Candidate(profile(name, (), [name])) for name in ("light", "heat", "power")]
+    sinks = [[Candidate(profile("task", ["lift", "turn"]))], [Candidate(profile("house", ["light", "heat"]))]]
+    problem = counted([crew, plant, *sinks], [2, 2, 1, 1], [(1, 0), (0, 2), (1, 3)])
+    searches: list[ReducedProblem] = []
+
+    def no_solution_yet(given: ReducedProblem, *_: object, **__: object) -> Undecided:
+        searches.append(given)
+        return Undecided(0)
+
+    monkeypatch.setattr(first, "first_solution", no_solution_yet)
+    assert first.least_of(reduced(problem), Budget(), lambda *_: pytest.fail("clauses were written")) is None
+    assert len(searches) == 1
+
+
 def test_needs_with_many_slots_to_spare_are_not_counted() -> None:
     assert counted_needs(pruned(reduced(hubs(4, 9, 3, 4, 1)))) == []
+
+
+@st.composite
+def small_teams(draw: st.DrawFn) -> Problem:
+    """Teams of one pool, each of which has a task of its own that wants some skills."""
+    skills = [f"skill{k}" for k in range(4)]
+    some = st.lists(st.sampled_from(skills), max_size=2, unique=True)
+    pool = [Candidate(profile(f"person{k}", (), draw(some))) for k in range(6)]
+    wanted = [draw(st.lists(st.sampled_from(skills), min_size=1, unique=True)) for _ in range(2)]
+    parts = [draw(st.lists(st.sampled_from(pool), min_size=2, unique_by=id)) for _ in wanted]
+    tasks = [[Candidate(profile(f"task{k}", needs))] for k, needs in enumerate(wanted)]
+    return counted([*parts, *tasks], [2, 2, 1, 1], [(0, 2), (1, 3)])
+
+
+@given(small_teams())
+@agreement()
+def test_counting_for_teams_of_one_pool_keeps_the_least_solution(problem: Problem) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(first, "REDUCED_PACE", 0.0)
+        found = first.least_of(reduced(problem), Budget())
+    assert (None if found is None else numbers(found)) == least_numbers(problem)
 
 
 def test_too_few_slots_are_explained_by_the_needs_that_lack_them() -> None:
