@@ -249,7 +249,7 @@ class _Descent:
         return self.settled[slot - 1] + 1 if slot and self.slots[slot] == self.slots[slot - 1] else 0
 
     def _ask(self, turn: Turn, conflicts: int | None) -> int:
-        """Ask a solver the next question, and draw the consequences; return how many were answered."""
+        """Ask a solver the next question, and draw the consequences; return how many were asked of it."""
         clauses = turn.clauses
         if not turn.modelled:
             found = clauses.ask((), self.budget, conflicts)
@@ -259,13 +259,13 @@ class _Descent:
                     self._settle_all(clauses)
             return 1
         literals = self.plays[self.slots[turn.fixed]]
-        refuted = self._reject(turn, literals, conflicts)
+        self._reject(turn, literals)
         if clauses.holds(literals[turn.rejected]):
             self._settle_along(clauses, turn.rejected)
-            return refuted
+            return 0
         if self.budget.steps == 0:
-            return refuted
-        numbers, ahead = turn.ahead(self.slots, self.plays, self.budget)
+            return 0
+        numbers = turn.ahead(self.slots, self.plays, self.budget)
         before = clauses.conflicts
         roles = self.slots[turn.fixed : turn.fixed + len(numbers)]
         assumed = [self.plays[role][number] for role, number in zip(roles, numbers, strict=True)]
@@ -277,16 +277,16 @@ class _Descent:
             self._settle_along(clauses, numbers[-1])
         elif found is False and len(numbers) == 1:
             self.least_left = turn.rejected + 1
-        return refuted + ahead + 1
+        return 1
 
-    def _reject(self, turn: Turn, literals: Sequence[int], most: int | None) -> int:
-        """Pass over options of the next slot that propagation alone refutes, each for a step; return how many.
+    def _reject(self, turn: Turn, literals: Sequence[int]) -> None:
+        """Pass over options of the next slot that propagation alone refutes, each for a step.
 
         Where roles are bound to each other, most questions are of this sort, and to ask the solver takes longer than it
         takes to answer.
         """
-        clauses, start = turn.clauses, turn.rejected
-        while (most is None or turn.rejected - start < most) and self.budget.steps != 0:
+        clauses = turn.clauses
+        while self.budget.steps != 0:
             literal = literals[turn.rejected]
             if clauses.holds(literal) or not clauses.refutes(literal):
                 break
@@ -294,7 +294,6 @@ class _Descent:
             turn.rejected += 1
             self.budget.spend(1)
         self.least_left = max(self.least_left, turn.rejected)
-        return turn.rejected - start
 
     def _settle(self, number: int) -> None:
         self.settled.append(number)

@@ -34,13 +34,13 @@ class Turn:
         self.reach = 1
         """How many slots the next question is about, at most."""
 
-    def ahead(self, slots: Sequence[int], plays: Sequence[Sequence[int]], budget: Budget) -> tuple[list[int], int]:
+    def ahead(self, slots: Sequence[int], plays: Sequence[Sequence[int]], budget: Budget) -> list[int]:
         """Return for some of the next slots the first options that propagation leaves, each given those before it.
 
-        Also how many options it refuted beyond those of the next slot; each is a step. The role of each slot is given,
-        and the literals of the options of each role.
+        Each option that it refutes is a step. The role of each slot is given, and the literals of the options of each
+        role.
         """
-        numbers, refuted = [self.rejected], 0
+        numbers = [self.rejected]
         assumed = [plays[slots[self.fixed]][self.rejected]]
         for slot in range(self.fixed + 1, min(self.fixed + self.reach, len(slots))):
             literals = plays[slots[slot]]
@@ -48,15 +48,14 @@ class Turn:
             number = numbers[-1] + 1 if slots[slot] == slots[slot - 1] else 0
             while number < len(literals) and self.clauses.refutes(*assumed, literals[number]):
                 if budget.steps == 0:
-                    return numbers, refuted
+                    return numbers
                 budget.spend(1)
-                refuted += 1
                 number += 1
             if number == len(literals):
-                return numbers[: (1 + len(numbers)) // 2], refuted  # all together they lead to nothing
+                return numbers[: (1 + len(numbers)) // 2]  # all together they lead to nothing
             numbers.append(number)
             assumed.append(literals[number])
-        return numbers, refuted
+        return numbers
 
     def answered(self, slots: int, possible: bool | None, conflicts: int) -> None:
         """Note how a question about so many slots went; None if it was left."""
