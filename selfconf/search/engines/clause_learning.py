@@ -20,7 +20,7 @@ from typing import Any
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.encoding import Encoding, Implied
+from selfconf.search.engines.encoding import FEW_TO_COUNT, Encoding, Implied
 from selfconf.search.reduction import Constraint, Option, ReducedProblem
 
 SOLVER = "Minicard"
@@ -29,8 +29,6 @@ SECOND_SOLVER = "Cadical195"
 """The solver that joins in, which gets cardinalities as clauses."""
 PAIRED = 6
 """At most one of so many literals is written pair by pair, for a solver that cannot count."""
-FEW_TO_COUNT = 4
-"""At most this number of some is counted one after the other, in fewer clauses than a totalizer has; more by that."""
 CONFLICTS_PER_CALL = 1_000
 """Conflicts for the first call of the solver about a question, hundredths of a second; the next has twice as many."""
 LONGEST_CALL = 32_000

@@ -33,9 +33,13 @@ from typing import NamedTuple
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.search.engines.exclusion import ExclusiveGroups, exclusive_groups
+from selfconf.search.engines.nearby import nearby
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.symmetry import interchangeable
 from selfconf.search.reduction import Constraint, Distinct, Fed, Limit, Played, ReducedProblem, Shared
+
+FEW_TO_COUNT = 4
+"""At most this number of some is counted one after the other, in fewer clauses than a totalizer has; more by that."""
 
 
 class AtMost(NamedTuple):
@@ -137,6 +141,8 @@ class Encoding:
             force = self._in_force(Played(role)) if self._guarded else ()
             if len(literals) == 2 and literals[0] == -literals[1]:
                 continue
+            if FEW_TO_COUNT < asked < len(literals):
+                literals = tuple([literals[place] for place in nearby(self.reduced.options[role])])
             self._at_most(literals, asked)
             if len(literals) < asked:
                 impossible = self.literal()

@@ -24,8 +24,8 @@ from contextlib import ExitStack
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.clause_learning import FEW_TO_COUNT, LONGEST_CALL, SECOND_SOLVER, ClauseSolver
-from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.clause_learning import LONGEST_CALL, SECOND_SOLVER, ClauseSolver
+from selfconf.search.engines.encoding import FEW_TO_COUNT, Encoding
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival, processors
 from selfconf.search.engines.turn import Turn
