@@ -1,4 +1,8 @@
-"""When a task looks again: one that waits, at lost components; one that runs, at what would be rather had."""
+"""When a task looks again: one that waits, at lost components; one that runs, at what would be rather had.
+
+Nothing tells that a component which has raised FAIL could go on by now, as a tracker that sees its person again. So a
+task that changes for the better tries it again from time to time, while what runs instead of it runs on.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +13,11 @@ from selfconf.configurator import Appeared, Improvable, Loss, Phase
 from selfconf.deployment.components import HeldLives
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.term import IRI
+from selfconf.protocol.messages import Cause
 
 TRY_AGAIN = 5.0
-"""After how many seconds a patient configurator that waits tries lost components again; the pause doubles each time."""
+"""After how many seconds lost components are tried again, by a task that waits or one that changes for the better; the
+pause doubles each time."""
 LONGEST_PAUSE = 60.0
 """The longest such pause, in seconds."""
 LET_GO_OF = 10.0
@@ -37,10 +43,12 @@ class Retries:
         """When lost components are tried again, which may be overdue; None: no time is set."""
         self._improve: Undo = lambda: None
         self._improve_later: Undo = lambda: None
+        self._recovery_pause = TRY_AGAIN
+        self._awaits_recovery = False
 
     def appeared(self) -> None:
         """Try lost components again soon, as something has appeared in the ecology."""
-        self._pause = TRY_AGAIN
+        self._pause = self._recovery_pause = TRY_AGAIN
         if self._chance_at is not None:
             self._chance_at = min(self._chance_at, self._bus.now() + TRY_AGAIN)
 
@@ -59,6 +67,34 @@ class Retries:
         self._improve_later()
         if self._upgrade is not None:
             self._improve_later = self._bus.later(LET_GO_OF, partial(self._step, Improvable()))
+
+    def await_recovery(self) -> None:
+        """While the task runs, set the time to try again what has raised FAIL, if it may change for the better."""
+        if self._upgrade is not None and not self._awaits_recovery and self._failed():
+            self._awaits_recovery = True
+            self._bus.later(self._recovery_pause, self._recovered)
+
+    def _recovered(self) -> None:
+        """Count what has raised FAIL as able again; it takes the place of nothing before it delivers."""
+        self._awaits_recovery = False
+        failed = self._failed()
+        if failed and self._state().phase is Phase.RUNNING:
+            pause = min(2 * self._recovery_pause, LONGEST_PAUSE)
+            self._step(Appeared(failed))
+            self._recovery_pause = pause
+
+    def _failed(self) -> dict[IRI, str]:
+        """The components that have raised FAIL and live on, as those that appear: in whatever life.
+
+        Of a composite its site tells by another life that it can be something inside again.
+        """
+        found = self._ecology.discovery.found
+        return {
+            component: ""
+            for component, loss in self._state().lost.items()
+            if loss.cause is Cause.FAIL and self._may_be_able(component, loss)
+            if component in found and found[component].advertisement.profile.inside is None
+        }
 
     def await_another_chance(self) -> None:
         """Set the time to try lost components again; one that is set stays, as a site that is silent is asked often."""

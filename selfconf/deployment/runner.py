@@ -215,17 +215,24 @@ class TaskRunner:
         self._loss_looks.stepped()
         for effect in effects:
             self._carry_out(effect)
-        if isinstance(event, Appeared) and self.state.phase is Phase.RUNNING and self.state.target is not None:
+        if self.state.phase is Phase.RUNNING:
+            self._run_on(event)
+            if self.state.phase is not before or self.state.lost is not known:
+                self._retries.await_recovery()
+        if self.state.phase is not before:
+            self._changed_phase(before)
+
+    def _run_on(self, event: Event) -> None:
+        """Be ready for what may be lost next, and for what would be rather had, after an event while the task runs."""
+        if isinstance(event, Appeared) and self.state.target is not None:
             self._retries.settle()
             self._search.prepare()
             if event.lives:
                 self._stand_by(self.state.target)
-        if isinstance(event, Composed) and self.state.phase is Phase.RUNNING:
+        if isinstance(event, Composed):
             self._search.prepare()  # what was found, or is held by others, may be other than before
             if self.state.left_to_others:
                 self._retries.look_whether_free()
-        if self.state.phase is not before:
-            self._changed_phase(before)
 
     def _carry_out(self, effect: Effect) -> None:
         """Do what the machine wants done. What breaks there must not leave a task half deployed: it is taken down."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import itertools
 from pathlib import Path
 
+import pytest
+
 from selfconf.configurator.state import Phase
 from selfconf.deployment.retries import LET_GO_OF, LONGEST_PAUSE, TRY_AGAIN
 from selfconf.sdk.component import Refused
@@ -96,6 +98,50 @@ def test_a_task_that_changes_for_the_better_takes_in_the_end_what_another_has_le
     first.stop()
     assert lab.until(lambda: lab.active() == others, LET_GO_OF + 1.0)
     assert second.state.phase is Phase.RUNNING
+
+
+def test_a_task_that_changes_for_the_better_returns_to_what_has_failed_once_it_can_go_on(lab: Lab) -> None:
+    agent = lab.agent(upgrade=0.5)
+    assert lab.running(agent)
+    drive, tracker = lab.components["drive"], lab.components["tracker"]
+    starts = drive.said.count(("started",))
+    tracker.fail("she is out of sight")
+    lab.let_pass(TRY_AGAIN - 1.0)
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.until(lambda: lab.active() == TASK | {"tracker"}, 5.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert drive.said.count(("started",)) == starts, "what the failed one feeds has run on"
+
+
+def test_what_fails_again_and_again_is_tried_at_intervals_that_double_and_stops_nothing(lab: Lab) -> None:
+    agent = lab.agent(upgrade=0.5)
+    assert lab.running(agent)
+    drive, tracker = lab.components["drive"], lab.components["tracker"]
+    tried: list[float] = []
+
+    def started() -> None:
+        tried.append(lab.network.time)
+        tracker.fail("she is out of sight")
+
+    tracker.started = started  # type: ignore[method-assign]  # it fails whenever it begins
+    starts = drive.said.count(("started",))
+    tracker.fail("she is out of sight")
+    lab.let_pass(5 * LONGEST_PAUSE)
+    pauses = [after - before for before, after in itertools.pairwise(tried)]
+    doubling = [TRY_AGAIN * 2**number for number in range(1, 4)]
+    expected = [*doubling, *[LONGEST_PAUSE] * (len(pauses) - len(doubling))]
+    assert pauses == pytest.approx([pause + 1.0 for pause in expected], abs=0.6), "once it has been there for a while"
+    assert len(pauses) > len(doubling)
+    assert lab.active() == TASK | {"odometry"}
+    assert drive.said.count(("started",)) == starts
+
+
+def test_a_task_that_keeps_what_runs_tries_nothing_again_that_has_failed(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.components["tracker"].fail("she is out of sight")
+    lab.let_pass(2 * LONGEST_PAUSE)
+    assert lab.active() == TASK | {"odometry"}
 
 
 def test_a_site_that_never_answers_does_not_put_off_another_chance(lab: Lab) -> None:
