@@ -26,6 +26,9 @@ class TaskStory:
     configuration: Mapping[str, Any] | None = None
     refusal: Mapping[str, Any] | None = None
     since: float = 0.0
+    """When its configuration began, or when it was refused one."""
+    unchanged: dict[str, float] = field(default_factory=dict)
+    """Since when each role has been played by the same components, and each recruit has been one; by their IRIs."""
     lost: dict[str, EventBody] = field(default_factory=dict)
     replaced: dict[str, str] = field(default_factory=dict)
     """The component before, by the one that took over from it."""
@@ -40,6 +43,7 @@ class TaskStory:
         elif act == "running" and isinstance(event.get("configuration"), dict):
             # One that was taken down is replaced by none, unless that is said, as of one that ended by a failure.
             before = self.configuration if self.ended is None or event.get("revises") else None
+            self._note_unchanged(event["configuration"], _time(event))
             self.configuration, self.refusal, self.since = event["configuration"], None, _time(event)
             self.ended = None
             self._note_replaced(before)
@@ -47,6 +51,16 @@ class TaskStory:
             self.refusal, self.since = event.get("refusal") or {}, _time(event)
         elif act in ("stopped", "detached"):
             self.ended = _time(event)
+
+    def _note_unchanged(self, configuration: Mapping[str, Any], time: float) -> None:
+        """Note what goes on through a new configuration: nothing does after an end, a refusal or a loss of its own."""
+        interrupted = self.ended is not None or self.refusal is not None
+        lost = {component for component, event in self.lost.items() if _time(event) >= self.since}
+        before = {} if interrupted else _players(self.configuration)
+        self.unchanged = {
+            one: self.unchanged[one] if before.get(one) == players and not lost.intersection(players) else time
+            for one, players in _players(configuration).items()
+        }
 
     def _note_replaced(self, before: Mapping[str, Any] | None) -> None:
         """Note which components have come since a configuration, each with the one that it took over from."""
@@ -139,7 +153,7 @@ def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Seque
 def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequence[str] | None) -> list[str]:
     """Which components play a role and why; `before` are the candidates before those, None if not known."""
     who = ", ".join(map(_name, components)) or "no component"
-    sentences = [f"{_name(role)} in {found.task}: {who}, {_while(found)}"]
+    sentences = [f"{_name(role)} in {found.task}: {who}, {_while(found, role)}"]
     for component in components:
         sentences += _came_about(found, component)
     recruits = found.recruits_of(components)
@@ -169,7 +183,7 @@ def _recruited(found: TaskStory, component: str) -> list[str]:
     """What a recruit is there for."""
     fed = ", ".join(map(_name, found.sinks_of(component)))
     return [
-        f"{_name(component)} in {found.task}: recruited to feed {fed}, {_while(found)}",
+        f"{_name(component)} in {found.task}: recruited to feed {fed}, {_while(found, component)}",
         *_came_about(found, component),
     ]
 
@@ -207,6 +221,12 @@ def _refused(found: TaskStory, term: str) -> list[str]:
 def _components(configuration: Mapping[str, Any] | None, role: str) -> list[str]:
     roles = (configuration or {}).get("roles", ())
     return next((list(one["components"]) for one in roles if one["role"] == role), [])
+
+
+def _players(configuration: Mapping[str, Any] | None) -> dict[str, list[str]]:
+    """The components of each role, and each recruit as its own."""
+    roles = {str(one["role"]): list(map(str, one["components"])) for one in (configuration or {}).get("roles", ())}
+    return roles | {one: [one] for one in _recruits(configuration)}
 
 
 def _recruits(configuration: Mapping[str, Any] | None) -> list[str]:
@@ -252,9 +272,9 @@ def _time(event: EventBody) -> float:
     return float(moment) if isinstance(moment, int | float) else 0.0
 
 
-def _while(found: TaskStory) -> str:
-    """Since when a task has been what it is, and until when it was."""
-    return f"since {_clock(found.since)}{'' if found.ended is None else f', until {_clock(found.ended)}'}"
+def _while(found: TaskStory, one: str) -> str:
+    """Since when a role or a recruit has been what it is, and until when it was."""
+    return f"since {_clock(found.unchanged[one])}{'' if found.ended is None else f', until {_clock(found.ended)}'}"
 
 
 def _clock(seconds: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import Any
 
 import pytest
@@ -58,6 +59,17 @@ def test_who_was_lost_and_has_not_come_back_yet_is_said() -> None:
     _, why = why_sentences(story("navigate", [running(10.0, "tracker"), lost]), "position", {})
     assert why.startswith("  tracker was lost at ")
     assert why.endswith("(crash)")
+
+
+def test_what_goes_on_through_a_repair_is_told_since_it_began_and_not_since_the_repair() -> None:
+    lost = {**LOST, "time": 30.0, "component": HOME + "astrid-drive"}
+    found = story("navigate", EVENTS)
+    assert found.unchanged == {HOME + "position": 21.0, HOME + "drive": 10.0}
+    assert story("navigate", [*EVENTS, lost, running(31.0, "odometry")]).unchanged[HOME + "drive"] == 31.0
+    for between in ({"act": "stopped", "time": 30.0}, {"act": "waiting", "time": 30.0, "refusal": {}}):
+        assert set(story("navigate", [*EVENTS, between, running(31.0, "odometry")]).unchanged.values()) == {31.0}
+    (drive,) = (line for line in why_sentences(found, "drive", {}) if "drive" in line)
+    assert drive.endswith(datetime.fromtimestamp(10.0).astimezone().strftime("since %Y-%m-%d %H:%M:%S"))
 
 
 def test_at_an_earlier_moment_the_answer_is_that_of_then() -> None:
