@@ -60,7 +60,14 @@ class TemplateError(AuthorError):
 
 
 class BindingError(AuthorError):
-    """A value cannot stand for a parameter: unknown name, wrong kind of term, bound twice, or not bound at all."""
+    """A value cannot stand for a parameter: unknown name, wrong kind of term, bound twice, or not bound at all.
+
+    `parameter` is the name that it was to be bound by, where the error speaks of one.
+    """
+
+    def __init__(self, message: str, *, parameter: str | None = None) -> None:
+        super().__init__(message)
+        self.parameter = parameter
 
 
 class NamespaceError(AuthorError):

@@ -143,9 +143,9 @@ class Project:
         """The file and line of a key, for people."""
         return f"{self.path}:{self.lines.get(keys, 1)}"
 
-    def bindings(self, *names: str) -> Mapping[str, Any]:
-        """The values for the parameters of the template or task that has these names, the first of which counts."""
-        return next((self.bound[name] for name in names if name in self.bound), {})
+    def bindings(self, *names: str) -> tuple[str, Mapping[str, Any]]:
+        """The first of these names of a template or task that has a table of bindings, and the table."""
+        return next(((name, self.bound[name]) for name in names if name in self.bound), ("", {}))
 
 
 def project_path(folder: Path, complain: Callable[[str], None] = lambda _: None) -> Path | None:
@@ -218,7 +218,9 @@ def _not_toml(name: str, octets: bytes, said: str) -> Diagnostic:
     elif place is not None:
         last = octets.decode().removeprefix("\ufeff").split("\n")
         line, column = len(last), len(last[-1]) + 1
-    return Diagnostic(name, line, column, "SC-P01", f"Not TOML: {said[: place.start()] if place else said}.")
+    problem = said[: place.start()] if place else said
+    hint = " Text stands in quotes." if problem == "Invalid value" else ""
+    return Diagnostic(name, line, column, "SC-P01", f"Not TOML: {problem}.{hint}")
 
 
 def _wrong(body: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], str, str]]:

@@ -60,8 +60,11 @@ def test_every_key_has_its_value_with_paths_as_seen_from_the_current_folder(
         "steps": 1000,
         "seconds": 2.5,
     }
-    assert project.bindings("https://example.org/x#navigate", "navigate") == {"robot": ":Astrid", "speed": 0.5}
-    assert project.bindings("other") == {}
+    assert project.bindings("https://example.org/x#navigate", "navigate") == (
+        "navigate",
+        {"robot": ":Astrid", "speed": 0.5},
+    )
+    assert project.bindings("other") == ("", {})
     assert [project.place("ads"), project.place("bind", "navigate", "speed")] == [
         "../selfconf.toml:4",
         "../selfconf.toml:16",
@@ -100,7 +103,7 @@ def test_a_stranger_s_file_in_a_folder_of_another_owner_is_passed_over_and_named
 @pytest.mark.parametrize(
     ("text", "place", "words"),
     [
-        ("ecology = home", "1:11 SC-P01", "Not TOML"),
+        ("ecology = home", "1:11 SC-P01", "Not TOML: Invalid value. Text stands in quotes."),
         ("\necology = [", "2:12 SC-P01", "Not TOML"),
         ("x = " + "[" * 100_000, "1:1 SC-P01", ""),
         ('ecology = "home"\nfoo = 3', "2:1 SC-P02", "no key 'foo'; the keys are ecology"),

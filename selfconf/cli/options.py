@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import gc
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,15 +13,14 @@ from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, BindingError
 from selfconf.files import STDIN
 from selfconf.model.seconds import DELAY_IN_WORDS, LIMIT_IN_WORDS, is_delay, is_limit
-from selfconf.project import REASONING, STRATEGIES
+from selfconf.project import BIND, REASONING, STRATEGIES
 
 if TYPE_CHECKING:
     from selfconf.api.ecology import Ecology
     from selfconf.api.living import LivingEcology
     from selfconf.api.method import Method
-    from selfconf.api.task import TaskSpecification, Value
+    from selfconf.api.task import TaskSpecification
     from selfconf.model.left_out import LeftOut
-    from selfconf.project import Project
 
 MOST_DOMAIN = 232
 """The greatest ROS_DOMAIN_ID that ROS 2 takes."""
@@ -191,20 +190,19 @@ def task_of(given: argparse.Namespace) -> TaskSpecification:
 
     one_stdin(given.template, *(given.ads or ()), *given.ontology)
     task, typed = template(given.template, given.wanted), pairs(given.bind)
-    try:
-        task = task.bind(**_project_bindings(given.project, task, typed))
-    except BindingError as error:
-        raise AuthorError(f"{error} (bound in {given.project.path})") from None
-    for unknown in unknown_in_task(task):
-        complain(unknown)
-    return task.bind(**typed).complete()
-
-
-def _project_bindings(project: Project, task: TaskSpecification, typed: Mapping[str, str]) -> dict[str, Value]:
-    """What the project file binds of a task that neither its document nor the command line does."""
     names = [name for one in (task.document.task.iri, task.iri) if one for name in (one, task.names(one), one.short)]
-    known = {*typed, *task.bindings}
-    return {name: value for name, value in project.bindings(*names).items() if name not in known}
+    table, values = given.project.bindings(*names)
+    bound = {name: value for name, value in values.items() if name not in typed and name not in task.bindings}
+    try:
+        task = task.bind(**bound)
+        for unknown in unknown_in_task(task):
+            complain(unknown)
+        return task.bind(**typed).complete()
+    except BindingError as error:
+        if error.parameter not in bound:
+            raise
+        place = given.project.place(BIND, table, error.parameter)
+        raise AuthorError(f"{error} (bound in {place})") from None
 
 
 def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:

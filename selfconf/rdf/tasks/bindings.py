@@ -31,12 +31,14 @@ _PLAIN = {
     XSD.integer: re.compile(r"[+-]?[0-9]+"),
     XSD.decimal: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)"),
     XSD.double: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?"),
+    XSD.float: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?"),
     XSD.boolean: re.compile("true|false"),
 }
 """How most literals of these datatypes are written, so that rdflib need not be asked whether they are well-typed.
 
 Digits are spelt out, as `\\d` has those of all scripts.
 """
+_NUMBERS = frozenset((XSD.integer, XSD.decimal, XSD.double, XSD.float))
 _NUMBER_OR_BOOLEAN = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|true|false")
 
 
@@ -72,7 +74,8 @@ def _turtle_term(words: str, prefixes: Mapping[str, str]) -> Term:
 def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> TaskDocument:
     """The task with values for its parameters by name, as text or as terms.
 
-    Raises BindingError for what cannot be bound.
+    A number takes the datatype of numbers that its parameter asks for: `0.5` is a decimal in Turtle and a double in
+    Python and TOML, and stands for a parameter of either. Raises BindingError for what cannot be bound.
     """
     task, document = given.task, given.document
     by_name = {parameter.name: parameter for parameter in task.template.parameters}
@@ -81,14 +84,27 @@ def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> 
         parameter = by_name.get(name)
         if parameter is None:
             known = ", ".join(sorted(by_name)) or "none"
-            raise BindingError(f"the template has no parameter {name!r}; it has: {known}")
+            raise BindingError(f"the template has no parameter {name!r}; it has: {known}", parameter=name)
         if parameter.iri in bindings:
-            raise BindingError(f"the parameter {name!r} is bound twice")
+            raise BindingError(f"the parameter {name!r} is bound twice", parameter=name)
         _writable(name, value)
         term = value if isinstance(value, IRI | Literal | BlankNode) else read_term(value, document.prefixes)
         _well_typed(name, term)
-        bindings[parameter.iri] = term
+        bindings[parameter.iri] = _as_asked(term, document.value(parameter.iri, SH.datatype))
     return TaskDocument(replace(task, bindings=bindings), document)
+
+
+def _as_asked(value: Term, datatype: Term | None) -> Term:
+    """A number in the datatype of numbers that is asked for, if it can be written in that; any other value as it is."""
+    if not isinstance(value, Literal) or not isinstance(datatype, IRI) or not {value.datatype, datatype} <= _NUMBERS:
+        return value
+    return _written_as(value, datatype) if _PLAIN[datatype].fullmatch(value.lexical) else value
+
+
+def _written_as(value: Literal, datatype: IRI) -> Literal:
+    """The literal of a datatype that is written like another literal; Turtle has a point in each decimal."""
+    whole = datatype == XSD.decimal and value.datatype == XSD.integer
+    return Literal(f"{value.lexical}.0" if whole else value.lexical, datatype)
 
 
 def _writable(name: str, value: str | Term) -> None:
@@ -99,7 +115,7 @@ def _writable(name: str, value: str | Term) -> None:
     try:
         str(value).encode()
     except UnicodeEncodeError:
-        raise BindingError(f"the value of {name!r} is no text in UTF-8: {str(value)!r}") from None
+        raise BindingError(f"the value of {name!r} is no text in UTF-8: {str(value)!r}", parameter=name) from None
 
 
 def _well_typed(name: str, value: Term) -> None:
@@ -111,7 +127,8 @@ def _well_typed(name: str, value: Term) -> None:
 
     if not literal_comparison.well_typed(value):
         said = in_full([value])
-        raise BindingError(f"{said} cannot stand for the parameter {name!r}: it is no {value.datatype.short}")
+        problem = f"it is no {value.datatype.short}"
+        raise BindingError(f"{said} cannot stand for the parameter {name!r}: {problem}", parameter=name)
 
 
 def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
@@ -219,7 +236,10 @@ def _check(parameter: Parameter, value: Term, document: Document) -> None:
             hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
         elif (meant := _meant(parameter, value, document)) is not None:
             hint = f"; write {binding(parameter.name, meant.turtle(name))}"
-        raise BindingError(f"{said} cannot stand for the parameter {parameter.name!r}: {_plain(problem)}{hint}")
+        raise BindingError(
+            f"{said} cannot stand for the parameter {parameter.name!r}: {_plain(problem)}{hint}",
+            parameter=parameter.name,
+        )
 
 
 def _meant(parameter: Parameter, value: Term, document: Document) -> Literal | None:
@@ -227,8 +247,7 @@ def _meant(parameter: Parameter, value: Term, document: Document) -> Literal | N
     datatype = document.value(parameter.iri, SH.datatype)
     if not isinstance(value, Literal) or not isinstance(datatype, IRI) or value.datatype in (datatype, XSD.double):
         return None
-    whole = datatype == XSD.decimal and value.datatype == XSD.integer
-    meant = Literal(f"{value.lexical}.0" if whole else value.lexical, datatype)
+    meant = _written_as(value, datatype)
     return None if misfits(parameter, (meant,), document) else meant
 
 
