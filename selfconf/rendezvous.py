@@ -154,9 +154,9 @@ def suspended_sites_named(endpoints: Sequence[str]) -> Iterator[None]:
     try:
         yield
     except NetworkError:
-        suspended = [str(site) for site in local_sites() if site.endpoint in endpoints and site.is_suspended()]
+        suspended = [site for site in local_sites() if site.endpoint in endpoints and site.is_suspended()]
         if suspended:
-            raise NetworkError("; ".join(suspended)) from None
+            raise NetworkError("; ".join(site.suspension() for site in suspended)) from None
         raise
 
 

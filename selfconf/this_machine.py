@@ -41,15 +41,13 @@ class LocalSite:
     log: str = field(default="", compare=False)
     """The file in which it keeps what its components print; empty from a site of before that does not say it."""
 
-    def __str__(self) -> str:
-        return (
-            f"process {self.process} of this machine, the site {self.site!r} of ecology {self.ecology!r}, is suspended;"
-            f" `kill -CONT {self.process}` lets it go on"
-        )
-
     def is_suspended(self) -> bool:
         """Whether the process was stopped by a signal and has not gone on, as after Ctrl-Z."""
         return stopped(self.process)
+
+    def suspension(self) -> str:
+        """The sentence that the process is suspended, and how it goes on."""
+        return _suspension(self.process, f"the site {self.site!r} of ecology {self.ecology!r}")
 
 
 def runtime_folder() -> Path:
@@ -122,15 +120,17 @@ class LocalTask:
     endpoints: Sequence[str]
     """Those by which the program has joined: on another network there may be another ecology of this name."""
 
-    def __str__(self) -> str:
-        return (
-            f"process {self.process} of this machine, which runs the task {self.name!r}, is suspended;"
-            f" `kill -CONT {self.process}` lets it go on"
-        )
-
     def is_suspended(self) -> bool:
         """Whether the process was stopped by a signal and has not gone on, as after Ctrl-Z."""
         return stopped(self.process) and start_time(self.process) == self.started
+
+    def suspension(self) -> str:
+        """The sentence that the process is suspended, and how it goes on."""
+        return _suspension(self.process, f"which runs the task {self.name!r}")
+
+
+def _suspension(process: int, which: str) -> str:
+    return f"process {process} of this machine, {which}, is suspended; `kill -CONT {process}` lets it go on"
 
 
 class ClaimedName:

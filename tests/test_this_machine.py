@@ -35,7 +35,8 @@ def dead_process() -> int:
 def test_a_site_that_has_announced_itself_is_found(runtime_folder: Path) -> None:
     path = this_machine.announce(meeting())
     assert path.parent == runtime_folder
-    assert this_machine.local_sites() == [meeting()]
+    (found,) = this_machine.local_sites()
+    assert (found, str(found), found.is_suspended()) == (meeting(), repr(found), False)
     assert rendezvous.find(None, []) == ("home", [meeting().endpoint, *usual_endpoints("home")])
     path.unlink()
     assert this_machine.local_sites() == []
@@ -185,7 +186,8 @@ def test_a_suspended_program_is_seen_by_those_that_have_joined_where_it_has_unti
         with suspended_run("home", "patrol", here, there) as program:
             (task,) = this_machine.suspended_tasks("home", [there, elsewhere])
             assert (task.name, task.process) == ("patrol", program.pid)
-            assert str(task).startswith(f"process {program.pid} of this machine, which runs the task 'patrol', is susp")
+            said = f"process {program.pid} of this machine, which runs the task 'patrol', is suspended; `kill -CONT"
+            assert task.suspension().startswith(said)
             assert names_of_suspended("home", elsewhere) == names_of_suspended("office", here) == []
             program.send_signal(signal.SIGCONT)
             assert os.WIFCONTINUED(os.waitpid(program.pid, os.WCONTINUED)[1])

@@ -145,7 +145,7 @@ class LivingTasks:
         named.update(task_name(one.task) for one in self._holding)
         suspended = suspended_tasks(self._keys.ecology, self._endpoints)
         self.suspended = tuple(one for one in suspended if one.name not in named)
-        rejected += map(str, self.suspended)
+        rejected += (one.suspension() for one in self.suspended)
         self.complaints = (*rejected, *namesakes(self._bus.living(self._keys.any_site_life())))
         return tuple(sorted(found, key=lambda status: status.configurator))
 
@@ -244,7 +244,9 @@ class LivingTasks:
         if name is not None and not kept:
             _check_there(name, silent, [*running, *holding, *suspended])
         self._take_down(running, kept)
-        _raise_for([*self._disobedience(running), *self._unheard(silent, holding), *map(str, suspended)])
+        _raise_for(
+            [*self._disobedience(running), *self._unheard(silent, holding), *(one.suspension() for one in suspended)]
+        )
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 
