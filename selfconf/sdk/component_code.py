@@ -255,6 +255,8 @@ class ComponentCode:
     def _over(self, turn: int) -> str | None:
         if turn != self.turn:
             return "it was turned off again"
+        if self._on:  # `stopped` broke
+            return "it has not come to rest"
         return None if self.wanted else "it has failed"
 
     def _start(self, turn: int) -> str | None:

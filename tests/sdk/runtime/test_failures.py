@@ -135,6 +135,21 @@ def test_an_actuator_that_breaks_when_it_is_to_rest_fails_and_is_stopped_once_mo
     assert recorder.said.count(("stopped",)) == 2
 
 
+def test_an_actuator_that_breaks_when_it_is_stopped_to_start_again_does_not_start(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    stage = Stage(recorder := Jammed(), DRIVE_PROFILE)
+    stage.call(reserve(1, US))
+    stage.call(apply(1, US))
+    stage.component.fail("overheated")
+    stage.let_pass(0.1)
+    with caplog.at_level(logging.CRITICAL):
+        answer = stage.call(apply(2, US))
+    assert (answer.verdict, answer.detail) == (Verdict.REFUSED, "it has not come to rest")
+    assert (answer.stopping, answer.active) == (True, False)
+    assert recorder.said.count(("started",)) == 1
+
+
 def test_a_component_raises_fail_with_its_life_its_epoch_and_a_reason() -> None:
     stage = Stage()
     stage.call(apply(4, US))
