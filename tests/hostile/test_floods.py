@@ -18,7 +18,7 @@ from selfconf.protocol.json_values import MOST_WIRES
 from selfconf.protocol.messages import Apply, Cause, Fail, Page, Reserve, Stamp, Wire
 from selfconf.sdk.inputs.input_subscription import LATE
 from selfconf.sdk.payloads import LARGEST_JSON
-from selfconf.sdk.runtime.control_calls import MOST_PENDING
+from selfconf.sdk.runtime.runtime import MOST_PENDING
 from tests.hostile.bounded import bounded
 from tests.lab import Lab, iri
 

@@ -38,7 +38,7 @@ from selfconf.rdf.validation import checking, file_check
 from selfconf.rdf.validation.checking import SourceText, validate_texts
 from selfconf.sdk import operations, payloads
 from selfconf.sdk.inputs import input_subscription
-from selfconf.sdk.runtime import control_calls
+from selfconf.sdk.runtime import runtime
 from tests.hostile_words import HONEST, KINDS, stranger
 from tests.hostile_words import TEMPLATE as TEMPLATE_FOR_STRANGERS
 
@@ -290,7 +290,7 @@ LIMITS = (
     f"lives of one component that are followed | {ecology_view.MOST_LIVES}, the least ones",
     f"a message of the control plane | {codec.LARGEST >> 20} MiB",
     f"outputs that a call lets a component follow | {json_values.MOST_WIRES:,} |",
-    f"calls that wait for the code of a component | {control_calls.MOST_PENDING} |",
+    f"calls that wait for the code of a component | {runtime.MOST_PENDING} |",
     f"a signal of JSON | {payloads.LARGEST_JSON >> 20} MiB",
     f"a signal whose number is {input_subscription.LATE:,} below",
     f"tasks that a site keeps | {task_folder.MOST_RECORDS:,} |",

@@ -25,8 +25,6 @@ _MESSAGES: dict[str, type[Reserve] | type[Apply] | type[Release]] = {
     "release": Release,
 }
 """The message that each call carries, apart from `state`, which carries none."""
-MOST_PENDING = 256
-"""How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
 Reply = Callable[[CallAnswer], None]
 
 
@@ -40,12 +38,11 @@ class ControlCalls:
         profile: Profile,
         life: str,
         own_state: OwnState,
-        pending: Callable[[], int],
         obey: Callable[[Reserve | Apply | Release, Reply], None],
     ) -> None:
-        """`pending` tells how many calls wait for the component's code; `obey` replies once a call is carried out."""
+        """`obey` replies once a call is carried out. It raises PeerError where too many calls wait for that."""
         self._keys, self._profile, self._life, self._own_state = keys, profile, life, own_state
-        self._pending, self._obey = pending, obey
+        self._obey = obey
         self.close = bus.serve(keys.call(profile.component), self.receive)
 
     def receive(self, request: Request) -> None:
@@ -64,7 +61,7 @@ class ControlCalls:
             request.finish()
 
     def answer(self, call: str, payload: bytes, reply: Reply) -> None:
-        """Have a call obeyed, if it can be, and reply when that is done. Raises PeerError for what is no call."""
+        """Have a call obeyed, if it can be, and reply when that is done. Raises PeerError for one that cannot be."""
         if call == "state":
             task = decode(payload, StateOf).task if payload else ""
             reply(self._own_state.answer(Verdict.DONE, task, measured=True))
@@ -81,9 +78,6 @@ class ControlCalls:
                 return
             if not self._keys.is_configurator_life(message.supervisor):
                 raise PeerError(f"{message.supervisor!r} is no life of a configurator")
-        if self._pending() >= MOST_PENDING:
-            name = self._profile.component.short
-            raise PeerError(f"{MOST_PENDING} calls wait for the code of {name}; try again later")
         if message.life not in ("", self._life):
             reply(self._own_state.answer(Verdict.OTHER_LIFE, message.task))
         else:

@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from selfconf.bus.port import Bus, Urgency
+from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
@@ -47,6 +48,8 @@ from selfconf.sdk.runtime.waiting_tasks import WaitingTasks
 
 log = logging.getLogger(__name__)
 
+MOST_PENDING = 256
+"""How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
 LIFE_ENDS = "it is leaving the ecology"
 """What a component says that cannot act any more in this life, but does not refuse to."""
 
@@ -136,9 +139,7 @@ class ComponentRuntime:
             self.outputs,
             self.supervision,
         )
-        self.calls = ControlCalls(
-            bus, keys, profile, self.life, self._own_state, lambda: self._pending, self._obey_at_rest
-        )
+        self.calls = ControlCalls(bus, keys, profile, self.life, self._own_state, self._obey_at_rest)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
         self._other_lives = OtherLives(bus, keys.lives(profile.component), self.life, self._outlived)
 
@@ -202,12 +203,12 @@ class ComponentRuntime:
 
     # Control calls.
 
-    @property
-    def _pending(self) -> int:
-        """How many calls wait for the code to have started, or to be at rest."""
-        return len(self._after_start) + len(self._after_stop)
-
     def _obey_at_rest(self, message: Reserve | Apply | Release, reply: Reply) -> None:
+        """Obey a call once the code that was stopped is at rest. Raises PeerError where too many wait for the code."""
+        if len(self._after_start) + len(self._after_stop) >= MOST_PENDING:
+            raise PeerError(
+                f"{MOST_PENDING} calls wait for the code of {self.profile.component.short}; try again later"
+            )
         self._when_at_rest(partial(self._obey, message, reply))
 
     def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
