@@ -53,9 +53,10 @@ def test_where_all_options_are_refuted_half_of_the_slots_are_asked_about() -> No
         for literal in third:
             for one in (either, -either):
                 clauses.add([-first[0], -second[1], -literal, one])
-        ahead = Turn(clauses)
+        ahead, budget = Turn(clauses), Budget(100)
         ahead.reach = 3
-        assert ahead.ahead(given_.slots, clauses.plays, Budget()) == [0]
+        assert ahead.ahead(given_.slots, clauses.plays, budget) == [0]
+        assert budget.steps == 100 - (1 + len(third))
 
 
 @pytest.mark.parametrize(
