@@ -142,9 +142,7 @@ MUTATIONS = {
         },
         (Action(1.0, "crash", "drive"), Action(2.0, "twins", "drive")),
     ),
-    "nobody acts for nobody": Mutation(
-        {"selfconf.sdk.runtime.supervision.GRACE": 1e9}, (Action(2.0, "crash_task", "task-1"),)
-    ),
+    "nobody acts for nobody": Mutation({GRACE: 1e9}, (Action(2.0, "crash_task", "task-1"),)),
     "who acts is known": RELEASES_NOTHING,
     "running means running": Mutation(SILENT, (LATER,), Faults(most_event_delay=2.0)),
     "each runs with its own": Mutation(SHARES_ALL, (SECOND,)),
