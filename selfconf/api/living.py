@@ -40,9 +40,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.keys import component_chunk, task_name
-from selfconf.protocol.messages import (
-    Status,
-)
+from selfconf.protocol.messages import Status
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
 
