@@ -38,7 +38,7 @@ from selfconf.protocol.messages import Wire
 from selfconf.sdk.component import Refused
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
-from selfconf.sdk.runtime import ComponentRuntime, own_state
+from selfconf.sdk.runtime import ComponentRuntime, call_answers
 from selfconf.site import Site
 from tests.faults.harsh import KINDS as HARSH
 from tests.faults.harsh import calm, promising
@@ -210,7 +210,7 @@ class History:
             with (
                 mock.patch.object(ecology_view, "MANY_LIVES", 0 if self.script.large else ecology_view.MANY_LIVES),
                 # All components are in this process: what memory it takes is news to nobody.
-                mock.patch.object(own_state, "resident_memory", nothing),
+                mock.patch.object(call_answers, "resident_memory", nothing),
             ):
                 self._play()
         except Exception:

@@ -15,7 +15,7 @@ from selfconf.model.profile import Profile
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, call_of
 from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, StateOf, Verdict
-from selfconf.sdk.runtime.own_state import OwnState
+from selfconf.sdk.runtime.call_answers import CallAnswers
 
 log = logging.getLogger(__name__)
 
@@ -37,11 +37,11 @@ class ControlCalls:
         keys: Keys,
         profile: Profile,
         life: str,
-        own_state: OwnState,
+        answers: CallAnswers,
         obey: Callable[[Reserve | Apply | Release, Reply], None],
     ) -> None:
         """`obey` replies once a call is carried out. It raises PeerError where too many calls wait for that."""
-        self._keys, self._profile, self._life, self._own_state = keys, profile, life, own_state
+        self._keys, self._profile, self._life, self._answers = keys, profile, life, answers
         self._obey = obey
         self.close = bus.serve(keys.call(profile.component), self.receive)
 
@@ -64,7 +64,7 @@ class ControlCalls:
         """Have a call obeyed, if it can be, and reply when that is done. Raises PeerError for one that cannot be."""
         if call == "state":
             task = decode(payload, StateOf).task if payload else ""
-            reply(self._own_state.answer(Verdict.DONE, task, measured=True))
+            reply(self._answers.answer(Verdict.DONE, task, measured=True))
             return
         if call not in _MESSAGES:
             raise PeerError(f"there is no call {call!r}")
@@ -74,11 +74,11 @@ class ControlCalls:
         if not isinstance(message, Release):
             unknown = sorted(set(message.inputs) - {port.name for port in self._profile.inputs})
             if unknown:
-                reply(self._own_state.answer(Verdict.REFUSED, message.task, f"it has no input {unknown[0]!r}"))
+                reply(self._answers.answer(Verdict.REFUSED, message.task, f"it has no input {unknown[0]!r}"))
                 return
             if not self._keys.is_configurator_life(message.supervisor):
                 raise PeerError(f"{message.supervisor!r} is no life of a configurator")
         if message.life not in ("", self._life):
-            reply(self._own_state.answer(Verdict.OTHER_LIFE, message.task))
+            reply(self._answers.answer(Verdict.OTHER_LIFE, message.task))
         else:
             self._obey(message, reply)

@@ -3,7 +3,7 @@
 It holds the liveliness token, obeys control calls by the table in `selfconf.protocol.activation`, and has the
 component's code run what they ask for, on the thread of that code. Everything else, supervision and the watch over the
 code included, happens on the thread of the bus, so that it never waits for the code. `ControlCalls` reads the calls,
-`OwnState` words their answers, and `WaitingTasks` deals with the tasks that a call has to wait for; `ComponentCode`
+`CallAnswers` makes their answers, and `WaitingTasks` deals with the tasks that a call has to wait for; `ComponentCode`
 calls the code; outputs, inputs, operations, supervision and blindness have modules of their own.
 """
 
@@ -39,10 +39,10 @@ from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
 from selfconf.sdk.operations import Operations
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
+from selfconf.sdk.runtime.call_answers import CallAnswers
 from selfconf.sdk.runtime.component_timers import ComponentTimers
 from selfconf.sdk.runtime.control_calls import ControlCalls, Reply
 from selfconf.sdk.runtime.other_lives import OtherLives
-from selfconf.sdk.runtime.own_state import OwnState
 from selfconf.sdk.runtime.supervision import Supervision
 from selfconf.sdk.runtime.waiting_tasks import WaitingTasks
 
@@ -129,7 +129,7 @@ class ComponentRuntime:
             lambda task, why: self._put_fail(Cause.YIELD, why, task),
             self._let_go,
         )
-        self._own_state = OwnState(
+        self._answers = CallAnswers(
             bus,
             profile.component,
             self.life,
@@ -139,7 +139,7 @@ class ComponentRuntime:
             self.outputs,
             self.supervision,
         )
-        self.calls = ControlCalls(bus, keys, profile, self.life, self._own_state, self._obey_at_rest)
+        self.calls = ControlCalls(bus, keys, profile, self.life, self._answers, self._obey_at_rest)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
         self._other_lives = OtherLives(bus, keys.lives(profile.component), self.life, self._outlived)
 
@@ -214,7 +214,7 @@ class ComponentRuntime:
     def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
         if self._closed:  # while the call waited for the code to be at rest; its site may start another life
             verdict = Verdict.DONE if isinstance(message, Release) else Verdict.OTHER_LIFE
-            reply(self._own_state.answer(verdict, message.task, LIFE_ENDS))
+            reply(self._answers.answer(verdict, message.task, LIFE_ENDS))
             return
         before = self.activation
         after, verdict, step = table.obey(
@@ -229,7 +229,7 @@ class ComponentRuntime:
             self._become(after, step)
             detail = "it has failed" if verdict is Verdict.REFUSED else ""
             busy = verdict is Verdict.BUSY
-            reply(self._own_state.busy(message) if busy else self._own_state.answer(verdict, message.task, detail))
+            reply(self._answers.busy(message) if busy else self._answers.answer(verdict, message.task, detail))
             self._waiting.ask_to_yield()
             self._waiting.offer()
             return
@@ -242,11 +242,11 @@ class ComponentRuntime:
             if step is ActivationStep.STOP and self.profile.signal_outputs:
                 # For inputs that follow it all the same; it may be held by now for a task that was reserved.
                 self._put_fail(Cause.LET_GO, "it was released", epoch=0)
-            self._when_at_rest(lambda: reply(self._own_state.answer(Verdict.DONE, message.task)))
+            self._when_at_rest(lambda: reply(self._answers.answer(Verdict.DONE, message.task)))
             self._when_at_rest(self._waiting.offer)
         else:
             self._follow_what_is_left(before, message.task)
-            reply(self._own_state.answer(Verdict.DONE, message.task))
+            reply(self._answers.answer(Verdict.DONE, message.task))
 
     def _follow_what_is_left(self, before: Activation, task: str) -> None:
         """Follow no more what a task that the component acts for has not reserved with it, after it was given up."""
@@ -266,14 +266,14 @@ class ComponentRuntime:
             if trouble is None and not self.inputs.settled:  # the inside of a composite has been refused
                 trouble = self._failure
             if trouble is None:
-                reply(self._own_state.answer(Verdict.DONE, message.task))
+                reply(self._answers.answer(Verdict.DONE, message.task))
                 return
             if self._closed:
-                reply(self._own_state.answer(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
+                reply(self._answers.answer(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
                 return
             if step is not ActivationStep.NONE and self.activation.phase is not ActivationPhase.FAILED:
                 self._drop([message.task], message.epoch)
-            reply(self._own_state.answer(Verdict.REFUSED, message.task, trouble))
+            reply(self._answers.answer(Verdict.REFUSED, message.task, trouble))
 
         def answer(trouble: str | None) -> None:
             def settled() -> None:

@@ -1,4 +1,4 @@
-"""How things are with a component, as it says in the answer to each control call."""
+"""The answers to control calls: each says what comes of the call, and how things are with the component."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from selfconf.sdk.runtime.supervision import Supervision
 from selfconf.termination import resident_memory
 
 
-class OwnState:
-    """Answers with what the parts of a component say at the moment; it changes none of them."""
+class CallAnswers:
+    """Makes the answers of one component from what its parts say at the moment; it changes none of them."""
 
     def __init__(
         self,
