@@ -47,7 +47,7 @@ from selfconf.configurator import (
     step,
 )
 from selfconf.deployment.components import Calls, ComponentMessages, HeldLives, Liveness, PortEnds, Waking
-from selfconf.deployment.loss_looks import LossLooks
+from selfconf.deployment.lasting_losses import LastingLosses
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import Retries
@@ -121,7 +121,7 @@ class TaskRunner:
         self._liveness = Liveness(context, self._calls, self._waking)
         self._discovery = TaskDiscovery(context, self.name, self._liveness, request.without_configurator)
         self._search = TaskSearch(context, request, self._liveness, self._give_up)
-        self._loss_looks = LossLooks(context)
+        self._lasting_losses = LastingLosses(context)
         self._retries = Retries(context, self._lives, request.upgrade)
         self._record = DeploymentRecord(
             bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
@@ -212,7 +212,7 @@ class TaskRunner:
             self._notice(known)
         if self.state.target is None:
             self._record.taken_down()
-        self._loss_looks.stepped()
+        self._lasting_losses.stepped()
         for effect in effects:
             self._carry_out(effect)
         if self.state.phase is Phase.RUNNING:
@@ -297,7 +297,7 @@ class TaskRunner:
                 self._waking.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self._report(ComponentLost(component, loss.cause.value, loss.detail))
-                self._loss_looks.lost()
+                self._lasting_losses.lost()
 
     def _report(self, event: AnyRunEvent) -> None:
         """Note an event with its time, and report it when there is nothing more urgent to do."""

@@ -9,7 +9,7 @@ import pytest
 
 from selfconf.configurator.events import Event, LossLasts
 from selfconf.configurator.state import Phase
-from selfconf.deployment.loss_looks import LASTS_LONG
+from selfconf.deployment.lasting_losses import LASTS_LONG
 from tests.deployment.simulated import slow_code
 from tests.lab import PREFIXES, Lab, iri
 
@@ -145,14 +145,14 @@ def test_it_is_looked_once_whether_what_was_lost_within_a_moment_is_replaced(
 ) -> None:
     """It may be thousands of components, and each look is at all that is held."""
     home = _TwoSinks(tmp_path)
-    looks, hear = list[float](), home.agent._loss_looks._step
+    looks, hear = list[float](), home.agent._lasting_losses._step
 
     def heard(event: Event) -> None:
         if isinstance(event, LossLasts):
             looks.append(home.lab.network.time)
         hear(event)
 
-    monkeypatch.setattr(home.agent._loss_looks, "_step", heard)
+    monkeypatch.setattr(home.agent._lasting_losses, "_step", heard)
     began = home.lab.network.time
     home.lab.components["right0"].fail("it is dark")
     home.lab.components["arm0"].fail("it is stuck")

@@ -1,4 +1,4 @@
-"""When a task looks whether a loss lasts, as actuators have to rest while what runs is incomplete.
+"""Which losses of a task last: actuators have to rest while what runs is incomplete for more than a moment.
 
 Most losses are repaired within a moment, and nothing need rest for them. So the machine is fed `LossLasts` a moment
 after a loss, once for all that were lost of late, as these may be thousands; and once more when what runs has lacked
@@ -18,8 +18,8 @@ LASTS_LONG = 1.0
 """Seconds for which actuators act on in a configuration that lacks a component: as long as without a configurator."""
 
 
-class LossLooks:
-    """The looks of one task at what it has lost."""
+class LastingLosses:
+    """Looks, after what one task has lost, whether that lasts, and feeds its machine with `LossLasts`."""
 
     def __init__(self, task: TaskContext) -> None:
         self._bus, self._ecology, self._state, self._step = task.ecology.bus, task.ecology, task.state, task.step
