@@ -6,6 +6,7 @@ task that changes for the better tries it again from time to time, while what ru
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 from selfconf.bus.port import Undo
@@ -45,6 +46,9 @@ class Retries:
         self._improve_later: Undo = lambda: None
         self._recovery_pause = TRY_AGAIN
         self._awaits_recovery = False
+        """Whether it is set when what has raised FAIL is tried again."""
+        self._tried_at = -math.inf
+        """When that was done last, or was to be done."""
 
     def appeared(self) -> None:
         """Try lost components again soon, as something has appeared in the ecology."""
@@ -70,18 +74,27 @@ class Retries:
 
     def await_recovery(self) -> None:
         """While the task runs, set the time to try again what has raised FAIL, if it may change for the better."""
-        if self._upgrade is not None and not self._awaits_recovery and self._failed():
-            self._awaits_recovery = True
-            self._bus.later(self._recovery_pause, self._recovered)
+        failed = any(loss.cause is Cause.FAIL for loss in self._state().lost.values())
+        if self._upgrade is None or self._awaits_recovery or not failed:
+            return
+        if self._bus.now() - self._tried_at > LONGEST_PAUSE:  # all was well meanwhile
+            self._recovery_pause = TRY_AGAIN
+        self._awaits_recovery = True
+        self._bus.later(self._recovery_pause, self._recovered)
 
     def _recovered(self) -> None:
-        """Count what has raised FAIL as able again; it takes the place of nothing before it delivers."""
+        """Count what has raised FAIL as able again; it takes the place of nothing before it delivers.
+
+        What has not come to rest yet, or cannot be had otherwise, is looked at again after the next pause.
+        """
         self._awaits_recovery = False
-        failed = self._failed()
-        if failed and self._state().phase is Phase.RUNNING:
-            pause = min(2 * self._recovery_pause, LONGEST_PAUSE)
-            self._step(Appeared(failed))
-            self._recovery_pause = pause
+        if self._state().phase is not Phase.RUNNING:
+            return
+        pause, able = min(2 * self._recovery_pause, LONGEST_PAUSE), self._failed()
+        if able:
+            self._step(Appeared(able))
+        self._recovery_pause, self._tried_at = pause, self._bus.now()
+        self.await_recovery()
 
     def _failed(self) -> dict[IRI, str]:
         """The components that have raised FAIL and live on, as those that appear: in whatever life.

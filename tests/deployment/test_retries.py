@@ -10,6 +10,7 @@ import pytest
 from selfconf.configurator.state import Phase
 from selfconf.deployment.retries import LET_GO_OF, LONGEST_PAUSE, TRY_AGAIN
 from selfconf.sdk.component import Refused
+from tests.deployment.simulated import slow_code
 from tests.deployment.tasks import TASK
 from tests.faults.ecologies import CHOICE
 from tests.lab import Lab
@@ -134,6 +135,27 @@ def test_what_fails_again_and_again_is_tried_at_intervals_that_double_and_stops_
     assert len(pauses) > len(doubling)
     assert lab.active() == TASK | {"odometry"}
     assert drive.said.count(("started",)) == starts
+
+
+def test_what_has_failed_and_takes_its_time_to_come_to_rest_is_tried_again_once_it_has(lab: Lab) -> None:
+    thread = slow_code(lab, "tracker")
+    agent = lab.agent(upgrade=0.5)
+    assert lab.running(agent)
+    tracker = lab.components["tracker"]
+    tracker.stopped = lambda: thread.spend(1.5)  # type: ignore[method-assign]  # longer than until the task looks again
+    tracker.fail("she is out of sight")
+    assert lab.until(lambda: lab.active() == TASK | {"odometry"})
+    assert lab.until(lambda: lab.active() == TASK | {"tracker"}, 2 * TRY_AGAIN)
+
+
+def test_what_fails_after_it_has_recovered_for_long_is_tried_again_as_soon_as_the_first_time(lab: Lab) -> None:
+    agent = lab.agent(upgrade=0.5)
+    assert lab.running(agent)
+    for _ in range(4):
+        lab.components["tracker"].fail("she is out of sight")
+        assert lab.until(lambda: lab.active() == TASK | {"odometry"})
+        assert lab.until(lambda: lab.active() == TASK | {"tracker"}, TRY_AGAIN + 4.0)
+        lab.let_pass(1.5 * LONGEST_PAUSE)
 
 
 def test_a_task_that_keeps_what_runs_tries_nothing_again_that_has_failed(lab: Lab) -> None:
