@@ -307,7 +307,7 @@ def test_a_run_of_this_machine_that_is_suspended_and_not_seen_is_named_by_its_ta
     with suspended_run("lab", "patrol", HERE), suspended_run("lab", "tidy", HERE):  # tidy is seen, and answers
         tasks.asked.running()
         assert [task.name for task in tasks.asked.suspended] == ["patrol"]
-        assert tasks.asked.complaints == tuple(map(str, tasks.asked.suspended))
+        assert tasks.asked.complaints == tuple(one.suspension() for one in tasks.asked.suspended)
         with pytest.raises(NetworkError, match=r"^process \d+ of this machine, which runs the task .patrol., is susp"):
             tasks.asked.stop(name)
     assert (tasks.asked.running() == ()) == (name is None)
