@@ -1,7 +1,8 @@
 """Terms of selfconf and SHACL that there are not: `validate` calls them errors, and to a search they say nothing.
 
 A misspelt `sc:feeds` or `sh:minCount` has no meaning, and so a role or an advertisement says less than its author
-believes. A command that acts on it warns and goes on; `validate` says where, and what was meant.
+believes. A command that acts on it warns and goes on; `validate` says where, and what was meant. A query that asks for
+such a term finds nothing, which looks like an answer.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from selfconf import library
 from selfconf.model.term import IRI, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement, LoadedAdvertisement
-from selfconf.rdf.vocabulary import SC, SH, TYPE
+from selfconf.rdf.vocabulary import ROB, SC, SH, TYPE
 
 if TYPE_CHECKING:
     from selfconf.api.task import TaskSpecification
@@ -31,6 +32,8 @@ _USUAL = frozenset(
 )
 """Terms of SHACL that most templates use: rdflib, which knows all of them, need not be loaded for these."""
 _PREFIXES = {SC.base: "sc:", SH.base: "sh:"}
+_CURIES = re.compile(r"(?<![\w?$@:.-])([^\W\d_][\w.-]*)?:(\w+)")
+_DECLARATIONS = re.compile(r"\bprefix\s+([^\s:]*)\s*:\s*<([^<>]*)>", re.IGNORECASE)
 _NAMED = {base: re.compile(f"<({re.escape(base)}[^<>]*)>") for base in _PREFIXES}
 
 
@@ -50,6 +53,17 @@ def unknown_in_task(task: TaskSpecification) -> Iterator[str]:
     """A sentence about the document of a template or task, if it uses terms that there are not."""
     document = task.document.document
     yield from _sentence(document.source, undeclared_terms(document.triples()))
+
+
+def unknown_in_query(text: str) -> Iterator[str]:
+    """A sentence about each term of selfconf and SHACL in a SPARQL query that there is not, also of `rob:`."""
+    from selfconf.rdf.sparql import QUERY_PREFIXES, without  # which a configuration does not need
+
+    prefixes = QUERY_PREFIXES | dict(_DECLARATIONS.findall(without(text, "#", '"', "'")))
+    for prefix, name in sorted(set(_CURIES.findall(without(text, "#", '"', "'", "<")))):
+        base = prefixes.get(prefix, "")
+        if base in (SC.base, SH.base, ROB.base) and not _declared(f"{base}{name}", base):
+            yield f"no ontology of selfconf has the term {prefix}:{name}; is it misspelt?"
 
 
 def unknown_in_ecology(advertisements: Mapping[IRI, Advertisement]) -> Iterator[str]:
@@ -86,19 +100,20 @@ def _sentence(source: str, terms: list[str]) -> Iterator[str]:
 
 
 def _declared(term: str, base: str) -> bool:
-    if base == SC.base:
-        return term in _of_selfconf()
-    return term in _USUAL or _in_shacl(term)
+    if base == SH.base:
+        return term in _USUAL or _in_shacl(term)
+    return term in _of_selfconf(base)
 
 
 @cache
-def _of_selfconf() -> frozenset[str]:
-    """The terms of `sc:`."""
-    (core,) = (path for path in library.ontologies() if path.stem == "selfconf")
+def _of_selfconf(base: str) -> frozenset[str]:
+    """The terms of `sc:` or `rob:`."""
+    stem = "selfconf" if base == SC.base else "robotics"
+    (ontology,) = (path for path in library.ontologies() if path.stem == stem)
     return frozenset(
         subject
-        for subject, _, _ in turtle.parse(core.read_bytes(), core.name).triples()
-        if isinstance(subject, IRI) and subject.startswith(SC.base)
+        for subject, _, _ in turtle.parse(ontology.read_bytes(), ontology.name).triples()
+        if isinstance(subject, IRI) and subject.startswith(base)
     )
 
 

@@ -62,6 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 with an answer, be it empty."""
     from selfconf.api.ontologies import with_ontologies
+    from selfconf.api.unknown_terms import unknown_in_query
     from selfconf.query import Question, answer
     from selfconf.rdf.sparql import Dataset
 
@@ -69,6 +70,8 @@ def run(given: argparse.Namespace) -> int:
     text = _text(given.sparql)
     if given.endpoint is not None and given.ontology:
         raise AuthorError("an endpoint holds what it holds; --ontology is for files and the living ecology")
+    for unknown in unknown_in_query(text):
+        complain(unknown)
     question = Question(text, given.format, given.rows, seconds=given.answer_seconds)
     if given.history is not None and given.endpoint is not None:
         raise AuthorError(
