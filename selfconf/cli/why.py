@@ -63,14 +63,23 @@ def _tell(given: argparse.Namespace, sentences: Sequence[str], where: str) -> in
 
 
 def _moment(text: str) -> float:
-    """A moment in seconds of the Unix epoch; one without a date is today's."""
+    """A moment in seconds of the Unix epoch; one without a date is today's.
+
+    A time without a fraction is the end of its second, as answers name times by whole seconds: what has begun at
+    14:02:07.4, they say, is so since 14:02:07.
+    """
+    moment = _written(text)
+    return (moment if moment.microsecond else moment.replace(microsecond=999_999)).timestamp()
+
+
+def _written(text: str) -> datetime:
     for form in ("%H:%M", "%H:%M:%S"):
         try:
             moment = datetime.strptime(text, form).time()
         except ValueError:
             continue
-        return datetime.combine(datetime.now().date(), moment).timestamp()
+        return datetime.combine(datetime.now().date(), moment)
     try:
-        return datetime.fromisoformat(text).timestamp()
+        return datetime.fromisoformat(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes HH:MM, HH:MM:SS, or ISO 8601") from None

@@ -26,6 +26,8 @@ def test_who_plays_a_role_and_why_is_told_now_and_then(home: Home, capsys: pytes
     assert "position in navigate: absolute-odometry, since" in said.out
     assert "it took over from person-tracker: lost at" in said.out
     assert "passed over, though first in order: person-tracker" in said.out
+    told = said.out.partition(", since ")[2].partition("\n")[0]
+    assert "absolute-odometry, since" in run(capsys, "why", "position", "--at", told, *home.arguments()).out
     moment = datetime.fromtimestamp(lost["time"] - 0.001).isoformat()
     then = run(capsys, "why", "position", "--at", moment, *home.arguments())
     assert "position in navigate: person-tracker, since" in then.out
