@@ -57,6 +57,19 @@ def test_the_commands_of_the_tutorial_say_what_it_shows(tmp_path: Path, environm
             assert said == shown, command
 
 
+def test_the_test_of_the_tutorial_passes(tmp_path: Path, environment: dict[str, str]) -> None:
+    (code,) = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    (tmp_path / "test_fridge.py").write_text(code)
+    write = "selfconf new component fridge && selfconf new template watch"
+    for command in (write, f"{shlex.quote(sys.executable)} -m pytest -q -p no:cacheprovider test_fridge.py"):
+        done = subprocess.run(
+            ["bash", "-c", command], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE,
+            check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert "2 passed" in done.stdout
+
+
 def test_the_tutorial_breaks_the_component_in_five_ways_and_mends_each() -> None:
     broken = [line for _, shown in steps() for line in shown if re.match(r"fridge\.ttl:\d+:\d+: ", line)]
     assert len({re.findall(r"\[(SC-\w+)\]", line)[0] for line in broken}) >= 5
