@@ -15,6 +15,7 @@ that supervises the task is BUSY while that one lives; one for which the compone
 have left while its last call was on its way. A call of a task that cannot hold the component beside those that do is
 BUSY, and the task *waits*: higher priority first, then the earlier beginning. Once the component is free, it is
 *offered* to the first that waits; until that one has reserved it or the offer is over, tasks that come later are BUSY.
+To one of higher priority that begins to wait meanwhile it is offered instead, which else would have to have it yielded.
 An offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot come
 for it, as each waits for the other, would have it offered to them for ever. A task that has not come for it waits on,
 but no task is asked to yield for its sake until it asks again: its configurator may be gone.
@@ -378,13 +379,16 @@ def outranked(activation: Activation) -> tuple[str, ...]:
 
 
 def offer(activation: Activation) -> tuple[Activation, Claim | None]:
-    """Keep a component that no task holds for the first that waits, and return the claim of that task."""
-    if activation.holds or activation.kept_for:
-        return activation, None
+    """Keep a component that no task holds for the first that waits, and return the claim of that task.
+
+    One that is kept already goes to no other, but to a task of higher priority that has come since.
+    """
     first = next((claim for claim in activation.waiting if claim.task not in activation.passed), None)
-    if first is None:
+    kept = next((claim for claim in activation.waiting if claim.task == activation.kept_for), None)
+    if activation.holds or first is None or (kept is not None and kept.priority >= first.priority):
         return activation, None
-    return replace(activation, kept_for=first.task, passed=activation.passed | {first.task}), first
+    passed = activation.passed - {activation.kept_for} | {first.task}
+    return replace(activation, kept_for=first.task, passed=passed), first
 
 
 def withdraw(activation: Activation, task: str) -> Activation:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import pytest
+
 from selfconf.protocol.activation import (
     MOST_WAITING,
     Activation,
@@ -115,6 +117,23 @@ def test_an_offer_comes_once_for_each_holding() -> None:
     activation, claim = offer(activation)
     assert claim is not None
     assert claim.task == B
+
+
+@pytest.mark.parametrize(("priority", "expected"), [(0, None), (1, C)])
+def test_what_is_kept_is_offered_instead_to_a_task_of_higher_priority_that_has_come_since(
+    priority: int, expected: str | None
+) -> None:
+    """It would have the other one yield what that is about to have, and could say so only when it asks again."""
+    activation = offered(B)
+    activation, verdict, _ = obey(activation, call_of(Reserve, C, priority=priority, beginning=-1.0, waits=True))
+    assert verdict is Verdict.BUSY
+    activation, claim = offer(activation)
+    assert (activation.kept_for, claim and claim.task) == (expected or B, expected)
+    if expected:
+        assert offer(activation) == (activation, None)
+        _, again = offer(withdraw(activation, C))
+        assert again is not None
+        assert again.task == B, "its own offer was cut short"
 
 
 def test_an_offer_to_another_task_is_not_withdrawn() -> None:

@@ -44,6 +44,8 @@ class WaitingTasks:
         self._bus, self._keys, self._component, self._life = bus, keys, component, life
         self._activation, self._become, self._ask_holder, self._let_go = activation, become, ask_holder, let_go
         self._closed = False
+        self._end_of_offer: Undo = lambda: None
+        """Undoes the end of the last offer."""
         self._free: Publisher | None = None
         """What tells tasks that wait for the component that it is free, once one has waited."""
         self._preemption: Undo | None = None
@@ -87,7 +89,8 @@ class WaitingTasks:
         self._become(activation)
         if claim is not None and not self._closed:
             self.tell(claim.task)
-            self._bus.later(OFFER, partial(self._withdraw, claim.task))
+            self._end_of_offer()
+            self._end_of_offer = self._bus.later(OFFER, partial(self._withdraw, claim.task))
 
     def _withdraw(self, task: str) -> None:
         if self._activation().kept_for == task:

@@ -38,6 +38,21 @@ def test_a_component_that_is_free_is_offered_to_those_that_wait_in_order() -> No
     assert stage.freed == ["high~1", "early~1"]
 
 
+def test_a_task_of_higher_priority_that_begins_to_wait_while_it_is_offered_has_it_offered_in_full() -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    stage.others.announce(THEM)
+    stage.call(reserve(1, THEM, task="low~1"))
+    stage.call(release(2, US))
+    stage.let_pass(OFFER / 2)
+    assert stage.call(reserve(1, THEM, task="high~1", priority=1, waits=True)).verdict is Verdict.BUSY
+    stage.let_pass(0.9 * OFFER)
+    assert stage.freed == ["low~1", "high~1"]
+    assert stage.call(reserve(1, THEM, task="low~1")).verdict is Verdict.BUSY
+    stage.let_pass(0.2 * OFFER)
+    assert stage.freed == ["low~1", "high~1", "low~1"], "it has not come for it"
+
+
 def test_a_component_declares_what_tells_that_it_is_free_once() -> None:
     stage, declared = Stage(), list[str]()
     bus, declare = stage.runtime.bus, stage.runtime.bus.publisher
