@@ -4,7 +4,8 @@ A literal for each option: it plays; of two, the second plays iff the first does
 many as it has slots; a component plays one role at most. An option with a need implies one of the options that support
 it, by way of a literal where several options have the need: one for all needs that the same options support.
 A literal for each value of a variable, at most one of which holds: an option that constrains the variable implies one
-of the values that it admits, or none of those that it does not admit.
+of the values that it admits, or none of those that it does not admit. Values that no option tells apart have one
+literal, and there is none where one value suits all options.
 
 Where several roles may feed a need, the options of each that support it have a literal which holds iff one of them
 plays, one for all needs that the same options support: what clause learning then learns is about the signals that roles
@@ -29,6 +30,8 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from functools import reduce
+from operator import and_, or_
 from typing import NamedTuple
 
 from selfconf.model.partition import ANY_VALUE
@@ -236,8 +239,10 @@ class Encoding:
 
     def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> None:
         """Let options have a common value of a variable, given their literals and the masks of what they admit."""
-        width = max((mask if mask >= 0 else ~mask).bit_length() for _, mask in constrained)
-        values = [(1 << k, self.literal()) for k in range(width)]
+        masks = {mask for _, mask in constrained}
+        if reduce(and_, masks):
+            return  # one value suits all of them
+        values = [(alike, self.literal()) for alike in _told_apart(masks)]
         self._at_most([value for _, value in values], 1)
         said: dict[int, list[list[int]]] = {}
         """What is said of each mask, but for the literal that it is about."""
@@ -245,9 +250,9 @@ class Encoding:
             if mask not in said:
                 # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
                 said[mask] = (
-                    [[*force, *[value for bit, value in values if mask & bit]]]
+                    [[*force, *[value for some, value in values if mask & some]]]
                     if mask >= 0
-                    else [[*force, -value] for bit, value in values if not mask & bit]
+                    else [[*force, -value] for some, value in values if not mask & some]
                 )
             self.statements += [[-literal, *rest] for rest in said[mask]]
 
@@ -315,3 +320,18 @@ class Encoding:
         options = [literal for literals in self.plays for literal in literals]
         self.statements += [[options[number] for number in some] for some in known.played]
         self.statements += [[-options[number]] for number in known.excluded]
+
+
+def _told_apart(masks: Collection[int]) -> list[int]:
+    """Return the values that masks of zero or more admit, as disjoint masks: together those that none tells apart.
+
+    What only masks below zero admit is left out, as each of them admits values beside those that have a bit.
+    """
+    named = reduce(or_, [mask for mask in masks if mask >= 0], 0)
+    if named.bit_count() <= len(masks):
+        # So many masks leave hardly any values alike, so that to look for these takes longer than it saves.
+        return [1 << bit for bit in range(named.bit_length()) if named >> bit & 1]
+    parts = [named]
+    for mask in masks:
+        parts = [one for part in parts for one in (part & mask, part & ~mask) if one]
+    return parts

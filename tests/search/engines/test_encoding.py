@@ -20,6 +20,13 @@ BOTH = component("both", outputs="o:Image")
 SEEING = problem({"eye": [*EYES, component("deaf")], "mind": [MIND]}, "eye>mind")
 SHARED = problem({"eye": [BOTH, EYES[0]], "mind": [BOTH, MIND]}, "eye>mind")
 TWINS = problem({"one": EYES, "other": EYES, "third": [*EYES, component("third")]})
+HOURS = ("nine", "ten", "eleven", "noon", "one")
+ALIKE = problem(
+    {"eye": EYES, "mind": [MIND]},
+    "eye>mind",
+    values={"eye": {"left": 0b00011, "right": 0b11100}, "mind": {"mind": 0b11100}},
+    domain=HOURS,
+)
 PROBLEMS = {
     "a need": SEEING,
     "two slots of one role": problem({"eye": [*EYES, component("third")]}, counts={"eye": (2, 2)}),
@@ -31,6 +38,12 @@ PROBLEMS = {
         "eye>mind",
         values={"eye": {"left": 0b01, "right": 0b10}, "mind": {"mind": 0b10}},
         domain=("kitchen", "hall"),
+    ),
+    "values that no option tells apart": ALIKE,
+    "values that an option excludes": problem(
+        {"eye": EYES, "mind": [MIND, component("dream")]},
+        values={"eye": {"left": 0b1111, "right": ~0b0011}, "mind": {"mind": 0b0011}},
+        domain=HOURS,
     ),
     "more roles than components": TWINS,
     "a need of two candidates": problem(
@@ -122,6 +135,17 @@ def test_where_order_is_asked_for_interchangeable_roles_are_played_in_it() -> No
 def test_of_two_options_for_one_slot_one_is_the_negation_of_the_other() -> None:
     (first, second), _ = Encoding(reduced(SHARED)).plays
     assert first == -second
+
+
+def test_values_that_no_option_tells_apart_have_one_literal() -> None:
+    (eye, _), (mind,) = Encoding(reduced(ALIKE)).plays
+    assert Encoding(reduced(ALIKE)).top == len([eye, mind]) + len(["nine or ten", "eleven, noon or one"])
+
+
+def test_where_one_value_suits_all_options_there_are_no_literals_for_values() -> None:
+    values = {"eye": {"left": 0b00011, "right": 0b00001}}
+    encoding = Encoding(reduced(problem({"eye": EYES, "mind": [MIND]}, "eye>mind", values=values, domain=HOURS)))
+    assert encoding.top == max(abs(literal) for literals in encoding.plays for literal in literals)
 
 
 def test_each_new_literal_is_one_higher_than_all_before() -> None:
