@@ -123,7 +123,7 @@ def queue(state: State) -> Reaction:
     """Ask for each component that another task holds, so that it tells when it is free, and for no other any more.
 
     A task of lower priority may hold another one by now, and would have to yield it for nothing. But what is kept for
-    this task, or was a moment ago, is not given away.
+    this task, or was since it began to wait, is not given away: no task is asked to yield it before this one asks.
     """
     busy = frozenset(component for component, loss in state.lost.items() if loss.busy)
     left = state.queued - busy - state.offered
