@@ -122,14 +122,14 @@ def _wait_no_more(state: State) -> Reaction:
 def queue(state: State) -> Reaction:
     """Ask for each component that another task holds, so that it tells when it is free, and for no other any more.
 
-    A task of lower priority may hold another one by now, and would have to yield it for nothing. But what is kept for
-    this task, or was since it began to wait, is not given away: no task is asked to yield it before this one asks.
+    A task of lower priority may hold another one by now, and would have to yield it for nothing; and what is kept for
+    this task, which cannot take it yet, goes to the next that waits.
     """
     busy = frozenset(component for component, loss in state.lost.items() if loss.busy)
-    left = state.queued - busy - state.offered
+    left = state.queued - busy
     effects: list[Effect] = [QueueFor(component, state.epoch) for component in sorted(busy - state.owed.keys())]
     effects += [Decline(component, state.epoch) for component in sorted(left - state.owed.keys())]
-    return replace(state, queued=state.queued - left | busy), tuple(effects)
+    return replace(state, queued=busy), tuple(effects)
 
 
 def stand_down(state: State) -> Reaction:

@@ -135,7 +135,7 @@ def test_a_component_that_says_that_it_is_free_is_believed_more_than_its_last_ho
     assert history.hear(Discovered({TRACKER: OTHERS}))[-1] == Compose(4, frozenset({TRACKER}), None)
 
 
-def test_what_is_kept_for_a_task_stays_free_for_it_while_it_waits_for_the_rest() -> None:
+def test_what_was_kept_for_a_task_counts_as_free_while_it_waits_for_the_rest() -> None:
     """A task that means to have both, and has reserved neither yet, says that it holds them."""
     meant = {TRACKER: RESERVING, CONTROL: RESERVING}
     history = History(PATIENT)
@@ -144,8 +144,8 @@ def test_what_is_kept_for_a_task_stays_free_for_it_while_it_waits_for_the_rest()
     history.composed(navigation())
     assert history.hear(Freed(TRACKER), Discovered(meant)) == [Compose(3, frozenset({CONTROL}), None)]
     history.composed(REFUSAL)
-    again = history.composed(navigation())
-    assert again == [QueueFor(CONTROL, history.state.epoch)], "the other is neither asked for again nor given away"
+    epoch = history.state.epoch + 1
+    assert history.composed(navigation()) == [QueueFor(CONTROL, epoch), Decline(TRACKER, epoch)]
     assert history.hear(Freed(CONTROL), Discovered(meant)) == [Compose(5, frozenset(), None)]
 
 
@@ -174,14 +174,13 @@ def test_a_patient_task_that_is_stopped_waits_no_more() -> None:
     assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
 
 
-def test_a_component_that_was_free_and_was_not_taken_forgets_the_task_that_is_stopped() -> None:
-    """It remembers the task until it is reserved or released: else it would be kept for a task that has ended."""
+def test_a_component_that_was_free_and_was_not_taken_forgets_the_task() -> None:
+    """It remembers the task until it is reserved or released: else it would be kept for one that cannot take it."""
     history = waiting()
     history.hear(Freed(TRACKER), Discovered())
-    history.composed(REFUSAL)
+    assert history.composed(REFUSAL) == [Decline(TRACKER, history.state.epoch)]
     assert history.state.phase is Phase.REFUSED
-    assert released(history.hear(Stopped())) == [TRACKER]
-    assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
+    assert history.hear(Stopped()) == [Finish()]
 
 
 def test_what_was_not_free_for_this_task_counts_again_once_it_is() -> None:
