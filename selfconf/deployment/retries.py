@@ -74,8 +74,9 @@ class Retries:
 
     def await_recovery(self) -> None:
         """While the task runs, set the time to try again what has raised FAIL, if it may change for the better."""
-        failed = any(loss.cause is Cause.FAIL for loss in self._state().lost.values())
-        if self._upgrade is None or self._awaits_recovery or not failed:
+        if self._upgrade is None or self._awaits_recovery:
+            return
+        if not any(loss.cause is Cause.FAIL for loss in self._state().lost.values()):
             return
         if self._bus.now() - self._tried_at > LONGEST_PAUSE:  # all was well meanwhile
             self._recovery_pause = TRY_AGAIN

@@ -6,7 +6,7 @@ nothing else. Members that are not known are passed over, so that a newer peer c
 
 Messages are written and read by orjson, as a failover waits for several of them. What it refuses, numbers beyond any
 double and halves of surrogate pairs, the standard library writes and reads: the field that may not hold it says why.
-What is no finite number it writes as `null`, which no field of a number may hold: a message has none to send.
+What is no finite number it writes as `null`: a message has none to send.
 """
 
 from __future__ import annotations

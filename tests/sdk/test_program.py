@@ -138,6 +138,19 @@ class Programs:
         assert until(lambda: answers)
         return process
 
+    def abandoned_actuator(self, program: str, **environment: str) -> subprocess.Popen[str]:
+        """Start a program whose component is an actuator, activate that, and let its configurator leave."""
+        (self.stage.folder / "motor.ttl").write_text(f"{PREFIXES}:motor a sc:Component, :Motor .")
+        (self.stage.folder / "lamp.py").write_text(program)
+        process = self.start(**environment)
+        assert until(self.lives, 2 * PATIENCE)
+        reserved = self.stage.call("urn:c:motor", "reserve", Reserve(1, self.stage.supervisor, "task~1"))
+        assert until(lambda: reserved)
+        answers = self.stage.apply("urn:c:motor")
+        assert until(lambda: answers)
+        self.stage.leave()
+        return process
+
 
 @pytest.fixture
 def programs(living: LivingStage) -> Iterator[Programs]:
@@ -216,16 +229,7 @@ main(Motor)
 
 @pytest.mark.process
 def test_an_actuator_whose_configurator_is_gone_comes_to_rest_though_its_terminal_is_held(programs: Programs) -> None:
-    folder = programs.stage.folder
-    (folder / "motor.ttl").write_text(f"{PREFIXES}:motor a sc:Component, :Motor .")
-    (folder / "lamp.py").write_text(HOLDING)
-    process = programs.start()
-    assert until(programs.lives, 2 * PATIENCE)
-    reserved = programs.stage.call("urn:c:motor", "reserve", Reserve(1, programs.stage.supervisor, "task~1"))
-    assert until(lambda: reserved)
-    answers = programs.stage.apply("urn:c:motor")
-    assert until(lambda: answers)
-    programs.stage.leave()
+    process = programs.abandoned_actuator(HOLDING)
     assert process.stdout is not None
     assert select.select([process.stdout], [], [], PATIENCE)[0]
     assert process.stdout.readline() == "at rest\n"
@@ -249,16 +253,7 @@ main(Motor)
 
 @pytest.mark.process
 def test_a_program_that_a_site_has_started_ends_when_its_actuator_breaks_as_it_is_to_rest(programs: Programs) -> None:
-    folder = programs.stage.folder
-    (folder / "motor.ttl").write_text(f"{PREFIXES}:motor a sc:Component, :Motor .")
-    (folder / "lamp.py").write_text(JAMMED)
-    process = programs.start(**parent_environment())
-    assert until(programs.lives, 2 * PATIENCE)
-    reserved = programs.stage.call("urn:c:motor", "reserve", Reserve(1, programs.stage.supervisor, "task~1"))
-    assert until(lambda: reserved)
-    answers = programs.stage.apply("urn:c:motor")
-    assert until(lambda: answers)
-    programs.stage.leave()
+    process = programs.abandoned_actuator(JAMMED, **parent_environment())
     assert process.wait(PATIENCE) == HUNG_EXIT_CODE
     assert process.stderr is not None
     assert "urn:c:motor: it broke in stopped: RuntimeError: jammed" in process.stderr.read()
