@@ -17,8 +17,8 @@ from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, Security, with_port
 from selfconf.errors import NetworkError
 from tests.bus.test_zenoh_bus import until
 
-NOBODY = with_port(ANYWHERE_ON_LOOPBACK)
-"""An endpoint on which nothing listens: an uplink does not wait for it."""
+NOBODY = "tcp/127.0.0.1:1"
+"""An endpoint on which nothing listens: an uplink does not wait for it. No hub that takes any free port is given it."""
 
 
 class CountedRelay(Relay):
