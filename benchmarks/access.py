@@ -32,7 +32,7 @@ from benchmarks import failover
 from benchmarks.machine import described, quantile, table
 from benchmarks.quiet import until_quiet
 from selfconf.access import KeysFolder, PrincipalKind
-from selfconf.api.local_site import SiteProcess
+from selfconf.api.sites.local_site import SiteProcess
 from selfconf.bus.port import Urgency
 from selfconf.bus.zenoh_bus import ZenohBus, client
 from selfconf.model.term import IRI

@@ -28,8 +28,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.machine import described, quantile
-from selfconf.api.local_site import SiteProcess
-from selfconf.api.past import past_graphs
+from selfconf.api.living.past import past_graphs
+from selfconf.api.sites.local_site import SiteProcess
 from selfconf.bus.port import Request, Urgency
 from selfconf.bus.zenoh_bus import client
 from selfconf.model.configuration import Assignment, Configuration

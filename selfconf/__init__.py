@@ -21,12 +21,12 @@ from selfconf.late_names import TYPE_CHECKING, late_names
 if TYPE_CHECKING:
     from selfconf.api.ecology import Ecology
     from selfconf.api.inquiry import configure
-    from selfconf.api.living import LivingEcology, join
-    from selfconf.api.local_site import sites
+    from selfconf.api.living.living_ecology import LivingEcology, join
     from selfconf.api.partition_table import partition
     from selfconf.api.reading import read
-    from selfconf.api.run import Run
+    from selfconf.api.sites.local_site import sites
     from selfconf.api.task import TaskSpecification, template
+    from selfconf.api.tasks.run import Run
     from selfconf.api.validation import validate
     from selfconf.errors import SelfconfError
     from selfconf.model.configuration import Configuration
@@ -56,12 +56,12 @@ __all__ = [
 _HOME = {
     "configure": "api.inquiry",
     "Ecology": "api.ecology",
-    "LivingEcology": "api.living",
-    "join": "api.living",
-    "sites": "api.local_site",
+    "LivingEcology": "api.living.living_ecology",
+    "join": "api.living.living_ecology",
+    "sites": "api.sites.local_site",
     "partition": "api.partition_table",
     "read": "api.reading",
-    "Run": "api.run",
+    "Run": "api.tasks.run",
     "TaskSpecification": "api.task",
     "template": "api.task",
     "validate": "api.validation",

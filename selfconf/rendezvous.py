@@ -4,7 +4,7 @@ Across machines endpoints are given (`--connect`, or `SELFCONF_CONNECT`); on one
 writes a small file into the user's runtime folder (`this_machine`).
 
 One site of an ecology on a machine relays, on a port that follows from the ecology's name; all others are its clients
-(`selfconf.api.joining`). So a program that knows the name knows where to look for one that takes its place.
+(`selfconf.api.sites.joining`). So a program that knows the name knows where to look for one that takes its place.
 """
 
 from __future__ import annotations

@@ -14,14 +14,14 @@ with it, so a program that names no types needs nothing of this module.
 """
 
 from selfconf.api.answer import Answer
-from selfconf.api.component_states import ComponentState
-from selfconf.api.echo import HeardSignal
 from selfconf.api.ecology import Components, Solutions
-from selfconf.api.living_tasks import LivingTask
+from selfconf.api.living.component_states import ComponentState
+from selfconf.api.living.echo import HeardSignal
 from selfconf.api.partition_table import PartitionTable, RolePartition
-from selfconf.api.run_outcomes import AnsweredEvent as AnyRunEvent
-from selfconf.api.run_outcomes import AnsweredRunning as TaskRunning
-from selfconf.api.run_outcomes import AnsweredSearch as SearchEnded
+from selfconf.api.tasks.living_tasks import LivingTask
+from selfconf.api.tasks.run_outcomes import AnsweredEvent as AnyRunEvent
+from selfconf.api.tasks.run_outcomes import AnsweredRunning as TaskRunning
+from selfconf.api.tasks.run_outcomes import AnsweredSearch as SearchEnded
 from selfconf.api.validation import ValidationReport
 from selfconf.model.configuration import Assignment, Connection, ParameterSetting
 from selfconf.model.consequence import Consequence

@@ -22,8 +22,8 @@ from pathlib import Path
 from typing import NoReturn
 
 PRELOADED = (
-    "selfconf.api.run",
-    "selfconf.api.site_program",
+    "selfconf.api.tasks.run",
+    "selfconf.api.sites.site_program",
     "selfconf.cli.main",
     "selfconf.cli.run",
     "selfconf.cli.site",

@@ -8,8 +8,8 @@ INHABITED = "inhabited"
 """The fixture that starts a site and seven components: once is enough."""
 WHOLE = {
     "tests/api/test_ecology.py",
-    "tests/api/test_living.py",
-    "tests/api/test_run.py",
+    "tests/api/living/test_living_ecology.py",
+    "tests/api/tasks/test_run.py",
     "tests/api/test_typed_programs.py",
     "tests/cli/test_untrusted.py",
     "tests/query/test_endpoint.py",

@@ -14,8 +14,8 @@ from selfconf.model.term import IRI
 from selfconf.model.wording import client_text, utc_text
 
 if TYPE_CHECKING:
-    from selfconf.api.living import LivingEcology
-    from selfconf.api.site_access import SiteAccess
+    from selfconf.api.living.living_ecology import LivingEcology
+    from selfconf.api.living.site_access import SiteAccess
 
 EXAMPLE = """  selfconf access --keys keys
   selfconf access --keys keys --task tidy           # what each component of a deployed task may hear

@@ -95,8 +95,8 @@ def run(given: argparse.Namespace) -> int:
     module, extra = ("rosbags", "ros2") if given.world == "ros2" else ("aiohttp", "wot")
     if importlib.util.find_spec(module) is None:
         raise InstallationError(f"{module} is missing; install the extra `{extra}`")
-    from selfconf.api.bridge_program import serve_nodes, serve_things
-    from selfconf.api.site_program import SiteOptions
+    from selfconf.api.sites.bridge_program import serve_nodes, serve_things
+    from selfconf.api.sites.site_program import SiteOptions
 
     site = SiteOptions(
         ecology=given.ecology,

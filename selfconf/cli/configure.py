@@ -82,7 +82,7 @@ def run(given: argparse.Namespace) -> int:
 
 def _absent(ecology: Ecology, components: Iterable[IRI]) -> frozenset[IRI]:
     """The components, among some of the living ecology, that no process runs, and that no site can start."""
-    from selfconf.api.living import LivingEcology
+    from selfconf.api.living.living_ecology import LivingEcology
 
     if not isinstance(ecology, LivingEcology):
         return frozenset()

@@ -11,7 +11,7 @@ from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 from selfconf.cli.terminal import styled_state
 
 if TYPE_CHECKING:
-    from selfconf.api.component_states import ComponentState
+    from selfconf.api.living.component_states import ComponentState
     from selfconf.model.term import IRI
 
 EXAMPLE = """  selfconf discover --format json"""

@@ -11,7 +11,7 @@ from selfconf.cli.options import add_ecology_arguments, joined
 from selfconf.cli.terminal import complain, paint
 
 if TYPE_CHECKING:
-    from selfconf.api.echo import HeardSignal
+    from selfconf.api.living.echo import HeardSignal
 
 EXAMPLE = """  selfconf echo person-tracker pose --count 5"""
 

@@ -79,7 +79,7 @@ def _imported(given: argparse.Namespace) -> ImportReport:
         if not given.sources:
             raise AuthorError("name at least one SOURCE to import, or for ros2 a router with --connect")
         return import_descriptions(given.form, given.sources, given.out, given.namespace)
-    from selfconf.api.living_import import import_living_nodes
+    from selfconf.api.living.living_import import import_living_nodes
 
     if given.form != "ros2" or given.sources:
         raise AuthorError("--connect imports the nodes that live in a domain of ROS 2; it goes with ros2 and no SOURCE")

@@ -44,7 +44,7 @@ def run(given: argparse.Namespace) -> int:
 
     Raises AuthorError for a component that has none and is not advertised, where the ecology lives.
     """
-    from selfconf.api.log_reader import log_reader
+    from selfconf.api.living.log_reader import log_reader
     from selfconf.termination import end_as_by_ctrl_c
 
     end_as_by_ctrl_c()

@@ -17,7 +17,7 @@ from selfconf.project import BIND, REASONING, STRATEGIES
 
 if TYPE_CHECKING:
     from selfconf.api.ecology import Ecology
-    from selfconf.api.living import LivingEcology
+    from selfconf.api.living.living_ecology import LivingEcology
     from selfconf.api.method import Method
     from selfconf.api.task import TaskSpecification
     from selfconf.model.left_out import LeftOut
@@ -259,7 +259,7 @@ def read_files(paths: Iterable[Path]) -> Ecology:
 
 def joined(given: argparse.Namespace) -> LivingEcology:
     """The living ecology that the arguments name. Raises NetworkError if there is none."""
-    from selfconf.api.living import join
+    from selfconf.api.living.living_ecology import join
 
     return join(given.ecology, connect=given.connect, keys=given.keys)
 

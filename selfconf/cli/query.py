@@ -92,7 +92,7 @@ def run(given: argparse.Namespace) -> int:
 
 
 def _add_past(dataset: Dataset, folder: Path) -> None:
-    from selfconf.api.past import past_graphs
+    from selfconf.api.living.past import past_graphs
 
     for name, triples in past_graphs(folder).items():
         dataset.replace(name, triples)

@@ -30,10 +30,10 @@ from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, NetworkError, reason
 
 if TYPE_CHECKING:
-    from selfconf.api.local_site import SiteProcess
     from selfconf.api.method import Method
-    from selfconf.api.run import Run
+    from selfconf.api.sites.local_site import SiteProcess
     from selfconf.api.task import TaskSpecification
+    from selfconf.api.tasks.run import Run
     from selfconf.model.term import IRI
     from selfconf.rdf.advertisements import Advertisement
 
@@ -179,10 +179,10 @@ def _tell_of_others(given: argparse.Namespace) -> None:
 def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple[Run, SiteProcess | None]]:
     """The run in the ecology that there is, or in one with a site of its own for the advertisements given."""
     from selfconf import rendezvous
-    from selfconf.api.detached import TaskOptions
-    from selfconf.api.local_site import SiteProcess
     from selfconf.api.membership import MEMBERS, Membership
-    from selfconf.api.run import Run
+    from selfconf.api.sites.local_site import SiteProcess
+    from selfconf.api.tasks.detached import TaskOptions
+    from selfconf.api.tasks.run import Run
 
     method = method_of(given, task)
     options = TaskOptions.of(given.policy, given.name or "", given.priority, _upgrade(given))
@@ -235,7 +235,7 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
 def _fetched(given: argparse.Namespace, task: TaskSpecification, method: Method) -> Iterator[Path]:
     """A folder with what the endpoint has for the task; what was left out is named on stderr."""
     from selfconf.api.ecology import EndpointEcology
-    from selfconf.api.endpoint_files import endpoint_files
+    from selfconf.api.sites.endpoint_files import endpoint_files
 
     one_ecology(given)
     ecology = EndpointEcology(given.endpoint)

@@ -49,7 +49,7 @@ def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT, SIGTERM or SIGHUP; then 0. Of `restart`: 0 once the component lives again."""
     if given.paths[:1] == [RESTART]:
         return _restart(given)
-    from selfconf.api.site_program import SiteOptions, serve
+    from selfconf.api.sites.site_program import SiteOptions, serve
 
     paths = [Path(path) for path in given.paths] or given.project.values.get("ads")
     if not paths:

@@ -16,7 +16,7 @@ from selfconf.model.term import IRI
 from selfconf.model.wording import one_line
 
 if TYPE_CHECKING:
-    from selfconf.api.living import LivingEcology
+    from selfconf.api.living.living_ecology import LivingEcology
     from selfconf.protocol.messages import Status
     from selfconf.render import Names
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 
 if TYPE_CHECKING:
-    from selfconf.api.living import LivingEcology
+    from selfconf.api.living.living_ecology import LivingEcology
 
 
 EXAMPLE = """  selfconf tasks --format json"""

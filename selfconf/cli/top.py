@@ -12,8 +12,8 @@ from selfconf.cli.options import add_ecology_arguments, complain_of, joined, sec
 from selfconf.cli.terminal import Terminal, complain, display, styled_state
 
 if TYPE_CHECKING:
-    from selfconf.api.component_states import ComponentState
-    from selfconf.api.living import LivingEcology
+    from selfconf.api.living.component_states import ComponentState
+    from selfconf.api.living.living_ecology import LivingEcology
 
 EXAMPLE = """  selfconf top --every 2"""
 
@@ -66,7 +66,7 @@ def _rates(
     before: tuple[ComponentState, ...], now: tuple[ComponentState, ...], seconds: float
 ) -> dict[str, dict[str, float]]:
     """By component and output, the signals a second between two looks."""
-    from selfconf.api.component_states import issue_rates
+    from selfconf.api.living.component_states import issue_rates
 
     known = {one.component: one for one in before}
     return {

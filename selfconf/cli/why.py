@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 with an answer, 1 if no task that is remembered has to do with the term."""
     if given.history is not None:
-        from selfconf.api.past import past_why
+        from selfconf.api.living.past import past_why
 
         return _tell(given, past_why(given.history, given.term, given.at), f" in {given.history}")
     with joined(given) as ecology:

@@ -74,7 +74,7 @@ class ExplainedRefusals:
         }
         try:
             async with self._one:
-                told = await judged_apart("selfconf.api.explaining", question, EXPLAINED_WITHIN)
+                told = await judged_apart("selfconf.api.tasks.explaining", question, EXPLAINED_WITHIN)
         except asyncio.TimeoutError:
             told = {"detail": f"what would mend it was not found in {EXPLAINED_WITHIN:g} s"}
         except ValueError:

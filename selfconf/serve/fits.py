@@ -73,6 +73,6 @@ class Fits:
 async def _judged(record: bytes, advertisement: bytes) -> Any:
     question = {"record": record.decode(), "advertisement": advertisement.decode()}
     try:
-        return await judged_apart("selfconf.api.role_fits", question, JUDGING)
+        return await judged_apart("selfconf.api.tasks.role_fits", question, JUDGING)
     except ValueError:
         return {"detail": "what its roles ask for cannot be judged"}

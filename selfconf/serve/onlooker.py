@@ -12,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
-from selfconf.api.echo import heard_signal
-from selfconf.api.output_sources import follow_output
+from selfconf.api.living.echo import heard_signal
+from selfconf.api.living.output_sources import follow_output
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.discovery import FoundAdvertisement
 from selfconf.errors import PeerError

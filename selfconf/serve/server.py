@@ -16,7 +16,7 @@ from types import FrameType
 import uvicorn
 
 from selfconf.api.membership import Membership
-from selfconf.api.site_program import is_beyond_loopback
+from selfconf.api.sites.site_program import is_beyond_loopback
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
 from selfconf.errors import AuthorError, NetworkError

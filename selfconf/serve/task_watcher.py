@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from selfconf.api.deployed import deployed_body
+from selfconf.api.living.deployed import deployed_body
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import Literal

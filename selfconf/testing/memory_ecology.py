@@ -14,8 +14,8 @@ from selfconf.api.inquiry import refusal_with_places
 from selfconf.api.method import Method
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered, text_of
-from selfconf.api.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.api.task import TaskSpecification, completed
+from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.bus.memory import Faults, Network
 from selfconf.bus.memory_bus import MemoryBus
 from selfconf.composites import Composites

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.api.run import Run
+from selfconf.api.tasks.run import Run
 
 pytest.importorskip("mypy", reason="mypy, which checks types, is not installed")
 

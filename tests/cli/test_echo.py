@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from selfconf.api.echo import HeardSignal
+from selfconf.api.living.echo import HeardSignal
 from selfconf.cli import echo
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import SignalEncoding, Stamp

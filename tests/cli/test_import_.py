@@ -10,7 +10,7 @@ import pytest
 from referencing import Registry, Resource
 
 from selfconf import library
-from selfconf.api import living_import
+from selfconf.api.living import living_import
 from selfconf.importing import ImportReport
 from tests.cli.command import run
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from selfconf.api import released_components
+from selfconf.api.tasks import released_components
 from selfconf.cli import status
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Status

@@ -10,8 +10,8 @@ from urllib.parse import quote
 import pytest
 
 import selfconf as sc
-from selfconf.api.detached import task_record
 from selfconf.api.method import Method
+from selfconf.api.tasks.detached import task_record
 from selfconf.deployment.runner import TaskRunner
 from selfconf.serve import explained_refusals
 from selfconf.serve.board import Board

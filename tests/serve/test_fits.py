@@ -9,8 +9,8 @@ from urllib.parse import quote
 import pytest
 
 import selfconf as sc
-from selfconf.api.detached import task_record
 from selfconf.api.method import Method
+from selfconf.api.tasks.detached import task_record
 from selfconf.serve import fits
 from selfconf.serve.board import Board
 from tests.lab import NAVIGATE, Lab, iri

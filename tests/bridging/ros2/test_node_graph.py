@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.api.living_import import import_living_nodes
+from selfconf.api.living.living_import import import_living_nodes
 from selfconf.bridging.ros2 import living_graph
 from selfconf.bus.zenoh_bus import client
 from selfconf.importing import FileState, ImportLedger, described_text

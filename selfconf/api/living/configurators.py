@@ -1,0 +1,86 @@
+"""What the configurators of a living ecology tell of themselves: what they have deployed, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from typing import Any
+
+from selfconf.api.living.deployed import connected, deployed_body
+from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.errors import PeerError, TurtleError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode
+from selfconf.protocol.keys import Keys, configurator_of, task_name
+from selfconf.protocol.messages import Notice
+from selfconf.rdf import turtle
+from selfconf.rdf.turtle import Document
+from selfconf.render.why import told_why
+
+
+class Configurators:
+    """Asks the configurators of an ecology; what is wrong with an answer is left out of it, and a complaint."""
+
+    def __init__(self, bus: SynchronousBus, keys: Keys) -> None:
+        self._bus, self._keys = bus, keys
+        self.complaints: tuple[str, ...] = ()
+        """What was wrong with the answers to the last question, in sentences."""
+
+    def documents(self) -> list[tuple[str, Document]]:
+        """What each configurator has deployed, with its name."""
+        found: list[tuple[str, Document]] = []
+        complaints: list[str] = []
+        for sample in self._bus.ask(self._keys.configuration()).samples:
+            try:
+                name = configurator_of(sample.key)
+                if sample.key != self._keys.configuration(name):
+                    raise PeerError(f"{sample.key!r} is not the key of the configuration of {name!r}")
+                found.append((name, turtle.parse(sample.payload, sample.key)))
+            except (PeerError, TurtleError) as error:
+                complaints.append(f"left out a configuration: {error}")
+        self.complaints = tuple(complaints)
+        return found
+
+    def deployed(self) -> dict[str, dict[str, Any]]:
+        """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
+        bodies = [(name, deployed_body(document)) for name, document in self.documents()]
+        return {name: body for name, body in bodies if body is not None}
+
+    def links(self, names: Collection[str], components: Iterable[IRI]) -> dict[IRI, tuple[IRI, ...]]:
+        """The sources of each component, of those given and of those that some configurators have connected; sorted."""
+        heard: dict[IRI, set[IRI]] = {component: set() for component in components}
+        for name, document in self.documents():
+            if name in names:
+                for source, sink in connected(document):
+                    heard.setdefault(sink, set()).add(source)
+        return {component: tuple(sorted(sources)) for component, sources in sorted(heard.items())}
+
+    def why(self, term: str, at: float | None) -> list[str]:
+        """Why components play the roles that a term means, in sentences; at a moment, or now."""
+        told: dict[str, list[Notice]] = {}
+        rejected: list[str] = []
+        for sample in self._bus.ask(self._keys.notices()).samples:
+            try:
+                notice = decode(sample.payload, Notice)
+            except PeerError as error:
+                rejected.append(f"left out an answer: {error}")
+                continue
+            if sample.key == self._keys.notices(notice.configurator):
+                told.setdefault(notice.configurator, []).append(notice)
+        passed_over: dict[str, dict[str, list[str]]] = {}
+        if at is None:
+            passed_over = self._passed_over()
+            rejected += self.complaints
+        sentences: list[str] = []
+        for configurator, notices in sorted(told.items()):
+            events = [notice.event for notice in sorted(notices, key=lambda notice: notice.sequence)]
+            try:
+                sentences += told_why(task_name(notices[0].task), events, term, at, passed_over.get(configurator, {}))
+            except PeerError as error:
+                rejected.append(f"left out an answer: {error}")
+        self.complaints = tuple(rejected)
+        return sentences
+
+    def _passed_over(self) -> dict[str, dict[str, list[str]]]:
+        """By configurator and role, the candidates that go before those that are deployed."""
+        deployed = self.deployed().items()
+        return {name: {role["role"]: role["passed_over"] for role in body["roles"]} for name, body in deployed}

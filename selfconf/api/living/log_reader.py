@@ -1,0 +1,117 @@
+"""What components print, on this machine and on others, read as one log while it is written.
+
+The logs of this machine are files, which are there without the ecology; the sites of other machines are asked for
+theirs.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from selfconf.api.living.living_ecology import LivingEcology, join
+from selfconf.api.living.site_logs import LogSource, local_log, names_of_log, site_logs
+from selfconf.errors import NetworkError
+from selfconf.model.log_line import LogLine
+from selfconf.model.wording import one_line
+from selfconf.protocol.messages import LogPart, LogQuestion
+from selfconf.rendezvous import asked_for
+from selfconf.this_machine import local_sites
+
+FOLLOW_PAUSE = 0.2
+"""Seconds after which a log that is followed is looked at again: nothing tells when a file has grown."""
+ASK_AGAIN = 1.0
+"""Seconds after which sites of other machines are asked again."""
+
+
+class LogReader:
+    """Reads some logs as one, in the order of the times of their lines: the latest lines, then what is added."""
+
+    def __init__(
+        self,
+        sources: Iterable[LogSource],
+        component: str = "",
+        pause: float = FOLLOW_PAUSE,
+        look_up: Callable[[str], object] = lambda component: None,
+    ) -> None:
+        """`component` is an IRI or a local name: only the lines of its processes are read; empty: all.
+
+        `pause` is for how many seconds one who follows the logs is to wait between two looks. `look_up` raises
+        AuthorError for a component that is not there, as far as the ecology lives and can be asked.
+        """
+        self._component, self.pause, self._look_up = component, pause, look_up
+        self._positions = dict.fromkeys(sources, "")
+
+    def latest(self, most: int) -> list[LogLine]:
+        """The latest lines, so many at most; what is added from then on is what `added` returns."""
+        found = self._merged(lambda source: self._part(source, LogQuestion(self._component, most)).lines)
+        return found[max(0, len(found) - most) :]
+
+    def why_nothing(self) -> str:
+        """Say that no line is kept. Raises AuthorError where it is known that there is no such component."""
+        if not self._component:
+            return "nothing that a component has printed is kept in the log"
+        self._look_up(self._component)
+        return f"nothing that {one_line(self._component)} has printed is kept in the log"
+
+    def added(self) -> list[LogLine]:
+        """The lines that were added since the last look."""
+        return self._merged(self._added)
+
+    def _added(self, source: LogSource) -> list[LogLine]:
+        lines, more = list[LogLine](), True
+        while more:
+            part = self._part(source, LogQuestion(self._component, 0, self._positions[source]))
+            lines += part.lines
+            more = part.more
+        return lines
+
+    def _part(self, source: LogSource, question: LogQuestion) -> LogPart:
+        part = source(question)
+        self._positions[source] = part.position
+        return part
+
+    def _merged(self, lines_of: Callable[[LogSource], Sequence[LogLine]]) -> list[LogLine]:
+        return list(heapq.merge(*map(lines_of, self._positions), key=lambda line: line.time))
+
+
+@contextmanager
+def log_reader(
+    ecology: str | None,
+    connect: Sequence[str],
+    keys: Path | None,
+    folder: Path | None,
+    component: str,
+    complain: Callable[[str], None],
+) -> Iterator[LogReader]:
+    """What reads the logs of an ecology: those in a folder, or those of this machine and of the sites of others.
+
+    `complain` hears of what cannot be read. Raises NetworkError where there is no log at all, and AuthorError where
+    several ecologies have logs and none is named.
+    """
+    ecology, endpoints = asked_for(ecology, connect)
+    paths: list[Path] = []
+    trouble: NetworkError | None = None
+    try:
+        paths = site_logs(ecology, folder)
+        ecology = ecology or names_of_log(paths[0])[0]
+    except NetworkError as error:
+        trouble = error
+    with ExitStack() as stack:
+        living: LivingEcology | None = None
+        others: list[LogSource] = []
+        if connect or (folder is None and (endpoints or local_sites(ecology))):
+            try:
+                living = stack.enter_context(join(ecology, connect=endpoints, keys=keys))
+                others = living.other_logs([names_of_log(path)[1] for path in paths], complain)
+            except NetworkError as error:
+                if trouble is not None:
+                    raise
+                complain(f"only the logs of this machine are shown: {error}")
+        if trouble is not None and not others:
+            raise trouble
+        look_up: Callable[[str], object] = (lambda component: None) if living is None else living.component
+        sources = [*map(local_log, paths), *others]
+        yield LogReader(sources, component, ASK_AGAIN if others else FOLLOW_PAUSE, look_up)

@@ -1,0 +1,74 @@
+"""A bridge as a program: a site whose components are foreign."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from selfconf import files
+from selfconf.api.sites.site_program import SiteOptions, serve
+from selfconf.bridging import Bridge, ForeignWorld
+
+
+def serve_bridge(world: ForeignWorld, site: SiteOptions, complain: Callable[[str], None]) -> None:
+    """Bridge a world to an ecology until SIGINT, SIGTERM or SIGHUP. Raises AuthorError and NetworkError.
+
+    `site` is what the site of the bridge begins with, but for what it serves.
+    """
+    with tempfile.TemporaryDirectory(prefix="selfconf-bridge-") as folder:
+        bridge = Bridge(Path(folder), complain)
+        options = replace(site, paths=(Path(folder),))
+        serve(options, complain, lambda ecology, session: bridge.living(world, ecology, session))
+
+
+def serve_things(
+    sources: Sequence[str],
+    rate: float,
+    credentials: Path | None,
+    hosts: Sequence[str],
+    site: SiteOptions,
+    complain: Callable[[str], None],
+) -> None:
+    """Bridge the things that some files, folders and URLs describe. Raises AuthorError and NetworkError.
+
+    Sources are read again and again, so that things come and go; but files of which none can be read now are a mistake.
+
+    `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with the
+    secrets of origins; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
+    """
+    from selfconf.bridging.wot import (
+        ThingCredentials,
+        ThingSettings,
+        ThingWorld,
+        is_url,
+        read_credentials,
+        unreadable_file,
+    )
+
+    for source in sources:
+        if not is_url(source):
+            files.existing(Path(source))
+    wrong = [unreadable_file(source) for source in sources]
+    if wrong[0] is not None and all(wrong):
+        raise wrong[0]
+    told = ThingCredentials() if credentials is None else read_credentials(credentials)
+    serve_bridge(ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts))), site, complain)
+
+
+def serve_nodes(
+    endpoint: str, domain: int, definitions: Sequence[Path], site: SiteOptions, complain: Callable[[str], None]
+) -> None:
+    """Bridge the nodes of a ROS 2 domain, whose router listens at an endpoint. Raises AuthorError and NetworkError.
+
+    `definitions` are folders with definitions of interfaces, in addition to the types that are known; without them
+    those are that the environment names.
+    """
+    from selfconf import ros_messages
+    from selfconf.bridging.ros2 import RosWorld
+    from selfconf.bus.zenoh_bus import client
+
+    for left_out in ros_messages.learn(definitions or ros_messages.named_folders()):
+        complain(str(left_out))
+    serve_bridge(RosWorld(lambda: client([endpoint]), domain), site, complain)

@@ -1,0 +1,371 @@
+"""The tasks of a living ecology: those that configurators run, and those that its sites keep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence, Set
+from contextlib import suppress
+from dataclasses import replace
+from itertools import chain, count
+
+from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.api.tasks.released_components import ReleasedComponents
+from selfconf.bus.port import Replies
+from selfconf.discovery import namesakes
+from selfconf.errors import NetworkError, PeerError
+from selfconf.model.immutable import immutable
+from selfconf.model.term import IRI
+from selfconf.model.wording import listed
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, owner_of, task_name
+from selfconf.protocol.messages import Status, TaskRecord
+from selfconf.render import disobedience
+from selfconf.this_machine import ClaimedName, LocalTask, claim, suspended_tasks
+
+UNNUMBERED = 56
+"""How many characters of a task's name stand before a number; with that they are 64 at most."""
+
+
+@immutable
+class LivingTask:
+    """A task of an ecology: who runs it, since when, and with which components."""
+
+    name: str
+    priority: int
+    beginning: float
+    """When it began, in seconds of the Unix epoch."""
+    phase: str
+    template: IRI
+    configurator: str
+    """The name of the configurator that runs it; empty if no site has begun to."""
+    detached: bool
+    """Whether it lives in the sites."""
+    components: tuple[IRI, ...] = ()
+    inside_of: IRI | None = None
+    """The composite of which it is the inside, if it is one: its site runs it."""
+
+    @classmethod
+    def of(cls, status: Status, detached: bool) -> LivingTask:
+        """A task that a configurator runs."""
+        return cls(
+            status.name,
+            status.priority,
+            status.beginning,
+            status.phase,
+            status.template,
+            status.configurator,
+            detached,
+            status.components,
+            status.outside,
+        )
+
+    @property
+    def lives_in(self) -> str:
+        """What goes on with it: the sites, the command that runs it, or the composite of which it is the inside."""
+        if self.inside_of is not None:
+            return f"composite {self.inside_of.short}"
+        return "sites" if self.detached else "command"
+
+    @classmethod
+    def kept(cls, record: TaskRecord) -> LivingTask:
+        """A task that the sites keep and that none runs now."""
+        return cls(
+            task_name(record.task),
+            record.priority,
+            record.beginning,
+            "kept",
+            IRI.unchecked(record.wanted),
+            "",
+            detached=True,
+        )
+
+    def body(self) -> dict[str, object]:
+        """The task as JSON."""
+        return {
+            "task": self.name,
+            "priority": self.priority,
+            "beginning": self.beginning,
+            "phase": self.phase,
+            "template": self.template,
+            "inside_of": self.inside_of,
+            "configurator": self.configurator,
+            "detached": self.detached,
+            "components": list(self.components),
+        }
+
+
+@immutable
+class SilentHolder:
+    """A configurator that is not seen to live, though components say that it holds them: suspended, or just killed."""
+
+    configurator: str
+    task: str
+    """The identity of its task."""
+    components: tuple[IRI, ...]
+
+    def is_named(self, name: str | None) -> bool:
+        """Whether a name is that of the configurator or of its task; None means all."""
+        return name in (None, self.configurator, task_name(self.task))
+
+    def __str__(self) -> str:
+        named = ", ".join(component.short for component in self.components)
+        return f"the configurator {self.configurator!r} of {task_name(self.task)!r} holds {named}, but does not answer"
+
+
+class LivingTasks:
+    """Lists the tasks of an ecology, hands it others, and takes them down."""
+
+    def __init__(self, bus: SynchronousBus, keys: Keys, endpoints: Sequence[str]) -> None:
+        """The bus has joined by some endpoints; runs of this machine that have joined by others are not looked at."""
+        self._bus, self._keys, self._endpoints = bus, keys, endpoints
+        self.silent: tuple[str, ...] = ()
+        """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
+        self.suspended: tuple[LocalTask, ...] = ()
+        """The tasks of suspended programs of this machine of which nothing else tells, as of the last question."""
+        self.complaints: tuple[str, ...] = ()
+        """What was wrong with the answers of configurators, as of the last question, and which sites have one name."""
+        self._holding: list[SilentHolder] = []
+        self._released = ReleasedComponents(bus, keys)
+
+    def running(self, by_components: bool = False) -> tuple[Status, ...]:
+        """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name.
+
+        A configurator that is suspended is not seen to live any more before the components that it holds are at rest:
+        `by_components`, these are asked as well by which configurator each of them is held. A program of this machine
+        that is suspended is seen for as long as it is.
+        """
+        living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
+        found, rejected = _statuses(self._bus.ask(self._keys.configurator_call("*", "status")), self._keys)
+        answered = {status.configurator for status in found}
+        self._holding = self._holding_beside(answered) if by_components else []
+        holding = {one.configurator for one in self._holding}
+        rejected += map(_said_of_silent, sorted(living - answered - holding))
+        rejected += map(str, self._holding)
+        self.silent = tuple(sorted((living - answered) | holding))
+        named = {status.name for status in found if status.outside is None}
+        named.update(task_name(one.task) for one in self._holding)
+        suspended = suspended_tasks(self._keys.ecology, self._endpoints)
+        self.suspended = tuple(one for one in suspended if one.name not in named)
+        rejected += (one.suspension() for one in self.suspended)
+        self.complaints = (*rejected, *namesakes(self._bus.living(self._keys.any_site_life())))
+        return tuple(sorted(found, key=lambda status: status.configurator))
+
+    def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:
+        """What components are held by configurators that are not among some, sorted by the configurator's name."""
+        found: dict[tuple[str, str], list[IRI]] = {}
+        for one in self._released.states():
+            with suppress(PeerError):
+                if one.supervisor and (configurator := owner_of(one.supervisor)) not in known:
+                    found.setdefault((configurator, one.task), []).append(one.component)
+        return [SilentHolder(*holder, tuple(sorted(components))) for holder, components in sorted(found.items())]
+
+    def kept(self, name: str | None = None) -> list[TaskRecord]:
+        """The tasks that live in the sites, each by its newest record."""
+        records = _records(self._bus.ask(self._keys.kept_tasks()))
+        return [record for record in records if name in (None, task_name(record.task))]
+
+    def all(self, by_components: bool = False) -> tuple[LivingTask, ...]:
+        """The tasks that run, found as by `running`, and those that live in the sites, sorted by name."""
+        running = self.running(by_components)
+        kept = {record.task: record for record in self.kept()}
+        found = [LivingTask.of(status, status.task in kept) for status in running]
+        known = {status.task for status in running}
+        found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
+        return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
+
+    def claim(self, wanted: str, numbered: bool = False) -> ClaimedName:
+        """Claim a name for a task: the wanted one, or with `numbered` that with the first number from 2 on: `patrol-2`.
+
+        No task of the ecology has it, and none of this machine begins under it in the same moment. Raises NetworkError
+        if that cannot be.
+        """
+        questions = [(self._keys.configurator_call("*", "status"), b""), (self._keys.kept_tasks(), b"")]
+        running, kept = self._bus.ask_each(questions)
+        taken = {status.name for status in _statuses(running, self._keys)[0]}
+        taken |= {task_name(record.task) for record in _records(kept)}
+        further = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2)) if numbered else ()
+        for name in chain([wanted], further):
+            claimed = None if name in taken else claim(self._keys.ecology, name, self._endpoints)
+            if claimed is not None:
+                return claimed
+        raise _taken(wanted)
+
+    def check_alone(self, task: str, beginning: float) -> None:
+        """Raise NetworkError if a task has the name of this one that has begun in the same moment, on another host.
+
+        Of two that see each other before they run, the one that goes on is the same for both.
+        """
+        from selfconf.configurator import Phase  # here: a program that only looks on runs nothing
+
+        replies = self._bus.ask(self._keys.configurator_call("*", "status"))
+        for other in _statuses(replies, self._keys)[0]:
+            before = other.phase != Phase.IDLE.value or (other.beginning, other.task) < (beginning, task)
+            if other.outside is None and other.name == task_name(task) and other.task != task and before:
+                raise _taken(other.name)
+
+    def detach(self, record: TaskRecord) -> str:
+        """Hand a task to the sites; returns its name. Raises NetworkError if none keeps it, or if its name is taken."""
+        with self.claim(task_name(record.task)) as claimed:
+            try:
+                self._keep(record)
+            except NetworkError:
+                with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
+                    self._end_record(record)
+                raise
+            self._settle(record)
+            return claimed.name
+
+    def _settle(self, record: TaskRecord) -> None:
+        """Have one go on of the tasks of a name that were handed over in the same moment, on several hosts.
+
+        The last to look sees all. Raises NetworkError if it is another one than that of the record.
+        """
+        same = [one for one in self.kept(task_name(record.task)) if one.task != record.task]
+        first = min([record, *same], key=lambda one: (one.beginning, one.task))
+        for other in same if first is record else [record]:
+            self._end_record(other)
+        if first is not record:
+            raise _taken(task_name(record.task))
+
+    def stop(self, name: str | None = None) -> tuple[str, ...]:
+        """Take down a task, given by its name or that of its configurator, or all of them; returns their names.
+
+        The inside of a composite, which has the name of the composite, is meant only where no other task has that name;
+        then the composite fails. Raises NetworkError if there is none of that name, or if several insides alone have
+        it, or if one does not answer or does not end in time, or if a component was turned off and does not obey; of
+        all tasks those are taken down first that answer. One that does not answer, suspended perhaps, is an error also
+        where what it held has come to rest: it may go on.
+        """
+        found, kept = self.running(by_components=True), self.kept(name)
+        holding = [one for one in self._holding if one.is_named(name)]
+        suspended = [one for one in self.suspended if name in (None, one.name)]
+        running = _meant(name, found, [*kept, *holding, *suspended])
+        unanswered = {record.task for record in kept}.difference(status.task for status in running)
+        silent = self._silent_beside_holders(None if unanswered else name)
+        if name is not None and not kept:
+            _check_there(name, silent, [*running, *holding, *suspended])
+        self._take_down(running, kept)
+        _raise_for(
+            [*self._disobedience(running), *self._unheard(silent, holding), *(one.suspension() for one in suspended)]
+        )
+        names = {status.name or status.configurator for status in running}
+        return tuple(sorted(names | {task_name(record.task) for record in kept}))
+
+    def _silent_beside_holders(self, name: str | None) -> set[str]:
+        """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
+        silent = {one for one in self.silent if name in (None, one)}
+        return silent.difference(one.configurator for one in self._holding)
+
+    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
+        """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest."""
+        if silent:  # one that is suspended is no longer seen to live after a while
+            living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
+            yield from map(_said_of_silent, sorted(living & silent))
+            holding = [*holding, *(one for one in self._holding_beside(living) if one.configurator in silent)]
+            for gone in sorted(silent.difference(living, (one.configurator for one in holding))):
+                yield f"the configurator {gone!r} did not answer and is not seen any more; if suspended, it will go on"
+        for one in holding:
+            act_on = self._released.still_acting((component, one.task) for component in one.components)
+            at_rest = "they have come to rest, and if it was suspended, it takes them again when it goes on"
+            yield f"{one}; {'they act on' if act_on else at_rest}"
+
+    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
+        """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
+        for record in kept:
+            self._end_record(record)
+        for status in running:
+            self._bus.ask(self._keys.configurator_call(status.configurator, "stop"))
+        self._await_end({status.configurator for status in running})
+
+    def _disobedience(self, ended: Sequence[Status]) -> list[str]:
+        """What is to be said of components that do not obey in time though their task has ended: they may act on."""
+        asked = {(component, status.task) for status in ended for component in (*status.components, *status.owed)}
+        return sorted(
+            {
+                f"{disobedience(component.short, why)}; it is out of control until it is gone"
+                for (component, _), why in self._released.still_acting(asked).items()
+            }
+        )
+
+    def _end_record(self, record: TaskRecord) -> None:
+        self._keep(replace(record, revision=record.revision + 1, ended=True))
+
+    def _keep(self, record: TaskRecord) -> None:
+        replies = self._bus.ask(self._keys.keep(), encode(record))
+        if not replies.samples:
+            raise NetworkError("; ".join(replies.errors) or "no site of the ecology keeps tasks")
+
+    def _await_end(self, names: set[str]) -> None:
+        """Wait until configurators have released everything and left."""
+        from selfconf.api.tasks.run import TAKING_DOWN  # here: a program that only looks on runs nothing
+
+        deadline = self._bus.now() + TAKING_DOWN
+        while names:
+            names &= {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
+            if names and self._bus.now() > deadline:
+                raise NetworkError(f"{', '.join(sorted(names))} did not end after {TAKING_DOWN:.0f} s")
+            self._bus.pause(0.02)
+
+
+def _taken(name: str) -> NetworkError:
+    return NetworkError(f"a task {name!r} lives already; give another name, or `selfconf stop {name}`")
+
+
+def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
+    """What configurators have answered, each on its own key, and what is wrong with the answers that are left out."""
+    found: list[Status] = []
+    rejected: list[str] = []
+    for sample in replies.samples:
+        try:
+            status = decode(sample.payload, Status)
+        except PeerError as error:
+            rejected.append(f"left out an answer: {error}")
+            continue
+        if sample.key == keys.configurator_call(status.configurator, "status"):
+            found.append(status)
+        else:
+            rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
+    return found, rejected
+
+
+def _meant(name: str | None, running: Sequence[Status], others: Sequence[object]) -> list[Status]:
+    """The tasks that a name means, or all: an inside of a composite only where neither tasks nor `others` have it.
+
+    Raises NetworkError for a name that several insides have.
+    """
+    found = [one for one in running if name in (None, one.configurator, one.name)]
+    own = [one for one in found if one.outside is None or name in (None, one.configurator)]
+    if own or others:
+        return own
+    if len(found) > 1:
+        named = listed(sorted(one.configurator for one in found))
+        raise NetworkError(f"several composites are called {name!r}; name the configurator of one inside: {named}")
+    return found
+
+
+def _records(replies: Replies) -> list[TaskRecord]:
+    """The tasks that sites say they keep and that have not ended, each by its newest record."""
+    newest: dict[str, TaskRecord] = {}
+    for sample in replies.samples:
+        with suppress(PeerError):
+            record = decode(sample.payload, TaskRecord)
+            if record.supersedes(newest.get(record.task)):
+                newest[record.task] = record
+    return [record for record in newest.values() if not record.ended]
+
+
+def _said_of_silent(configurator: str) -> str:
+    return f"the configurator {configurator!r} lives, but does not answer"
+
+
+def _check_there(name: str, silent: Iterable[str], found: Sequence[object]) -> None:
+    """Raise NetworkError if configurators of a name are silent, or if nothing of that name was found."""
+    _raise_for(map(_said_of_silent, sorted(silent)))
+    if not found:
+        raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
+
+
+def _raise_for(troubles: Iterable[str]) -> None:
+    """Raise NetworkError if there is trouble to report."""
+    said = "; ".join(troubles)
+    if said:
+        raise NetworkError(said)

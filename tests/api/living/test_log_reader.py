@@ -1,0 +1,97 @@
+"""The logs of several sites read as one: those of this machine as files, those of others by asking their sites."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+import pytest
+
+from selfconf.api.living.log_reader import LogReader, log_reader
+from selfconf.api.living.site_logs import local_log
+from selfconf.errors import AuthorError
+from selfconf.model.log_line import LogLine
+from selfconf.protocol.messages import LogPart, LogQuestion
+from tests.cli.processes import Home
+
+
+def said(second: int, text: str) -> str:
+    return f"2026-11-22T06:30:{second:02}.000Z stdout https://example.org/x#clock {text}\n"
+
+
+def test_lines_of_several_logs_come_in_the_order_of_their_times(tmp_path: Path) -> None:
+    one, other = tmp_path / "a.log", tmp_path / "b.log"
+    one.write_text(said(1, "first") + said(3, "third"))
+    other.write_text(said(2, "second") + said(4, "fourth"))
+    reader = LogReader(map(local_log, (one, other)), "clock")
+    assert [line.text for line in reader.latest(3)] == ["second", "third", "fourth"]
+    assert LogReader([local_log(one)]).latest(0) == []
+    assert reader.added() == []
+    for path, second in ((other, 5), (one, 6)):
+        with path.open("a") as file:
+            file.write(said(second, f"added {second}"))
+    assert [line.text for line in reader.added()] == ["added 5", "added 6"]
+    assert reader.added() == []
+
+
+def test_what_a_site_tells_in_parts_is_asked_for_until_there_is_no_more() -> None:
+    def source(question: LogQuestion) -> LogPart:
+        place = int(question.position or "0")
+        return LogPart((LogLine(str(place), "stdout", (), ""),) if question.position else (), str(place + 1), place < 3)
+
+    reader = LogReader([source])
+    assert reader.latest(9) == []
+    assert [line.time for line in reader.added()] == ["1", "2", "3"]
+    assert [line.time for line in reader.added()] == ["4"]
+
+
+def test_where_nothing_is_kept_that_is_said_or_that_there_is_no_such_component() -> None:
+    def look_up(component: str) -> None:
+        raise AuthorError(f"no component {component} is advertised")
+
+    assert LogReader([]).why_nothing() == "nothing that a component has printed is kept in the log"
+    assert LogReader([], "clock").why_nothing() == "nothing that clock has printed is kept in the log"
+    with pytest.raises(AuthorError, match="no component clock is advertised"):
+        LogReader([], "clock", look_up=look_up).why_nothing()
+
+
+@pytest.fixture
+def far(tmp_path: Path) -> Iterator[Home]:
+    """An ecology on another machine, which is one with another runtime folder: nothing is known but its endpoint."""
+    (tmp_path / "far").mkdir()
+    far = Home(tmp_path / "far")
+    yield far
+    far.close()
+
+
+@pytest.mark.process
+def test_the_site_of_another_machine_is_asked_and_a_silent_one_named(
+    far: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = far.folder / "kept" / f"{far.ecology}@far.log"
+    kept.parent.mkdir()
+    kept.write_text(said(1, "far away"))
+    site = far.site("far", "ads", options=("--log", "kept"))
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "here"))
+    keys = None if far.authority is None else far.authority.path
+    complaints: list[str] = []
+
+    def reader(component: str = "") -> AbstractContextManager[LogReader]:
+        return log_reader(far.ecology, [far.endpoint()], keys, None, component, complaints.append)
+
+    with reader("clock") as lines:
+        assert [line.text for line in lines.latest(9)] == ["far away"]
+        with kept.open("a") as file:
+            file.write(said(2, "later"))
+        assert [line.text for line in lines.added()] == ["later"]
+        where = far.endpoint()
+        site.end()
+        assert lines.added() == lines.added() == []
+    assert complaints == ["the site far does not tell what its components have printed"]
+    near = tmp_path / "here" / "log" / f"{far.ecology}@near.log"
+    near.parent.mkdir(parents=True)
+    near.write_text(said(1, "near"))
+    with log_reader(far.ecology, [where], keys, None, "", complaints.append) as lines:
+        assert [line.text for line in lines.latest(9)] == ["near"]
+    assert complaints[-1].startswith("only the logs of this machine are shown: ")

@@ -1,0 +1,213 @@
+"""One site of a machine relays for all; when it is gone, or hangs, another takes its place."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+from selfconf import rendezvous, this_machine
+from selfconf.api.sites import joining
+from selfconf.api.sites.joining import Joining
+from selfconf.bus.zenoh_bus import client
+from selfconf.errors import NetworkError
+from selfconf.protocol.keys import Keys, owner_of
+from tests.cli.processes import Home
+
+pytestmark = pytest.mark.process
+
+
+class Machine:
+    """Sites of one ecology in this process, as far as they join it."""
+
+    def __init__(self) -> None:
+        self.sites: dict[str, Joining] = {}
+
+    def join(self, name: str, listen: str | None = None, connect: tuple[str, ...] = ()) -> Joining:
+        """Let a site join, and be seen."""
+        with this_machine.turn():
+            site = Joining("machine", name, listen, connect)
+            site.announce()
+        site.bus.announce(Keys("machine").site_life(name, "1"))
+        self.sites[name] = site
+        return site
+
+    def leave(self, name: str) -> None:
+        """End a site."""
+        site = self.sites.pop(name)
+        site.leave()
+        site.bus.close()
+
+    def until(self, condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+        """Let all sites do what they have to do until a condition holds."""
+        deadline = time.monotonic() + seconds
+        while not condition() and time.monotonic() < deadline:
+            for site in self.sites.values():
+                site.bus.poll(0.002)
+        return condition()
+
+    def seen_by(self, name: str) -> set[str]:
+        """The sites that one of them sees."""
+        heard: list[tuple[str, ...]] = []
+        self.sites[name].bus.roll_call(Keys("machine").any_site_life(), 1.0, heard.append)
+        self.until(lambda: bool(heard))
+        return {owner_of(key) for key in heard[0]}
+
+    def united(self) -> bool:
+        """Whether each sees all."""
+        return all(self.seen_by(name) == set(self.sites) for name in self.sites)
+
+    def relaying(self) -> list[str]:
+        """Those that relay."""
+        return [name for name, site in self.sites.items() if site.bus.endpoint]
+
+
+@pytest.fixture
+def machine() -> Iterator[Machine]:
+    """A machine without sites."""
+    machine = Machine()
+    yield machine
+    for name in list(machine.sites):
+        machine.leave(name)
+
+
+def test_one_site_relays_and_the_others_are_its_clients(machine: Machine) -> None:
+    for name in "abcdef":
+        machine.join(name)
+    assert machine.until(machine.united)
+    assert machine.relaying() == ["a"]
+    assert {site.endpoint for site in machine.sites.values()} == {rendezvous.usual_endpoints("machine")[0]}
+    assert rendezvous.find("machine", []) == ("machine", rendezvous.usual_endpoints("machine"))
+
+
+def test_when_the_one_that_relays_is_gone_another_does_so_on_the_same_port(machine: Machine) -> None:
+    for name in "abc":
+        machine.join(name)
+    before = machine.sites["a"].endpoint
+    machine.leave("a")
+    assert machine.until(lambda: bool(machine.relaying()) and machine.united())
+    assert len(machine.relaying()) == 1
+    assert [site.endpoint for site in machine.sites.values()] == [before, before]
+
+
+def test_a_site_that_is_told_where_to_listen_or_what_to_connect_to_relays_beside_the_other(machine: Machine) -> None:
+    machine.join("a")
+    machine.join("b", listen="tcp/127.0.0.1:0")
+    machine.join("c", connect=(machine.sites["b"].endpoint,))  # this is here, and known already
+    machine.join("d", connect=("tcp/127.0.0.1:1",))
+    assert machine.until(machine.united)
+    assert machine.relaying() == ["a", "b", "d"]
+
+
+def test_where_every_usual_port_is_taken_any_other_will_do(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as stranger:
+        taken = f"tcp/127.0.0.1:{stranger.getsockname()[1]}"
+        monkeypatch.setattr(rendezvous, "usual_endpoints", lambda ecology, secure: [taken])
+        machine.join("a")
+        assert machine.relaying() == ["a"]
+        assert machine.sites["a"].endpoint != taken
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Iterator[Home]:
+    """An ecology of processes."""
+    home = Home(tmp_path)
+    yield home
+    home.close()
+
+
+def seen_at(home: Home, endpoint: str) -> set[str]:
+    """The sites that are seen from an endpoint."""
+    heard: list[tuple[str, ...]] = []
+    with suppress(NetworkError):
+        bus = client([endpoint], seconds=0.5, credentials=home.credentials())
+        bus.roll_call(home.keys.any_site_life(), 1.0, heard.append)
+        deadline = time.monotonic() + 2.0
+        bus.run(lambda: bool(heard) or time.monotonic() > deadline)
+        bus.close()
+    return {owner_of(key) for keys in heard for key in keys}
+
+
+def test_all_sites_that_were_stopped_together_see_each_other_again(home: Home) -> None:
+    sites = [home.site(name, "ads/drive.ttl") for name in "abc"]
+    for site in sites:
+        site.send(signal.SIGSTOP)
+    assert not home.until(lambda: False, 2.5)  # longer than the lease
+    for site in sites:
+        site.send(signal.SIGCONT)
+    assert home.until(lambda: seen_at(home, home.endpoint()) == {"a", "b", "c"})
+
+
+def test_relays_of_several_hosts_see_each_other_again_after_one_was_stopped(home: Home) -> None:
+    options = "--ecology", home.ecology, "--listen", home.anywhere, "--name"
+    sites = []
+    for name in "abc":
+        sites.append(home.selfconf("site", "ads/drive.ttl", *options, name))
+        assert home.until(lambda name=name: (home.runtime / f"{home.ecology}@{name}.json").exists())
+    ends = [home.endpoint(name) for name in "abc"]
+    assert home.until(lambda: all(seen_at(home, end) == {"a", "b", "c"} for end in ends))
+    sites[0].send(signal.SIGSTOP)
+    assert home.until(lambda: seen_at(home, ends[1]) == {"b", "c"})
+    sites[0].send(signal.SIGCONT)
+    assert home.until(lambda: all(seen_at(home, end) == {"a", "b", "c"} for end in ends))
+
+
+def test_a_site_whose_own_hub_has_broken_opens_another(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    monkeypatch.setattr(joining, "HUB_ANSWER", 0.3)
+    site = machine.join("a")
+    machine.join("b")
+    relay = site.bus._relay
+    assert relay is not None
+    broken, answers = relay._hub, site.bus.roll_call
+
+    def silent(key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        """A hub that is there, but answers nothing: the time is over before anything is heard."""
+        if site.bus._relay is relay:
+            site.bus.later(seconds, lambda: done(()))
+        else:
+            answers(key, seconds, done)
+
+    monkeypatch.setattr(site.bus, "roll_call", silent)
+    assert machine.until(lambda: site.bus._relay is not None and site.bus._relay._hub is not broken)
+    assert machine.until(machine.united)
+
+
+def test_a_site_that_hears_nothing_from_a_hub_connects_to_it_anew(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    monkeypatch.setattr(joining, "HUB_ANSWER", 0.3)
+    machine.join("a")
+    site = machine.join("b")
+    links: list[str] = []
+    site.bus.watch_link(lambda: links.append(site.bus.link))
+    answers = site.bus.roll_call
+
+    def deaf(key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        """Until it is connected anew, nothing is heard."""
+        if links:
+            answers(key, seconds, done)
+        else:
+            site.bus.later(seconds, lambda: done(()))
+
+    monkeypatch.setattr(site.bus, "roll_call", deaf)
+    assert machine.until(lambda: bool(links) and bool(site.bus.link))
+    assert machine.until(machine.united)
+
+
+def test_the_place_of_one_that_hangs_is_taken_and_it_joins_the_others_when_it_goes_on(home: Home) -> None:
+    sites = {name: home.site(name, "ads/drive.ttl") for name in "abc"}
+    before = home.endpoint("a")
+    sites["a"].send(signal.SIGSTOP)
+    assert home.until(lambda: home.endpoint("b") != before or home.endpoint("c") != before)
+    taker = "b" if home.endpoint("b") != before else "c"
+    assert home.until(lambda: seen_at(home, home.endpoint(taker)) == {"b", "c"})
+    sites["a"].send(signal.SIGCONT)
+    assert home.until(lambda: home.endpoint("a") == home.endpoint(taker))
+    assert home.until(lambda: seen_at(home, home.endpoint(taker)) == {"a", "b", "c"})

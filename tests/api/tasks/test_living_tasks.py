@@ -1,0 +1,445 @@
+"""The tasks of an ecology, asked for over a simulated network: who answers, who is silent, and how they are ended."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import replace
+
+import pytest
+
+from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
+from selfconf.api.tasks.living_tasks import LivingTask, LivingTasks
+from selfconf.bus.memory import Network
+from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.port import Request
+from selfconf.errors import NetworkError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys, checked_name
+from selfconf.protocol.messages import CallAnswer, Status, TaskRecord, Verdict
+from tests.suspended_run import suspended_run
+
+KEYS = Keys("lab")
+HERE = "tcp/127.0.0.1:7001"
+TEMPLATE = IRI("urn:t:navigate")
+DRIVE = IRI("urn:c#drive")
+AT_REST = CallAnswer(Verdict.DONE, DRIVE, "l1", place="process 7 on lab")
+PATROL, TIDY = TaskRecord("patrol~1", 1, beginning=5.0, wanted=TEMPLATE), TaskRecord("tidy~2", 1, wanted=TEMPLATE)
+
+
+class Tasks:
+    """Configurators that run tasks, and sites that keep them, on a network of their own."""
+
+    def __init__(self) -> None:
+        self.network = Network()
+        self.asked = LivingTasks(SynchronousBus(self.network.node()), KEYS, [HERE])
+        self.kept: list[TaskRecord] = []
+
+    def configurator(
+        self,
+        name: str,
+        task: str,
+        *components: IRI,
+        answers: bool = True,
+        speaks_of: str = "",
+        outside: IRI | None = None,
+        phase: str = "running",
+        beginning: float = 0.0,
+    ) -> MemoryBus:
+        """A configurator that runs a task, perhaps the inside of a composite, until it is stopped."""
+        node = self.network.node()
+        node.announce(KEYS.configurator_life(name, "1"))
+        speaker = speaks_of or name
+        status = Status(speaker, phase, TEMPLATE, 3, 1.5, components=components, task=task, outside=outside)
+        status = replace(status, beginning=beginning)
+
+        def answer(request: Request) -> None:
+            if answers:
+                request.reply(KEYS.configurator_call(name, "status"), encode(status))
+            request.finish()
+
+        def stop(request: Request) -> None:
+            request.reply(KEYS.configurator_call(name, "stop"), encode(status))
+            request.finish()
+            node.later(0.1, node.close)
+
+        node.serve(KEYS.configurator_call(name, "status"), answer)
+        node.serve(KEYS.configurator_call(name, "stop"), stop)
+        return node
+
+    def component(self, component: IRI, *states: CallAnswer, answers: bool = True) -> MemoryBus:
+        """A component that is in one state after the other whenever it is asked; in the last one it stays."""
+        node, left = self.network.node(), list(states)
+        node.announce(KEYS.life(component, "l1"))
+
+        def tell(request: Request) -> None:
+            state = left.pop(0) if len(left) > 1 else left[0]
+            request.reply(KEYS.call(component, "state"), encode(state))
+            request.finish()
+
+        node.serve(KEYS.call(component, "state"), tell if answers else lambda request: None)
+        return node
+
+    def site(self, *records: TaskRecord, keeps: bool = True) -> None:
+        """A site that keeps tasks, or says that it cannot."""
+        node = self.network.node()
+
+        def tell(request: Request) -> None:
+            for record in records:
+                request.reply(KEYS.kept_tasks(), encode(record))
+            request.finish()
+
+        def keep(request: Request) -> None:
+            if keeps:
+                self.kept.append(decode(request.payload, TaskRecord))
+                request.reply(request.key, b"")
+            else:
+                request.refuse("the disk is full")
+            request.finish()
+
+        node.serve(KEYS.kept_tasks(), tell)
+        node.serve(KEYS.keep(), keep)
+
+
+@pytest.fixture
+def tasks() -> Tasks:
+    """An empty ecology."""
+    return Tasks()
+
+
+def test_tasks_that_run_and_tasks_that_are_kept_are_listed_once_each(tasks: Tasks) -> None:
+    tasks.configurator("c1", PATROL.task)
+    tasks.configurator("c2", "watch~3")
+    tasks.site(PATROL, TIDY)
+    found = tasks.asked.all()
+    assert [(task.name, task.configurator, task.detached) for task in found] == [
+        ("patrol", "c1", True),
+        ("tidy", "", True),
+        ("watch", "c2", False),
+    ]
+    assert [task.lives_in for task in found] == ["sites", "sites", "command"]
+
+
+def test_of_several_records_of_a_task_the_newest_counts_and_its_end_is_final(tasks: Tasks) -> None:
+    tasks.site(replace(PATROL, revision=2, priority=7), replace(TIDY, revision=2, ended=True))
+    tasks.site(PATROL, replace(TIDY, revision=9))
+    assert tasks.asked.all() == (LivingTask.kept(replace(PATROL, revision=2, priority=7)),)
+
+
+def test_who_lives_and_does_not_answer_is_named_and_who_speaks_for_another_is_left_out(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1", answers=False)
+    tasks.configurator("c2", "tidy~2", speaks_of="c3")
+    assert tasks.asked.running() == ()
+    assert tasks.asked.silent == ("c1", "c2")
+    assert "c2" in tasks.asked.complaints[0]
+    assert [text for text in tasks.asked.complaints if "'c1' lives, but does not answer" in text]
+
+
+def test_sites_of_one_name_are_named_with_their_lives_as_discovery_names_them(tasks: Tasks) -> None:
+    for site, life in (("home", "1"), ("shed", "1"), ("home", "2")):
+        tasks.network.node().announce(KEYS.site_life(site, life))
+    for ask in (tasks.asked.running, tasks.asked.all):
+        ask()
+        assert tasks.asked.complaints == ("2 sites are called home: home (1), home (2)",)
+    assert tasks.asked.silent == ()
+
+
+def test_a_task_is_stopped_by_its_name_or_by_that_of_its_configurator(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.configurator("c2", "tidy~2")
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+    assert tasks.asked.stop("c2") == ("tidy",)
+    assert tasks.asked.running() == ()
+
+
+PATROL_COMPOSITE = IRI("urn:c#patrol")
+
+
+def test_a_name_means_the_inside_of_a_composite_only_where_no_other_task_has_it(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.asked.running() == ()
+
+
+def test_of_several_insides_of_one_name_none_is_ended_by_it(tasks: Tasks) -> None:
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    tasks.configurator("c3", "patrol~3", outside=IRI("urn:d#patrol"))
+    with pytest.raises(NetworkError, match="'patrol'; name the configurator of one inside: c2 and c3"):
+        tasks.asked.stop("patrol")
+    assert tasks.asked.stop("c3") == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+
+
+def test_an_inside_goes_on_where_the_sites_keep_a_task_of_its_name_and_ends_by_its_configurator(tasks: Tasks) -> None:
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    tasks.site(PATROL)
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
+    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+    assert tasks.asked.stop("c2") == ("patrol",)
+    assert tasks.asked.running() == ()
+
+
+def test_what_the_sites_keep_is_ended_by_a_newer_record(tasks: Tasks) -> None:
+    tasks.site(PATROL, TIDY)
+    assert tasks.asked.stop("tidy") == ("tidy",)
+    assert tasks.kept == [replace(TIDY, revision=2, ended=True)]
+
+
+def test_nothing_is_stopped_by_a_name_that_is_nobodys(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    with pytest.raises(NetworkError, match="no task or configurator 'tidy' answers"):
+        tasks.asked.stop("tidy")
+    assert len(tasks.asked.running()) == 1
+
+
+def test_of_all_tasks_those_that_answer_are_stopped_before_one_that_does_not_is_named(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.configurator("c2", "tidy~2", answers=False)
+    with pytest.raises(NetworkError, match="'c2' lives, but does not answer"):
+        tasks.asked.stop()
+    assert tasks.asked.running() == ()
+    assert tasks.asked.silent == ("c2",)
+
+
+def test_a_component_may_take_its_time_to_come_to_rest(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1", DRIVE)
+    acts = replace(AT_REST, active=True, task="patrol~1")
+    tasks.component(DRIVE, acts, replace(AT_REST, stopping=True), AT_REST)
+    assert tasks.asked.stop("patrol") == ("patrol",)
+
+
+def test_what_acts_for_another_task_or_is_gone_has_obeyed(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1", DRIVE, IRI("urn:c#gone"))
+    tasks.component(DRIVE, replace(AT_REST, active=True, task="tidy~2"))
+    assert tasks.asked.stop("patrol") == ("patrol",)
+
+
+@pytest.mark.parametrize(
+    ("state", "how"),
+    [
+        (replace(AT_REST, active=True, task="patrol~1"), r"it acts on \(process 7 on lab\)"),
+        (replace(AT_REST, stopping=True), r"its code has not come to rest \(process 7 on lab\)"),
+        (None, "it lives, but does not answer"),
+    ],
+)
+def test_a_component_that_does_not_obey_is_named_after_all_is_taken_down(
+    tasks: Tasks, state: CallAnswer | None, how: str
+) -> None:
+    tasks.configurator("c1", "patrol~1", DRIVE)
+    tasks.configurator("c2", "tidy~2")
+    tasks.component(DRIVE, state or AT_REST, answers=state is not None)
+    with pytest.raises(NetworkError, match=f"drive was turned off and has not obeyed: {how}"):
+        tasks.asked.stop()
+    assert tasks.asked.running() == ()
+
+
+def held_by(configurator: str, task: str) -> CallAnswer:
+    """How the drive is that acts for a task."""
+    return replace(AT_REST, active=True, task=task, supervisor=KEYS.configurator_life(configurator, "1"))
+
+
+def test_a_configurator_that_is_known_by_what_it_holds_alone_is_silent(tasks: Tasks) -> None:
+    tasks.configurator("c1", TIDY.task, IRI("urn:c#cap"))
+    tasks.component(IRI("urn:c#cap"), replace(held_by("c1", TIDY.task), component=IRI("urn:c#cap")))
+    tasks.component(DRIVE, held_by("c2", PATROL.task))
+    assert [status.configurator for status in tasks.asked.running()] == ["c1"]
+    assert (tasks.asked.silent, tasks.asked.complaints) == ((), ())
+    for ask in (tasks.asked.running, tasks.asked.all):
+        tasks.asked.running()
+        assert [found.configurator for found in ask(by_components=True)] == ["c1"]
+        assert tasks.asked.silent == ("c2",)
+        assert tasks.asked.complaints == ("the configurator 'c2' of 'patrol' holds drive, but does not answer",)
+
+
+@pytest.mark.parametrize("name", [None, "patrol", "c2"])
+@pytest.mark.parametrize(
+    ("later", "said"),
+    [(AT_REST, "they have come to rest, and if it was suspended"), (held_by("c2", PATROL.task), "they act on")],
+)
+def test_nothing_is_said_to_be_taken_down_that_a_silent_configurator_holds(
+    tasks: Tasks, name: str | None, later: CallAnswer, said: str
+) -> None:
+    tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 5, later)
+    began = tasks.network.time
+    with pytest.raises(NetworkError, match=f"'c2' of 'patrol' holds drive, but does not answer; {said}"):
+        tasks.asked.stop(name)
+    assert 0.3 < tasks.network.time - began < 10.0
+
+
+@pytest.mark.parametrize("name", [None, "patrol", "c2"])
+def test_a_configurator_that_lives_and_does_not_answer_is_named_with_the_task_that_it_holds_components_for(
+    tasks: Tasks, name: str | None
+) -> None:
+    tasks.configurator("c2", PATROL.task, DRIVE, answers=False)
+    tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 3, AT_REST)
+    with pytest.raises(
+        NetworkError, match=r"^the configurator 'c2' of 'patrol' holds drive, but does not answer; they h"
+    ):
+        tasks.asked.stop(name)
+    assert tasks.asked.silent == ("c2",)
+
+
+def test_a_configurator_that_has_not_answered_is_an_error_though_all_rests_and_it_is_not_seen_any_more(
+    tasks: Tasks,
+) -> None:
+    """One that is suspended is asked for three seconds, and its life seems to end meanwhile."""
+    tasks.component(DRIVE, AT_REST)
+    suspended = tasks.network.node()
+    suspended.announce(KEYS.configurator_life("c2", "1"))
+    suspended.serve(KEYS.configurator_call("c2", "status"), lambda request: None)
+    suspended.later(1.0, suspended.close)
+    with pytest.raises(NetworkError, match=r"^the configurator 'c2' did not answer and is not seen any more"):
+        tasks.asked.stop()
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("name", [None, "patrol"])
+def test_a_run_of_this_machine_that_is_suspended_and_not_seen_is_named_by_its_task(
+    tasks: Tasks, name: str | None
+) -> None:
+    """One that has been suspended for longer has lost its link, and its components are at rest and free."""
+    tasks.configurator("c1", TIDY.task)
+    with suspended_run("lab", "patrol", HERE), suspended_run("lab", "tidy", HERE):  # tidy is seen, and answers
+        tasks.asked.running()
+        assert [task.name for task in tasks.asked.suspended] == ["patrol"]
+        assert tasks.asked.complaints == tuple(one.suspension() for one in tasks.asked.suspended)
+        with pytest.raises(NetworkError, match=r"^process \d+ of this machine, which runs the task .patrol., is susp"):
+            tasks.asked.stop(name)
+    assert (tasks.asked.running() == ()) == (name is None)
+    assert tasks.asked.suspended == ()
+
+
+@pytest.mark.process
+def test_an_inside_goes_on_where_a_run_of_its_name_is_suspended(tasks: Tasks) -> None:
+    tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
+    with suspended_run("lab", "patrol", HERE), pytest.raises(NetworkError, match="which runs the task 'patrol'"):
+        tasks.asked.stop("patrol")
+    assert len(tasks.asked.running()) == 1
+
+
+@pytest.mark.process
+def test_a_run_of_this_machine_in_another_ecology_of_the_name_is_nothing_to_this_one(tasks: Tasks) -> None:
+    with suspended_run("lab", "patrol", "tcp/127.0.0.1:7002"):
+        assert tasks.asked.stop() == ()
+        assert (tasks.asked.suspended, tasks.asked.complaints) == ((), ())
+
+
+def test_a_run_of_this_machine_that_is_not_suspended_is_not_named_before_it_is_seen(tasks: Tasks) -> None:
+    with tasks.asked.claim("patrol"):
+        assert tasks.asked.stop() == ()
+        assert (tasks.asked.suspended, tasks.asked.complaints) == ((), ())
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_task_that_is_kept_is_not_said_to_be_taken_down_where_its_configurator_may_be_silent(
+    tasks: Tasks, kept: bool
+) -> None:
+    tasks.configurator("c2", PATROL.task, answers=False)
+    tasks.configurator("c3", TIDY.task)
+    tasks.site(PATROL if kept else TIDY)
+    if not kept:
+        assert tasks.asked.stop("tidy") == ("tidy",)
+        return
+    with pytest.raises(NetworkError, match="the configurator 'c2' lives, but does not answer"):
+        tasks.asked.stop("patrol")
+    assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
+
+
+def test_what_another_configurator_holds_is_nothing_to_the_end_of_a_task(tasks: Tasks) -> None:
+    tasks.configurator("c1", TIDY.task)
+    tasks.component(DRIVE, held_by("c2", PATROL.task))
+    assert tasks.asked.stop("tidy") == ("tidy",)
+
+
+def test_a_task_is_handed_over_once(tasks: Tasks) -> None:
+    tasks.site(TIDY)
+    assert tasks.asked.detach(PATROL) == "patrol"
+    assert tasks.kept == [PATROL]
+    with pytest.raises(NetworkError, match="a task 'tidy' lives already"):
+        tasks.asked.detach(replace(TIDY, task="tidy~3"))
+
+
+def test_a_name_that_a_task_has_gets_the_first_number_that_is_free(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    tasks.site(replace(TIDY, task="patrol-2~1"), TIDY)
+
+    def claimed(wanted: str) -> str:
+        with tasks.asked.claim(wanted, numbered=True) as claim:
+            return claim.name
+
+    assert list(map(claimed, ("watch", "tidy", "patrol"))) == ["watch", "tidy-2", "patrol-3"]
+    tasks.configurator("c2", f"{'x' * 64}~1")
+    assert checked_name(claimed("x" * 64), "a task").endswith("x-2")
+
+
+def test_a_name_that_must_be_the_wanted_one_is_refused_where_a_task_has_it(tasks: Tasks) -> None:
+    tasks.configurator("c1", "patrol~1")
+    with tasks.asked.claim("watch") as claimed:
+        assert claimed.name == "watch"
+        for taken in ("patrol", "watch"):
+            with pytest.raises(NetworkError, match=f"a task '{taken}' lives already"):
+                tasks.asked.claim(taken)
+
+
+def test_tasks_that_begin_before_they_see_each_other_have_names_of_their_own(tasks: Tasks) -> None:
+    with ExitStack() as stack:
+        claims = [stack.enter_context(tasks.asked.claim("patrol", numbered=True)) for _ in range(3)]
+        assert [claim.name for claim in claims] == ["patrol", "patrol-2", "patrol-3"]
+    with tasks.asked.claim("patrol") as claimed:
+        assert claimed.name == "patrol"
+
+
+def test_of_tasks_that_begin_with_one_name_on_several_hosts_the_first_goes_on(tasks: Tasks) -> None:
+    """They claim the name before they see each other, and look once more before they run."""
+    tasks.configurator("c1", "patrol~1", phase="idle", beginning=5.0)
+    tasks.configurator("c2", "watch~2", beginning=7.0)
+    tasks.configurator("c3", "inside~3", outside=DRIVE)
+    for task, beginning in (("patrol~1", 5.0), ("patrol~4", 4.0), ("patrol~0", 5.0), ("inside~4", 9.0)):
+        tasks.asked.check_alone(task, beginning)
+    for task, beginning in (("patrol~4", 6.0), ("patrol~4", 5.0), ("watch~4", 4.0)):
+        with pytest.raises(NetworkError, match="lives already"):
+            tasks.asked.check_alone(task, beginning)
+
+
+@pytest.mark.parametrize("beginning", [4.0, 6.0])
+def test_of_tasks_that_are_handed_over_with_one_name_on_several_hosts_the_first_is_kept(
+    tasks: Tasks, beginning: float
+) -> None:
+    """They claim the name before the sites keep any of them."""
+    tasks.site()
+    other, node = replace(PATROL, task="patrol~9", beginning=beginning), tasks.network.node()
+
+    def tell(request: Request) -> None:
+        for record in (other, *tasks.kept) if tasks.kept else ():
+            request.reply(KEYS.kept_tasks(), encode(record))
+        request.finish()
+
+    node.serve(KEYS.kept_tasks(), tell)
+    if beginning > PATROL.beginning:
+        assert tasks.asked.detach(PATROL) == "patrol"
+        assert tasks.kept == [PATROL, replace(other, revision=2, ended=True)], "it may have looked before"
+    else:
+        with pytest.raises(NetworkError, match="a task 'patrol' lives already"):
+            tasks.asked.detach(PATROL)
+        assert tasks.kept == [PATROL, replace(PATROL, revision=2, ended=True)]
+
+
+def test_a_task_that_no_site_can_keep_is_refused_and_called_off(tasks: Tasks) -> None:
+    tasks.site(keeps=False)
+    with pytest.raises(NetworkError, match="the disk is full"):
+        tasks.asked.detach(PATROL)
+
+
+def test_a_name_is_claimed_as_soon_as_each_has_had_the_time_of_one_question(tasks: Tasks) -> None:
+    tasks.configurator("c1", "watch~3")
+    for key in (KEYS.configurator_call("c2", "status"), KEYS.kept_tasks()):
+        tasks.network.node().serve(key, lambda request: None)
+    began = tasks.network.time
+    with tasks.asked.claim("watch", numbered=True) as claimed:
+        assert claimed.name == "watch-2"
+    assert tasks.network.time - began < 1.5 * ROLL_CALL
