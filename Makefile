@@ -18,7 +18,7 @@ demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
 
 # Five processes more than there are processors, for many tests wait for programs that they have started; which tests
-# share one, and which processes compute meanwhile, is said in tests/schedule.py.
+# share one, and which processes compute meanwhile, is said in tests/harness/schedule.py.
 PARALLEL := --forks $(shell echo $$((5 + $$(nproc 2>/dev/null || echo 2))))
 
 # A test that hangs for five minutes has failed: it says where each thread is, and its process is replaced.
@@ -32,14 +32,14 @@ IN_MEMORY := $(if $(MEMORY),$(shell awk '$$2 == "/dev/shm" && $$4 !~ /noexec/ { 
 # A test that starves among others on a busy machine is run once more, alone; more than five failures stand.
 test: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
-	$(IN_MEMORY) $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.alone $(VENV)/tests.xml
+	$(IN_MEMORY) $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.harness.alone $(VENV)/tests.xml
 
 # The tests that start programs once more, each ecology with keys: a job of its own, as it takes as long as the others.
 # One that starves among others is run once more, alone, as by `make test`.
 test-keys: $(VENV)/with-dev
 	@rm -f $(VENV)/tests.xml
 	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) -m process --junitxml $(VENV)/tests.xml \
-		tests/access tests/cli tests/api tests/serve/test_page.py || SELFCONF_TEST_KEYS=1 $(BIN)/python -m tests.alone $(VENV)/tests.xml
+		tests/access tests/cli tests/api tests/serve/test_page.py || SELFCONF_TEST_KEYS=1 $(BIN)/python -m tests.harness.alone $(VENV)/tests.xml
 
 # The inner loop: without tests that start processes or are slow, and a tenth of the examples of each property.
 quick: $(VENV)/with-dev
@@ -47,7 +47,7 @@ quick: $(VENV)/with-dev
 
 # What programs judge that others wrote: nodes of ROS 2 by hiroz, Things and a client by node-wot, a page by YASGUI. They
 # are had by cargo and npm into ~/.cache/selfconf-tests; where that cannot be, the tests are skipped and say so.
-FOREIGN := tests/bridging/ros2/test_native_nodes.py tests/test_lost_node_benchmark.py tests/bridging/wot/test_node_wot.py \
+FOREIGN := tests/bridging/ros2/test_native_nodes.py tests/benchmarks/test_lost_node.py tests/bridging/wot/test_node_wot.py \
 	tests/serve/test_foreign_clients.py
 
 # Mistakes in good files, ten thousand random ecologies for each property of the search, against every oracle, ten
@@ -57,7 +57,7 @@ FOREIGN := tests/bridging/ros2/test_native_nodes.py tests/test_lost_node_benchma
 nightly: $(VENV)/with-dev fuzz test-keys
 	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/composition/test_searches.py \
 		tests/test_certificate.py tests/faults tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
-		tests/test_compare_benchmark.py tests/test_ci_for_users.py tests/access/test_expiry.py \
+		tests/benchmarks/test_compare.py tests/docs/test_ci_for_users.py tests/access/test_expiry.py \
 		tests/access/test_intruder.py tests/access/test_two_hosts.py tests/cli/test_access.py $(FOREIGN)
 	$(BIN)/python -m benchmarks.history --kills 100
 

@@ -1,7 +1,7 @@
 """The files of `tests/bad`, each of which is wrong in the way that its first line promises.
 
 To validate all of them takes seconds, so each is validated once in a process and the reports are shared.
-Where tests run in several processes, `tests/schedule.py` gives all tests that do so to one of them.
+Where tests run in several processes, `tests/harness/schedule.py` gives all tests that do so to one of them.
 """
 
 from __future__ import annotations

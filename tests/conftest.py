@@ -13,10 +13,10 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from selfconf.__main__ import COLLECTING
-from tests import forks
-from tests.asked_here import ask_here
-from tests.effort import examples
-from tests.frozen import freeze_what_is_there
+from tests.harness import forks
+from tests.harness.asked_here import ask_here
+from tests.harness.effort import examples
+from tests.harness.frozen import freeze_what_is_there
 
 settings.register_profile(
     "selfconf",

@@ -17,7 +17,7 @@ from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
 from tests.cli.processes import Home, Program, component_of, dormant
-from tests.effort import of_keys
+from tests.harness.effort import of_keys
 
 ALICE = Principal(PrincipalKind.CONFIGURATOR, "alice")
 SECOND = 1 / 86_400

@@ -15,7 +15,7 @@ from tests.access import intruder
 from tests.access.attacks import refused
 from tests.cli.command import run
 from tests.cli.processes import Home, Program, component_of, dormant
-from tests.effort import of_keys
+from tests.harness.effort import of_keys
 
 pytestmark = pytest.mark.process
 TASK = ("sonar", "encoder", "tracker", "control", "drive")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.access.two_hosts import ROOT
-from tests.effort import of_keys
+from tests.harness.effort import of_keys
 
 NAMESPACE = ["unshare", "-rn"]
 TOOLS = ("unshare", "nsenter", "ip")

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from selfconf.cli.main import main
-from tests.frozen import nothing_frozen
+from tests.harness.frozen import nothing_frozen
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tests import schedule
 from tests.cli.desk import Desk
 from tests.cli.diagnosed import write_diagnosed
 from tests.cli.processes import Home
+from tests.harness import schedule
 
 _INHABITED = pytest.StashKey[Home]()
 """The paper's ecology, while it runs."""

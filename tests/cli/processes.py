@@ -26,7 +26,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer
-from tests.fork_server import ForkedProgram
+from tests.harness.fork_server import ForkedProgram
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements
 
 PATIENCE = 60.0

@@ -10,7 +10,7 @@ import pytest
 from selfconf.access import Principal, PrincipalKind, believed
 from tests.cli.command import run
 from tests.cli.processes import Home, component_of, dormant
-from tests.effort import of_keys
+from tests.harness.effort import of_keys
 
 pytestmark = pytest.mark.process
 

@@ -13,7 +13,7 @@ import pytest
 
 from selfconf.cli.main import main
 from selfconf.cli.terminal import Terminal, display, guard, in_colour, paint, plain
-from tests.frozen import nothing_frozen
+from tests.harness.frozen import nothing_frozen
 from tests.lab import PREFIXES
 
 pytestmark = pytest.mark.process

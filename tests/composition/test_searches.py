@@ -27,7 +27,7 @@ from selfconf.search.additions import asking_for
 from selfconf.search.problem import Problem
 from selfconf.search.relaxations import with_relaxations
 from selfconf.search.relaxed_problem import relaxed_by
-from tests.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance
 from tests.search.possibility import possible
 from tests.search.strategies.test_best_recruited import PricedWorld, a_priced_problem

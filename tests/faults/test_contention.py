@@ -11,8 +11,8 @@ import pytest
 from selfconf.configurator.state import Phase
 from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.configuration import Configuration
-from tests.effort import NIGHTLY, examples
 from tests.faults.contention import SENSORS, Contention, Settled
+from tests.harness.effort import NIGHTLY, examples
 
 SEEDS = 1_000 if NIGHTLY else examples(4)
 

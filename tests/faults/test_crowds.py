@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.effort import NIGHTLY
 from tests.faults.ecologies import CROWDED
 from tests.faults.script import Recipe, with_crowd, write
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
+from tests.harness.effort import NIGHTLY
 
 __all__ = ["folder"]
 CROWDS = HISTORIES // (10 if NIGHTLY else 30)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.effort import NIGHTLY
 from tests.faults import script
 from tests.faults.ecologies import COMPOSED, ECOLOGIES, LATCHED, PAPER
 from tests.faults.harsh import KINDS, STALLS, promising, write
@@ -15,6 +14,7 @@ from tests.faults.histories import History
 from tests.faults.replay import account, played, told
 from tests.faults.script import Action, Recipe, Script, TaskPlan
 from tests.faults.test_histories import folder
+from tests.harness.effort import NIGHTLY
 
 __all__ = ["folder"]
 HARSH, BATCH = (4_000, 200) if NIGHTLY else (40, 40)

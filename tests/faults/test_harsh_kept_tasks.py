@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.effort import NIGHTLY
 from tests.faults.harsh_kept_tasks import KINDS, played
 from tests.faults.kept_tasks import account
+from tests.harness.effort import NIGHTLY
 
 HARSH = 500 if NIGHTLY else len(KINDS)
 BATCH = len(KINDS)

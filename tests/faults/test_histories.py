@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.effort import NIGHTLY, examples
 from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import SETTLED, History
 from tests.faults.replay import account, played, shrink, told
 from tests.faults.script import KINDS, Action, Recipe, Script, write
 from tests.faults.watch import ENDS, STEPS
+from tests.harness.effort import NIGHTLY, examples
 
 HISTORIES = 10_000 if NIGHTLY else examples(750)  # 300 for every push
 BUSY = HISTORIES // 5

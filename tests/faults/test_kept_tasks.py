@@ -11,8 +11,8 @@ from selfconf.bus.port import Replies
 from selfconf.deployment import Keeper, TaskRunner
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
-from tests.effort import NIGHTLY, examples
 from tests.faults.kept_tasks import FAULTY, TASKS, KeptHistory, account, played
+from tests.harness.effort import NIGHTLY, examples
 
 HISTORIES = 2_000 if NIGHTLY else examples(50)  # 20 for every push
 

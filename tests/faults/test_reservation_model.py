@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from tests.effort import examples
 from tests.faults.exploration import Bounds, Findings, explore
 from tests.faults.reservation_model import Claim, Mask, Scheme
+from tests.harness.effort import examples
 
 STATES = 20_000 * examples(100) // 100
 """How many states of a case are explored at most; at night fifty times as many."""

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.effort import NIGHTLY
 from tests.faults.ecologies import CHOICE, COMPOSED, PAPER
 from tests.faults.replay import played
 from tests.faults.script import KINDS, Recipe, with_upgrades, write
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
+from tests.harness.effort import NIGHTLY
 
 __all__ = ["folder"]
 UPGRADING = HISTORIES // (10 if NIGHTLY else 30)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from selfconf.errors import PeerError, SelfconfError, TurtleError
 from selfconf.rdf.advertisements import read_advertisements
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.hostile.bounded import bounded
 from tests.hostile.mangling import TOKENS, in_time, mangled, some_mangled
 from tests.lab import ADVERTISEMENTS, PREFIXES

@@ -51,7 +51,7 @@ from selfconf.protocol.messages import (
 )
 from selfconf.sdk.payloads import ELEMENT_FORMATS, read_payload
 from selfconf.serve.watcher import EcologyWatcher
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.hostile.bounded import bounded
 from tests.hostile.mangling import in_time, mangled, mangled_either, mangled_json, some_mangled
 from tests.lab import ADVERTISEMENTS, BOUND, NAVIGATE, PREFIXES, Lab, iri, task_of

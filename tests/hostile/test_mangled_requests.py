@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.hostile.bounded import bounded
 from tests.hostile.mangling import in_time, mangled
 from tests.lab import ADVERTISEMENTS

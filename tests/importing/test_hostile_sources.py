@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from selfconf.importing import IMPORT_FORMATS, import_descriptions
 from selfconf.rdf.turtle import parse
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.importing.ros2.look_alikes import system
 from tests.importing.ros2.test_nodl import TEXT as NODL
 from tests.importing.test_owl_s import TURTLE, XML

@@ -12,7 +12,7 @@ from selfconf.importing.turtle_text import WIDTH, turtle
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import RDF, ROB, SC, TYPE, XSD
-from tests.effort import examples
+from tests.harness.effort import examples
 
 LAMP = IRI("urn:x:lamp")
 

@@ -14,7 +14,7 @@ from rdflib import Graph
 from selfconf import library
 from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.positions import parse_with_positions
-from tests.effort import examples
+from tests.harness.effort import examples
 
 SHAPES = Graph().parse(next(path for path in library.shapes() if path.stem == "configuration"))
 PREFIXES = """\

@@ -20,7 +20,7 @@ import rdflib
 from rdflib import compare
 
 from selfconf.cli.main import main
-from tests.frozen import nothing_frozen
+from tests.harness.frozen import nothing_frozen
 
 SENTENCES = frozenset(("message", "obstacle", "hint", "text", "title"))
 """The members of JSON that are for people. `obstacles` is a list of them."""

@@ -12,8 +12,8 @@ import sys
 
 import pytest
 
-from tests.asked_here import ask_here
-from tests.effort import examples
+from tests.harness.asked_here import ask_here
+from tests.harness.effort import examples
 from tests.recorded import cases
 from tests.recorded.answers import Answer, differences, taken_apart
 from tests.recorded.record import GROUPS, answers, compared, load

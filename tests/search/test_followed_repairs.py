@@ -11,7 +11,7 @@ import pytest
 import selfconf
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, AddInteraction, AskForFewer, LetRecruit, Relaxation
-from tests.effort import examples
+from tests.harness.effort import examples
 
 PREFIXES = """\
 @prefix sc: <https://w3id.org/selfconf#> .

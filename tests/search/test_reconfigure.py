@@ -15,7 +15,7 @@ from selfconf.model.refusal import Refusal
 from selfconf.search import explain, reconfigure
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
-from tests.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, with_chance
 from tests.search.oracle import World
 from tests.search.without_solvers import without_solvers

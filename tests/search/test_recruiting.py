@@ -18,7 +18,7 @@ from selfconf.model.refusal import Refusal
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import first_recruited, recruited
 from selfconf.search.strategies import first
-from tests.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance
 from tests.search.oracle import World
 from tests.search.without_solvers import without_solvers

@@ -27,7 +27,7 @@ from selfconf.model.template import Interaction, Parameter, Role, Setting, Task,
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction
-from tests.effort import NIGHTLY, solved_examples
+from tests.harness.effort import NIGHTLY, solved_examples
 from tests.search.chance import Chance, by_chance
 
 

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from tests.cli.processes import PATIENCE, Home
-from tests.effort import at_night
 from tests.foreign import node_command, npm_packages
+from tests.harness.effort import at_night
 from tests.lab import iri
 from tests.serve.chromium import CHROMIUM, Chromium
 

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.effort import at_night
+from tests.harness.effort import at_night
+from tests.harness.yardstick import Yardstick
 from tests.serve.chromium import CHROMIUM, Chromium, Page
-from tests.yardstick import Yardstick
 
 pytest.importorskip("pybullet", reason="the demo needs PyBullet")
 pytestmark = [pytest.mark.sim, pytest.mark.process]

@@ -13,7 +13,7 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed: install the e
 from sim.apartment import Apartment
 from sim.floor_plan import Block
 from sim.rehearsal import Log, rehearse
-from tests.effort import NIGHTLY, at_night
+from tests.harness.effort import NIGHTLY, at_night
 
 pytestmark = [pytest.mark.sim, pytest.mark.slow]
 

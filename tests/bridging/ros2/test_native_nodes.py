@@ -15,8 +15,8 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Apply, Release, Reserve, Wire
 from selfconf.sdk import CallStatus, Component, Response, Signal
 from tests.bridging.ros2.nodes import DOMAIN, BridgedDomain, bridging_domain, lines_of, node, reader
-from tests.effort import at_night
 from tests.foreign import built_crate
+from tests.harness.effort import at_night
 from tests.sdk.living import LivingStage, until
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")

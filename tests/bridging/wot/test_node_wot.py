@@ -13,8 +13,8 @@ import pytest
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from tests.bridging.wot.bridged import active, bridging, button
-from tests.effort import at_night
 from tests.foreign import node_command, npm_packages
+from tests.harness.effort import at_night
 from tests.sdk.living import LivingStage, until
 
 pytestmark = [at_night, pytest.mark.process]

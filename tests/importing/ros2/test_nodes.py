@@ -8,7 +8,7 @@ import selfconf as sc
 from selfconf.importing import ROS2
 from selfconf.model.configuration import Configuration
 from selfconf.rdf.vocabulary import SC, TYPE
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.importing.imports import Workshop, left_out
 from tests.importing.ros2.look_alikes import system
 

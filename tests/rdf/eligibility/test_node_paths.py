@@ -15,7 +15,7 @@ from selfconf.rdf.eligibility.node_paths import WalkedStatements
 from selfconf.rdf.rdflib_terms import from_rdflib, to_rdflib
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import RDFS, SH
-from tests.effort import examples
+from tests.harness.effort import examples
 
 PREFIXES = "@prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:t:> .\n"
 NODES, LINKS = [f":n{k}" for k in range(4)], [":p", ":q"]

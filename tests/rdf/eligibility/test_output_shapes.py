@@ -18,7 +18,7 @@ from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
 from selfconf.rdf.turtle import Document, parse
 from selfconf.rdf.vocabulary import SC, SH
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.lab import PREFIXES
 
 OUTPUTS = """

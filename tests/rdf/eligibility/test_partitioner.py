@@ -20,7 +20,7 @@ from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.literal_comparison import only_ordered
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 CLASSES = ("rob:MotorDrive", "rob:Encoder", ":Other")

@@ -15,7 +15,7 @@ from selfconf.rdf.reasoning import closure
 from selfconf.rdf.reasoning import fast_owl as quick_owl
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle.document import Document, Triple
-from tests.effort import examples
+from tests.harness.effort import examples
 
 pytest.importorskip("reasonable")
 

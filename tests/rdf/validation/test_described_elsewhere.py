@@ -12,7 +12,7 @@ from selfconf import library
 from selfconf.model.codes import PREAMBLE
 from selfconf.rdf.validation.checking import FileChecker, SourceText, UnclearedFile, validate_texts
 from selfconf.rdf.validation.term_index import TermIndex
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.search.test_followed_repairs import PREFIXES, components, configured, ecology
 
 TEMPLATE = """\

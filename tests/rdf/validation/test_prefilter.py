@@ -11,7 +11,7 @@ from rdflib import Graph
 
 from selfconf.rdf.validation.prefilter import prefilter
 from selfconf.rdf.validation.shape_violations import reported_violations
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.shipped import shipped_shapes
 
 HEAD = """\

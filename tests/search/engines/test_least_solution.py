@@ -21,7 +21,7 @@ from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import pruned, reduced
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.search.comparison import least_numbers, numbers
 from tests.search.worlds import agreement, problems, rivalries
 

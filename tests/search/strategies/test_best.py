@@ -21,7 +21,7 @@ from selfconf.search import explain
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
-from tests.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance, with_chance
 from tests.search.oracle import Players, World
 from tests.search.worlds import a_problem, agreement, component, explained_once, iri, problem

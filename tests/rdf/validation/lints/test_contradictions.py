@@ -15,7 +15,7 @@ from selfconf.rdf.turtle.document import parse
 from selfconf.rdf.validation.lints.contradictions import contradictions
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeSource
 from selfconf.rdf.vocabulary import SC
-from tests.effort import examples
+from tests.harness.effort import examples
 from tests.lab import PREFIXES, iri
 from tests.rdf.eligibility.test_compiler import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
 from tests.shipped import shipped_shapes

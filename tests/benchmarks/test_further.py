@@ -1,0 +1,67 @@
+"""The benchmark on further families: its short run works, and its summary counts what the goals speak of."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks.search import families, first, further
+from benchmarks.search.further import Asked
+from benchmarks.search.further_families import counted, cover
+from benchmarks.search.measure import Measured
+from benchmarks.search.report import Row
+from selfconf.model.partition import Candidate
+from tests.benchmarks.short_run import short_run
+
+
+def test_engines_agree_where_roles_draw_on_one_pool_each_in_an_order_of_its_own() -> None:
+    pool = [Candidate(families.profile(name)) for name in ("p0", "p1", "p2", "p3")]
+    problem = counted([pool, pool[::-1]], [2, 2], ())
+    found = first.selfconf(problem)
+    assert isinstance(found, tuple)
+    names = [one.rpartition(":")[2] for one in found]
+    assert names == ["p0", "p1", "p3", "p2"]
+    for engine in ("clingo, heuristic", "python-sat"):
+        assert first.ENGINES[engine](problem) == found
+
+
+def test_more_candidates_than_an_integer_has_bits_are_weighed_in_parts() -> None:
+    pytest.importorskip("ortools", reason="CP-SAT is compared with where it is installed")
+    problem = cover(40, 70, 8, 0.2, 1)
+    found = first.selfconf(problem)
+    assert found
+    assert first.ENGINES["CP-SAT"](problem) == found
+
+
+@pytest.mark.process
+def test_the_short_run_asks_all_engines_both_questions() -> None:
+    printed = short_run("benchmarks.search.further")
+    for family in ("pigeonholes", "relay chain", "crossword"):
+        assert f"| smoke | {family} | 1 |" in printed
+    assert "## Any configuration" in printed
+
+
+def row(mine: float | None, other: float | None) -> Row:
+    """An instance with the seconds that selfconf and another engine take; None where it has no answer within 60 s."""
+    instance = families.Instance("made up", "one", 1, lambda: families.navigation(1, 1))
+    found = {
+        engine: Measured(60.0, None) if seconds is None else Measured(seconds, False)
+        for engine, seconds in (("selfconf", mine), ("CaDiCaL", other))
+    }
+    return Row(instance, found, False)
+
+
+def test_an_engine_without_an_answer_counts_as_if_it_had_it_when_it_was_stopped() -> None:
+    assert further.ratios([row(0.3, 0.1), row(6.0, None), row(None, 30.0), row(None, None), row(0.002, 0.001)]) == [
+        pytest.approx(3.0),
+        pytest.approx(0.1),
+        pytest.approx(2.0),
+    ]
+
+
+def test_what_selfconf_leaves_undecided_misses_the_goal() -> None:
+    good = Asked("unseen", row(0.05, 0.1), None)
+    assert "is met" in "\n".join(further.verdict([good]))
+    text = "\n".join(further.verdict([good, good, Asked("unseen", row(None, 50.0), None)]))
+    assert "0.50 times the best other engine in the median, 1.20 at worst, 1 undecided" in text
+    assert "is missed" in text
+    assert "| unseen | **all** | 1 | 0.50 | 0.50 | 0 |" in further.summary([good])

@@ -1,0 +1,21 @@
+"""The benchmark of living ecologies: its short run works, and its page tells how the times grow."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks.live.__main__ import Measured, report
+from tests.benchmarks.short_run import short_run
+
+
+@pytest.mark.process
+def test_the_short_run_runs() -> None:
+    printed = short_run("benchmarks.live")
+    assert "| 20 | 2 |" in printed
+
+
+def test_the_page_tells_how_the_times_grow() -> None:
+    small = Measured(100, 1, 1.0, 0.01, 0.01, 0.01, 0.1, 0.005, 50.0, 0.001)
+    large = Measured(10_000, 1, 1.0, 1.0, 0.1, 0.1, 1.0, 0.005, 100.0, 0.001)
+    page = report([small, large])
+    assert "from 100 to 10,000 components: discover 1.00, again 0.50, bare 0.50, running 0.50, failover 0.00" in page
