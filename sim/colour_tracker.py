@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from selfconf.sdk import Component, Signal, main
-from sim import astrid
-from sim.apartment import read_apartment
 from sim.eyes import calibration
-from sim.stereo import StereoFrame
-from sim.tracker import Tracker
+from sim.home.apartment import read_apartment
+from sim.robot import astrid
+from sim.robot.stereo import StereoFrame
+from sim.robot.tracker import Tracker
 
 
 class ColourTracker(Component):

@@ -7,16 +7,16 @@ them once per control period, on the one thread that owns PyBullet; signals carr
 from __future__ import annotations
 
 from selfconf.sdk import Component, Signal
-from sim import astrid
-from sim.drive import Drive
 from sim.geometry import Pose
-from sim.noise import stream
-from sim.odometry import AbsoluteOdometry, WheelOdometry
+from sim.physics.noise import stream
+from sim.physics.world import World
+from sim.robot import astrid
+from sim.robot.drive import Drive
+from sim.robot.odometry import AbsoluteOdometry, WheelOdometry
+from sim.robot.sonar import Sonar
+from sim.robot.stereo import StereoCamera, StereoFrame
+from sim.robot.tracker import Tracker
 from sim.signals import Odometry2D, PlanarPose2D, Velocity2D
-from sim.sonar import Sonar
-from sim.stereo import StereoCamera, StereoFrame
-from sim.tracker import Tracker
-from sim.world import World
 
 ADVERTISEMENTS = "../examples/peis-home"
 

@@ -12,14 +12,14 @@ from dataclasses import replace
 import numpy as np
 
 from selfconf.sdk import Component
-from sim.apartment import Apartment
-from sim.camera import Camera
-from sim.floor_plan import Block, CameraMount
-from sim.noise import stream
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import Block, CameraMount
+from sim.physics.camera import Camera
+from sim.physics.noise import stream
+from sim.physics.world import World, camera_of
+from sim.robot.stereo import StereoCamera, StereoFrame
 from sim.say import say
 from sim.signals import PlanarPose2D
-from sim.stereo import StereoCamera, StereoFrame
-from sim.world import World, camera_of
 
 MOUNT = "stereo-camera"
 """What the description of the apartment calls the place of the upper camera."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from selfconf.model.term import IRI
 from sim.account import Account, short
-from sim.apartment import Apartment, read_apartment
+from sim.home.apartment import Apartment, read_apartment
 from sim.peis_home import standing_point
 from sim.pictures import CameraImage, Failure, Link, Part, RunRecord, Sample, Supply, Wiring, draw
 

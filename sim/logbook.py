@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.geometry import Pose
+from sim.robot.stereo import StereoFrame
 from sim.signals import PlanarPose2D
-from sim.stereo import StereoFrame
 
 SIGHT_EVERY = 1.0
 """Simulated seconds between two camera images that are kept, besides the first and the last ones."""

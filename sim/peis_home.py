@@ -18,13 +18,13 @@ import time
 from pathlib import Path
 
 from selfconf.sdk import Host, Termination, add_connection_arguments, open_host
-from sim.apartment import Apartment, ApartmentError, read_apartment
 from sim.equipment import AbsolutePosition, MotorDrive, PersonTracker, SonarArray, WheelEncoder
 from sim.eyes import UPPER, SpareEye, StereoEye, curtain
 from sim.geometry import Pose
+from sim.home.apartment import Apartment, ApartmentError, read_apartment
 from sim.logbook import Logbook
+from sim.physics.world import TIME_STEP, World
 from sim.say import say
-from sim.world import TIME_STEP, World
 
 PERIOD = 0.1
 """Simulated seconds of a control period."""

@@ -10,18 +10,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from sim import astrid
-from sim.apartment import Apartment
-from sim.drive import Drive
-from sim.floor_plan import Block
 from sim.geometry import Pose
-from sim.navigator import Decision, Navigator
-from sim.noise import stream
-from sim.odometry import AbsoluteOdometry, WheelOdometry
-from sim.sonar import Sonar
-from sim.stereo import StereoCamera
-from sim.tracker import Tracker
-from sim.world import TIME_STEP, World
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import Block
+from sim.physics.noise import stream
+from sim.physics.world import TIME_STEP, World
+from sim.robot import astrid
+from sim.robot.drive import Drive
+from sim.robot.navigator import Decision, Navigator
+from sim.robot.odometry import AbsoluteOdometry, WheelOdometry
+from sim.robot.sonar import Sonar
+from sim.robot.stereo import StereoCamera
+from sim.robot.tracker import Tracker
 
 TICK = 0.1
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 from selfconf.sdk import Component, Refused, Signal, main
-from sim.apartment import read_apartment
-from sim.goal import GoalError
-from sim.navigator import Navigator
+from sim.home.apartment import read_apartment
+from sim.home.goal import GoalError
+from sim.robot.navigator import Navigator
 from sim.say import say
 
 

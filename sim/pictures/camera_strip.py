@@ -16,7 +16,7 @@ from shapely import MultiPoint
 from sim.pictures.colours import BLUE, FAIL, GREY, INK, ORANGE, PAPER
 from sim.pictures.record import CameraImage
 from sim.pictures.svg import Point, Style, add, badge, document, image, points, shortened, write
-from sim.tracker import plate_colours
+from sim.robot.tracker import plate_colours
 
 TITLE, TEXT, CLOCK = Style(22, bold=True), Style(14.5), Style(14.5, GREY)
 MARK = "#ffe100"

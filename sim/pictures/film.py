@@ -15,7 +15,6 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from sim.astrid import PLATE_HEIGHT, RADIUS
 from sim.pictures.colours import FAIL, GREY, PAPER, to_screen
 from sim.pictures.floor import Floor, trail
 from sim.pictures.legend import ENTRY, Entry, fade, over, swatch
@@ -24,6 +23,7 @@ from sim.pictures.record import Failure, RunRecord, Sample
 from sim.pictures.scene import SUN_FROM, Scene
 from sim.pictures.svg import Style, add, badge, document, points, shortened, write
 from sim.pictures.viewpoint import Viewpoint, Window
+from sim.robot.astrid import PLATE_HEIGHT, RADIUS
 
 FRAME_TIME, LAST_TIME = 0.11, 1.8
 """How long a frame shows, and how long the last, in seconds."""

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from sim.floor_plan import Furniture, Room
+from sim.home.floor_plan import Furniture, Room
 from sim.pictures.colours import BLUE, FAIL, GREEN, GREY, SKY, mix, to_linear, written
 from sim.pictures.mesh import Array
 from sim.pictures.record import RunRecord, Sample

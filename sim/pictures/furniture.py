@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from sim.floor_plan import Furniture
+from sim.home.floor_plan import Furniture
 from sim.pictures.colours import mix, written
 from sim.pictures.mesh import Array, Material, Solid, ball, box, cone, upright
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from sim.apartment import Apartment
-from sim.floor_plan import CameraMount, Room, Wall
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import CameraMount, Room, Wall
 from sim.pictures.colours import written
 from sim.pictures.furniture import DARK, furnish
 from sim.pictures.mesh import Material, Solid, axes, box, cone

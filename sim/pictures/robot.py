@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from sim.astrid import PLATE_HEIGHT, SONAR_ANGLES, SONAR_HEIGHT, SONAR_RING, TRACK, WHEEL_RADIUS
 from sim.pictures.mesh import Material, Solid, ball, box, cone, upright
+from sim.robot.astrid import PLATE_HEIGHT, SONAR_ANGLES, SONAR_HEIGHT, SONAR_RING, TRACK, WHEEL_RADIUS
 
 RED = Material("#c8262b", gloss=0.5)
 BLACK = Material("#1d1f24", gloss=0.35)

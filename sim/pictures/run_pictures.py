@@ -9,8 +9,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from sim.apartment import Apartment
-from sim.astrid import PLATE_HEIGHT
+from sim.home.apartment import Apartment
 from sim.pictures import film, legend
 from sim.pictures.camera_strip import strip
 from sim.pictures.colours import to_screen
@@ -23,6 +22,7 @@ from sim.pictures.scene import Scene
 from sim.pictures.svg import image, source
 from sim.pictures.view_area import view_area
 from sim.pictures.viewpoint import perspective, plan
+from sim.robot.astrid import PLATE_HEIGHT
 
 Progress = Callable[[str, float], None]
 """Hears what is being drawn, and the share (0..1) of all pictures that is done."""

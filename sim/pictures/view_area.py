@@ -10,8 +10,8 @@ import numpy as np
 from shapely import MultiPoint, Polygon, unary_union
 from shapely.geometry.base import BaseGeometry
 
-from sim.floor_plan import Block, CameraMount, Room, Wall
 from sim.geometry import Pose
+from sim.home.floor_plan import Block, CameraMount, Room, Wall
 from sim.pictures.mesh import axes
 from sim.pictures.svg import Point
 

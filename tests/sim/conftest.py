@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rdflib import Graph
 
-from sim.apartment import PEIS_HOME, Apartment, read_apartment
+from sim.home.apartment import PEIS_HOME, Apartment, read_apartment
 
 
 @pytest.fixture(scope="session")

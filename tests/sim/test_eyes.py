@@ -9,13 +9,13 @@ import pytest
 
 pytest.importorskip("pybullet", reason="PyBullet is not installed: install the extra sim on Python 3.10 or 3.11")
 
-from sim import astrid
-from sim.apartment import Apartment
 from sim.eyes import COVERED, LOWER, UPPER, calibration, curtain
-from sim.noise import stream
-from sim.stereo import StereoCamera, StereoFrame
-from sim.tracker import Tracker
-from sim.world import World
+from sim.home.apartment import Apartment
+from sim.physics.noise import stream
+from sim.physics.world import World
+from sim.robot import astrid
+from sim.robot.stereo import StereoCamera, StereoFrame
+from sim.robot.tracker import Tracker
 
 pytestmark = pytest.mark.sim
 

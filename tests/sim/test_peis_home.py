@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from rdflib import OWL, RDF, RDFS, SKOS, Graph, URIRef
 
-from sim.apartment import HOME, PEIS_HOME, Apartment
-from sim.route import RouteMap
+from sim.home.apartment import HOME, PEIS_HOME, Apartment
+from sim.home.route import RouteMap
 
 TERMS = sorted({s for s in Graph().parse(PEIS_HOME).subjects() if str(s).startswith(str(HOME))})
 

@@ -18,8 +18,7 @@ import numpy as np
 from PIL import Image
 from rdflib import Graph, Literal, URIRef
 
-from sim.apartment import HOME, Apartment, read_apartment
-from sim.astrid import PLATE_HEIGHT
+from sim.home.apartment import HOME, Apartment, read_apartment
 from sim.pictures import (
     CameraImage,
     Failure,
@@ -44,6 +43,7 @@ from sim.pictures.scene import Scene
 from sim.pictures.svg import Style, image, shortened, source, width
 from sim.pictures.view_area import view_area
 from sim.pictures.viewpoint import perspective, plan
+from sim.robot.astrid import PLATE_HEIGHT
 
 TINY = Quality((420, 300), samples=1, density=60, film_size=(220, 130), film_samples=1, film_density=60, frames=4)
 LEAST = Quality((240, 200), samples=1, density=20, film_size=(110, 65), film_samples=1, film_density=20, frames=2)

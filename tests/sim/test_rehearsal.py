@@ -10,8 +10,8 @@ import pytest
 
 pytest.importorskip("pybullet", reason="PyBullet is not installed: install the extra sim on Python 3.10 or 3.11")
 
-from sim.apartment import Apartment
-from sim.floor_plan import Block
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import Block
 from sim.rehearsal import Log, rehearse
 from tests.harness.effort import NIGHTLY, at_night
 

@@ -17,8 +17,8 @@ ROOT = Path(__file__).parents[2]
 PATIENCE = 60.0
 LOOK = """
 import pybullet
-from sim.apartment import read_apartment
-from sim.world import World
+from sim.home.apartment import read_apartment
+from sim.physics.world import World
 
 world = World(read_apartment(), 1, gui=True)
 assert pybullet.getConnectionInfo(0)["connectionMethod"] == pybullet.GUI

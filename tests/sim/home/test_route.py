@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import pytest
 
-from sim.apartment import Apartment
-from sim.floor_plan import Furniture
-from sim.route import RouteError, RouteMap
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import Furniture
+from sim.home.route import RouteError, RouteMap
 
 START, BEDROOM = (0.96, 1.75), (5.4, 1.2)
 

@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("numpy", reason="the world needs numpy: install the extra sim")
 
-from sim.noise import stream
+from sim.physics.noise import stream
 
 
 def test_a_stream_is_determined_by_seed_and_consumer() -> None:

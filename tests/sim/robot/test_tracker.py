@@ -10,12 +10,12 @@ pytest.importorskip("numpy", reason="the world needs numpy: install the extra si
 
 import numpy as np
 
-from sim.astrid import PLATE_HEIGHT
-from sim.camera import Camera, look_at, perspective
 from sim.geometry import Pose, wrap
-from sim.noise import stream
-from sim.stereo import StereoFrame
-from sim.tracker import Tracker
+from sim.physics.camera import Camera, look_at, perspective
+from sim.physics.noise import stream
+from sim.robot.astrid import PLATE_HEIGHT
+from sim.robot.stereo import StereoFrame
+from sim.robot.tracker import Tracker
 
 CAMERA = Camera(320, 240, look_at((3.62, 3.88, 2.35), (1.72, 1.91, 0.55)), perspective(1.0821, 4 / 3))
 MAGENTA, CYAN, BLUE = (220, 0, 220), (0, 210, 210), (60, 100, 170)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rdflib import RDF, SKOS, BNode, Graph, Literal, URIRef
 
-from sim.apartment import HOME, Apartment, ApartmentError, read_apartment
+from sim.home.apartment import HOME, Apartment, ApartmentError, read_apartment
 
 
 def test_the_experiment_has_what_it_needs(apartment: Apartment) -> None:

@@ -15,8 +15,8 @@ from typing import TypeVar
 from rdflib import RDF, RDFS, SKOS, Graph, Literal, Namespace, URIRef
 from rdflib.term import Node
 
-from sim.floor_plan import Block, CameraMount, Colour, Door, Furniture, Place, Robot, Room, Wall
 from sim.geometry import Pose
+from sim.home.floor_plan import Block, CameraMount, Colour, Door, Furniture, Place, Robot, Room, Wall
 
 __all__ = [
     "PEIS_HOME",
@@ -35,7 +35,7 @@ __all__ = [
 
 HOME = Namespace("https://w3id.org/selfconf/peis-home#")
 ROB = Namespace("https://w3id.org/selfconf/robotics#")
-PEIS_HOME = Path(__file__).parent.parent / "ontology" / "peis-home.ttl"
+PEIS_HOME = Path(__file__).parents[2] / "ontology" / "peis-home.ttl"
 
 
 class ApartmentError(Exception):

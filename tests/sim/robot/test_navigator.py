@@ -8,12 +8,12 @@ import pytest
 
 pytest.importorskip("numpy", reason="the world needs numpy: install the extra sim")
 
-from sim.apartment import Apartment
-from sim.astrid import SONAR_ANGLES
-from sim.drive import STILL
 from sim.geometry import Pose
-from sim.goal import GoalError
-from sim.navigator import Belief, Decision, Navigator
+from sim.home.apartment import Apartment
+from sim.home.goal import GoalError
+from sim.robot.astrid import SONAR_ANGLES
+from sim.robot.drive import STILL
+from sim.robot.navigator import Belief, Decision, Navigator
 from sim.signals import Odometry2D, PlanarPose2D, RangeScan, Velocity2D
 
 NOTHING_HEARD: RangeScan = {"angles": list(SONAR_ANGLES), "ranges": [4.2] * 16, "max_range": 4.2}

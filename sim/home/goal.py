@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import re
 
-from sim.apartment import Apartment
-from sim.floor_plan import Place
 from sim.geometry import Pose
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import Place
 
 
 class GoalError(ValueError):

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from sim.floor_plan import Block, Door, Wall
+from sim.home.floor_plan import Block, Door, Wall
 
 GREY = (0.5, 0.5, 0.5)
 

@@ -12,8 +12,8 @@ from collections import deque
 
 import numpy as np
 
-from sim.camera import Array
 from sim.geometry import Pose, wrap
+from sim.physics.camera import Array
 from sim.signals import RangeScan
 
 DIRECTIONS = np.radians(np.arange(-180.0, 180.0, 5.0))

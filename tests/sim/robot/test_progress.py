@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from sim.geometry import Pose
-from sim.progress import Progress
+from sim.robot.progress import Progress
 
 
 def test_a_robot_that_runs_in_circles_is_stuck_in_the_end() -> None:

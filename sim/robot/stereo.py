@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.camera import Array, Camera
-from sim.shapes import Picture
+from sim.physics.camera import Array, Camera
+from sim.physics.shapes import Picture
 
 
 @dataclass(frozen=True, eq=False)

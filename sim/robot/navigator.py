@@ -15,14 +15,14 @@ from typing import Literal
 
 import numpy as np
 
-from sim import astrid
-from sim.apartment import Apartment
-from sim.avoidance import Surroundings
-from sim.drive import STILL
 from sim.geometry import Pose, wrap
-from sim.goal import read_goal
-from sim.progress import Progress
-from sim.route import RouteError, RouteMap, Spot
+from sim.home.apartment import Apartment
+from sim.home.goal import read_goal
+from sim.home.route import RouteError, RouteMap, Spot
+from sim.robot import astrid
+from sim.robot.avoidance import Surroundings
+from sim.robot.drive import STILL
+from sim.robot.progress import Progress
 from sim.signals import Odometry2D, PlanarPose2D, RangeScan, Velocity2D, pose_of
 
 State = Literal["driving", "arrived", "stuck"]

@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim import astrid
-from sim.apartment import Apartment
-from sim.bullet import Bullet, heading, upright
-from sim.camera import Camera, look_at, perspective
-from sim.drive import STILL, Ramp, wheel_speeds
-from sim.floor_plan import Block, CameraMount, Furniture
 from sim.geometry import Pose
-from sim.noise import stream
-from sim.shapes import Box, Contact, Cylinder, Picture
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import Block, CameraMount, Furniture
+from sim.physics.bullet import Bullet, heading, upright
+from sim.physics.camera import Camera, look_at, perspective
+from sim.physics.noise import stream
+from sim.physics.shapes import Box, Contact, Cylinder, Picture
+from sim.robot import astrid
+from sim.robot.drive import STILL, Ramp, wheel_speeds
+from sim.robot.sonar import Beams, Echoes
 from sim.signals import Velocity2D
-from sim.sonar import Beams, Echoes
 
 TIME_STEP = 1 / 240
 FLOOR = "floor"

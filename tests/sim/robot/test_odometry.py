@@ -10,10 +10,10 @@ pytest.importorskip("numpy", reason="the world needs numpy: install the extra si
 
 import numpy as np
 
-from sim import astrid
 from sim.geometry import Pose
-from sim.noise import stream
-from sim.odometry import AbsoluteOdometry, WheelOdometry
+from sim.physics.noise import stream
+from sim.robot import astrid
+from sim.robot.odometry import AbsoluteOdometry, WheelOdometry
 from sim.signals import Odometry2D
 
 

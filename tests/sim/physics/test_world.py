@@ -13,16 +13,16 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed: install the e
 
 import numpy as np
 
-from sim import astrid
-from sim.apartment import HOME, Apartment, read_apartment
-from sim.drive import STILL, Drive
-from sim.floor_plan import Block
 from sim.geometry import Pose
-from sim.noise import stream
-from sim.sonar import Beams, Sonar
-from sim.stereo import StereoCamera
-from sim.tracker import Tracker
-from sim.world import World
+from sim.home.apartment import HOME, Apartment, read_apartment
+from sim.home.floor_plan import Block
+from sim.physics.noise import stream
+from sim.physics.world import World
+from sim.robot import astrid
+from sim.robot.drive import STILL, Drive
+from sim.robot.sonar import Beams, Sonar
+from sim.robot.stereo import StereoCamera
+from sim.robot.tracker import Tracker
 
 pytestmark = pytest.mark.sim
 

@@ -12,9 +12,9 @@ import heapq
 import math
 from collections.abc import Iterator
 
-from sim.apartment import Apartment
-from sim.floor_plan import Block
 from sim.geometry import Pose
+from sim.home.apartment import Apartment
+from sim.home.floor_plan import Block
 
 Spot = tuple[float, float]
 

@@ -8,10 +8,10 @@ pytest.importorskip("numpy", reason="the world needs numpy: install the extra si
 
 import numpy as np
 
-from sim.camera import Camera, perspective
-from sim.noise import stream
-from sim.shapes import Picture
-from sim.stereo import StereoCamera
+from sim.physics.camera import Camera, perspective
+from sim.physics.noise import stream
+from sim.physics.shapes import Picture
+from sim.robot.stereo import StereoCamera
 
 CAMERA = Camera(200, 100, np.eye(4), perspective(1.0, 2.0, near=0.1, far=12.0))
 

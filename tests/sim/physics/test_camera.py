@@ -8,7 +8,7 @@ pytest.importorskip("numpy", reason="the world needs numpy: install the extra si
 
 import numpy as np
 
-from sim.camera import Camera, look_at, perspective
+from sim.physics.camera import Camera, look_at, perspective
 
 EYE, TARGET = (3.6, 3.9, 2.3), (1.7, 1.9, 0.5)
 

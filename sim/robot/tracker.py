@@ -13,9 +13,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.camera import Array, Camera
+from sim.physics.camera import Array, Camera
+from sim.robot.stereo import StereoFrame
 from sim.signals import PlanarPose2D
-from sim.stereo import StereoFrame
 
 
 class Tracker:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.camera import Array
+from sim.physics.camera import Array
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]

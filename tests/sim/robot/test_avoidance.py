@@ -10,9 +10,9 @@ pytest.importorskip("numpy", reason="the world needs numpy: install the extra si
 
 import numpy as np
 
-from sim.astrid import SONAR_ANGLES
-from sim.avoidance import Surroundings
 from sim.geometry import Pose
+from sim.robot.astrid import SONAR_ANGLES
+from sim.robot.avoidance import Surroundings
 from sim.signals import RangeScan
 
 HERE = Pose(0.0, 0.0, 0.0)

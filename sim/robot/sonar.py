@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.camera import Array
+from sim.physics.camera import Array
 from sim.signals import RangeScan
 
 

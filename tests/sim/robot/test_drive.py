@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sim.drive import STILL, Drive, Ramp, wheel_speeds
+from sim.robot.drive import STILL, Drive, Ramp, wheel_speeds
 
 
 def test_a_set_point_holds_for_half_a_second_and_no_longer() -> None:

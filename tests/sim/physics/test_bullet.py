@@ -16,9 +16,9 @@ pytest.importorskip("PIL", reason="Pillow is not installed: install the extra si
 import numpy as np
 from PIL import Image
 
-from sim.astrid import URDF
-from sim.bullet import Box, Bullet, Cylinder, Mesh, Sphere, heading, upright
-from sim.camera import Camera, look_at, perspective
+from sim.physics.bullet import Box, Bullet, Cylinder, Mesh, Sphere, heading, upright
+from sim.physics.camera import Camera, look_at, perspective
+from sim.robot.astrid import URDF
 
 pytestmark = pytest.mark.sim
 
@@ -150,7 +150,7 @@ def test_another_thread_is_turned_away(bullet: Bullet) -> None:
 
 def test_pybullet_prints_nothing() -> None:
     program = (
-        "from sim.bullet import Bullet; from sim.astrid import URDF\n"
+        "from sim.physics.bullet import Bullet; from sim.robot.astrid import URDF\n"
         "with Bullet() as world: world.add_urdf('Astrid', URDF, (0, 0, 0))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)

@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from sim.camera import Array, Camera
-from sim.quiet import quiet
-from sim.shapes import Box, Contact, Cylinder, Mesh, Picture, Quaternion, RayHits, Shape, Sphere, Vector
+from sim.physics.camera import Array, Camera
+from sim.physics.quiet import quiet
+from sim.physics.shapes import Box, Contact, Cylinder, Mesh, Picture, Quaternion, RayHits, Shape, Sphere, Vector
 
 __all__ = [
     "Box",

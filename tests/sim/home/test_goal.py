@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from sim.apartment import Apartment
-from sim.goal import GoalError, read_goal
+from sim.home.apartment import Apartment
+from sim.home.goal import GoalError, read_goal
 
 
 @pytest.mark.parametrize("text", ["(AT BEDROOM)", "(at bedroom)", "  ( AT  Bedroom ) "])

@@ -10,9 +10,9 @@ pytest.importorskip("numpy", reason="the world needs numpy: install the extra si
 
 import numpy as np
 
-from sim import astrid
-from sim.noise import stream
-from sim.sonar import Echoes, Sonar
+from sim.physics.noise import stream
+from sim.robot import astrid
+from sim.robot.sonar import Echoes, Sonar
 
 
 @pytest.fixture
