@@ -23,7 +23,7 @@ from selfconf.serve.metrics import PROMETHEUS, Metrics
 from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.origins import Origins
 from selfconf.serve.problems import problem
-from selfconf.serve.sparql_endpoint import SparqlEndpoint
+from selfconf.serve.sparql.endpoint import SparqlEndpoint
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
 """The names under which a server on this machine may be asked: a page elsewhere may know it under another one."""

@@ -10,10 +10,10 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.sparql import QUERY_PREFIXES
-from selfconf.serve.change import Body, EcologyChange
 from selfconf.serve.event_stream import EventStream
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.things import thing_description
+from selfconf.serve.watching.change import Body, EcologyChange
 
 REMEMBERED = 2000
 """How many events of the ecology are remembered."""

@@ -20,9 +20,9 @@ from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
 from selfconf.serve.apart import judged_apart
 from selfconf.serve.board import Board
-from selfconf.serve.change import Body
-from selfconf.serve.checked import checked_refusal
 from selfconf.serve.problems import problem
+from selfconf.serve.watching.change import Body
+from selfconf.serve.watching.checked import checked_refusal
 
 EXPLAINED_WITHIN = 20.0
 """Seconds that the search may take."""

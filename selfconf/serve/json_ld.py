@@ -10,7 +10,7 @@ from selfconf.model.term import IRI, STRING, Literal, Term
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.turtle import SKOLEM
 from selfconf.rdf.vocabulary import XSD
-from selfconf.serve.component_bodies import KNOWN_NAMES
+from selfconf.serve.watching.component_bodies import KNOWN_NAMES
 
 CONTEXT = dict(QUERY_PREFIXES)
 """The prefixes by which members, types and datatypes are written, which are those of `KNOWN_NAMES`."""

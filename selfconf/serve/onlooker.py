@@ -22,8 +22,8 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.protocol.stamps import StampReader
-from selfconf.serve.change import Body
-from selfconf.serve.checked import finite_number
+from selfconf.serve.watching.change import Body
+from selfconf.serve.watching.checked import finite_number
 
 GLANCE = 10
 """How many signals end a glance."""

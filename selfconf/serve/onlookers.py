@@ -14,10 +14,10 @@ from selfconf.bus.port import Bus
 from selfconf.discovery import FoundAdvertisement
 from selfconf.model.term import IRI
 from selfconf.serve.board import Board
-from selfconf.serve.change import Body
 from selfconf.serve.event_stream import EVENT_STREAM, STILL_THERE
 from selfconf.serve.onlooker import Onlooker
 from selfconf.serve.problems import problem
+from selfconf.serve.watching.change import Body
 
 MOST_LOOKS = 32
 """How many may look at a component at the same time."""

@@ -24,15 +24,15 @@ from selfconf.model.setting_names import setting
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
-from selfconf.serve.change import EcologyChange
 from selfconf.serve.connections import BoundedConnection
 from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
-from selfconf.serve.history import History
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
-from selfconf.serve.sparql_endpoint import SparqlEndpoint
-from selfconf.serve.watcher import EcologyWatcher
+from selfconf.serve.sparql.endpoint import SparqlEndpoint
+from selfconf.serve.watching.change import EcologyChange
+from selfconf.serve.watching.history import History
+from selfconf.serve.watching.watcher import EcologyWatcher
 from selfconf.termination import PARENT_CHECK, ending_signals, orphaned, started_by_another
 
 log = logging.getLogger(__name__)

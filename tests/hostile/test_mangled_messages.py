@@ -50,7 +50,7 @@ from selfconf.protocol.messages import (
     Wire,
 )
 from selfconf.sdk.payloads import ELEMENT_FORMATS, read_payload
-from selfconf.serve.watcher import EcologyWatcher
+from selfconf.serve.watching.watcher import EcologyWatcher
 from tests.harness.effort import examples
 from tests.hostile.bounded import bounded
 from tests.hostile.mangling import in_time, mangled, mangled_either, mangled_json, some_mangled

@@ -19,8 +19,8 @@ from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.onlookers import Onlookers
-from selfconf.serve.sparql_endpoint import SparqlEndpoint
-from selfconf.serve.watcher import EcologyWatcher
+from selfconf.serve.sparql.endpoint import SparqlEndpoint
+from selfconf.serve.watching.watcher import EcologyWatcher
 from tests.lab import Lab
 
 Result = TypeVar("Result")

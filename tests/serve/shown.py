@@ -12,9 +12,9 @@ import uvicorn
 from selfconf.discovery import FoundAdvertisement
 from selfconf.rdf import advertisements, turtle
 from selfconf.serve.board import Board
-from selfconf.serve.change import EcologyChange
-from selfconf.serve.component_bodies import component_body
 from selfconf.serve.server import bound
+from selfconf.serve.watching.change import EcologyChange
+from selfconf.serve.watching.component_bodies import component_body
 from tests.lab import ADVERTISEMENTS, PREFIXES
 from tests.serve.asgi import served
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from selfconf.serve.board import Board
-from selfconf.serve.change import EcologyChange
 from selfconf.serve.metrics import Metrics
+from selfconf.serve.watching.change import EcologyChange
 from tests.lab import ADVERTISEMENTS, iri
 from tests.serve.shown import advertised, found
 

@@ -9,8 +9,8 @@ import pytest
 from starlette.types import ASGIApp
 
 from selfconf.serve.board import Board
-from selfconf.serve.change import EcologyChange
 from selfconf.serve.directory import event_stream
+from selfconf.serve.watching.change import EcologyChange
 from tests.lab import ADVERTISEMENTS, iri
 from tests.serve.asgi import ask, served
 

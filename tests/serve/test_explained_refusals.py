@@ -15,7 +15,7 @@ from selfconf.api.tasks.detached import task_record
 from selfconf.deployment.runner import TaskRunner
 from selfconf.serve import explained_refusals
 from selfconf.serve.board import Board
-from selfconf.serve.change import EcologyChange
+from selfconf.serve.watching.change import EcologyChange
 from tests.lab import NAVIGATE, Lab, iri
 from tests.serve.asgi import ask, asked, meanwhile, served, watched
 

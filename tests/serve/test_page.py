@@ -18,8 +18,8 @@ import pytest
 
 from selfconf.access import Principal, PrincipalKind
 from selfconf.serve.board import Board
-from selfconf.serve.change import Body, EcologyChange
 from selfconf.serve.metrics import Metrics
+from selfconf.serve.watching.change import Body, EcologyChange
 from tests.cli.processes import Home, dormant
 from tests.lab import PREFIXES, iri
 from tests.serve.chromium import CHROMIUM, Chromium, Page

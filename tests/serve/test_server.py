@@ -12,9 +12,9 @@ import pytest
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.query import StandingQuestion
 from selfconf.rdf.vocabulary import ROB
-from selfconf.serve.change import Body
-from selfconf.serve.history import History
 from selfconf.serve.server import Record, bound
+from selfconf.serve.watching.change import Body
+from selfconf.serve.watching.history import History
 from tests.lab import ADVERTISEMENTS
 from tests.serve.shown import advertised
 

@@ -19,7 +19,7 @@ from starlette.types import ASGIApp
 from selfconf.query import RESULT_TYPES, TRIPLE_TYPES, StandingDataset
 from selfconf.rdf.turtle import parse
 from selfconf.serve.board import Board
-from selfconf.serve.service_description import SD
+from selfconf.serve.sparql.service_description import SD
 from tests.serve.asgi import Answer, ask, served
 
 BESIDE = Path(__file__).parents[3] / "shared" / "data" / "w3c-sparql-protocol"

@@ -10,9 +10,9 @@ from selfconf.api.living.past import past_configurations, past_graphs, past_why
 from selfconf.errors import AuthorError
 from selfconf.rdf.turtle import ntriples, parse
 from selfconf.rdf.vocabulary import SC
-from selfconf.serve.change import EcologyChange
-from selfconf.serve.history import DEPLOYED, History
-from selfconf.serve.watcher import EcologyWatcher
+from selfconf.serve.watching.change import EcologyChange
+from selfconf.serve.watching.history import DEPLOYED, History
+from selfconf.serve.watching.watcher import EcologyWatcher
 from tests.lab import ADVERTISEMENTS, Lab, iri
 
 GRAPH = DEPLOYED + "lab/conf/c1/cfg"

@@ -16,9 +16,9 @@ from selfconf.discovery import Beliefs, Discovery, EcologyView
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.rdf import turtle
-from selfconf.serve.change import Body, EcologyChange
-from selfconf.serve.component_bodies import component_body
-from selfconf.serve.task_watcher import TOGETHER, TaskWatcher
+from selfconf.serve.watching.change import Body, EcologyChange
+from selfconf.serve.watching.component_bodies import component_body
+from selfconf.serve.watching.task_watcher import TOGETHER, TaskWatcher
 
 ASKED_AGAIN = 5.0
 """Seconds after which a site is asked again that has not answered in full."""

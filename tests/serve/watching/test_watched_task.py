@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.protocol.messages import Notice, Status
-from selfconf.serve.watched_task import WatchedTask
+from selfconf.serve.watching.watched_task import WatchedTask
 from tests.lab import iri
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.render.run_events import event_body
-from selfconf.serve.checked import checked_configuration, checked_event, checked_refusal
+from selfconf.serve.watching.checked import checked_configuration, checked_event, checked_refusal
 from tests.lab import Lab
 
 MEMBERS = ["roles", "recruits", "bindings", "role", "components", "connections", "from", "to", "reasons", "message"]

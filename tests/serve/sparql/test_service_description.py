@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.rdf.turtle import parse
-from selfconf.serve.service_description import SD, service_description
+from selfconf.serve.sparql.service_description import SD, service_description
 
 
 def test_the_description_names_its_endpoint_and_its_formats() -> None:

@@ -16,8 +16,8 @@ from selfconf.query import RESULT_TYPES, TRIPLE_TYPES, StandingDataset, Standing
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.negotiation import acceptable
 from selfconf.serve.problems import problem
-from selfconf.serve.service_description import service_description
-from selfconf.serve.sparql_requests import LARGEST_REQUEST, QueryRequest, RequestRefusedError, query_request
+from selfconf.serve.sparql.requests import LARGEST_REQUEST, QueryRequest, RequestRefusedError, query_request
+from selfconf.serve.sparql.service_description import service_description
 
 LARGEST_ANSWER = 64 << 20
 """An answer of more bytes than this is refused."""

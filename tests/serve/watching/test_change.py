@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.serve.change import EcologyChange
+from selfconf.serve.watching.change import EcologyChange
 
 
 def test_a_change_of_anything_is_not_empty() -> None:

@@ -10,8 +10,8 @@ import pytest
 from selfconf.bus.port import Bus, Replies, Sample, Urgency
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Notice, Status, TaskRecord
-from selfconf.serve import task_watcher
-from selfconf.serve.task_watcher import TaskWatcher
+from selfconf.serve.watching import task_watcher
+from selfconf.serve.watching.task_watcher import TaskWatcher
 from tests.lab import Lab, iri
 
 

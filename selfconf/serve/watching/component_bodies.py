@@ -8,7 +8,7 @@ from selfconf.model.term import Literal
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.rdf.vocabulary import LABEL, ROB, SC
 from selfconf.render import Names, short
-from selfconf.serve.change import Body
+from selfconf.serve.watching.change import Body
 
 KNOWN_NAMES = Names(QUERY_PREFIXES)
 """Shortens IRIs by the prefixes that every query may use."""

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from selfconf.serve.change import EcologyChange
-from selfconf.serve.task_watcher import LOOK_ANEW
-from selfconf.serve.watcher import EcologyWatcher
+from selfconf.serve.watching.change import EcologyChange
+from selfconf.serve.watching.task_watcher import LOOK_ANEW
+from selfconf.serve.watching.watcher import EcologyWatcher
 from tests.lab import Lab, iri
 
 

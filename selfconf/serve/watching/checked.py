@@ -6,7 +6,7 @@ import json
 import math
 from typing import Any
 
-from selfconf.serve.change import Body
+from selfconf.serve.watching.change import Body
 
 _TEXTS = ("component", "cause", "detail", "reason", "site", "message", "call", "source", "output", "sink", "input")
 _FACTS = {

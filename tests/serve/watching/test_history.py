@@ -10,8 +10,8 @@ from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle import ntriples, parse
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
-from selfconf.serve import history
-from selfconf.serve.history import DEPLOYED, History
+from selfconf.serve.watching import history
+from selfconf.serve.watching.history import DEPLOYED, History
 from tests.lab import Lab, iri
 
 GRAPH = DEPLOYED + "lab/conf/c1/cfg"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from selfconf.discovery import FoundAdvertisement
 from selfconf.rdf import advertisements
-from selfconf.serve.component_bodies import component_body
+from selfconf.serve.watching.component_bodies import component_body
 from tests.composites.composite_house import SERVICE
 from tests.serve.shown import found
 

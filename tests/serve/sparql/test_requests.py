@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.serve.sparql_requests import DIRECT, FORM, QueryRequest, RequestRefusedError, query_request
+from selfconf.serve.sparql.requests import DIRECT, FORM, QueryRequest, RequestRefusedError, query_request
 
 
 def test_a_query_comes_in_three_ways() -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import Notice, Status
-from selfconf.serve.change import Body
-from selfconf.serve.checked import checked_event
+from selfconf.serve.watching.change import Body
+from selfconf.serve.watching.checked import checked_event
 
 ENDED = {"stopped": "stopped", "refused": "refused", "detached": "detached"}
 """The phase in which a task ends, by the last event of its run."""

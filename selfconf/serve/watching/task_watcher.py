@@ -18,8 +18,8 @@ from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
-from selfconf.serve.change import Body
-from selfconf.serve.watched_task import WatchedTask
+from selfconf.serve.watching.change import Body
+from selfconf.serve.watching.watched_task import WatchedTask
 
 log = logging.getLogger(__name__)
 _EPOCH = re.compile("[0-9]{1,18}")

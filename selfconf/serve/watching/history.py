@@ -21,7 +21,7 @@ from selfconf.protocol.keys import configurator_of
 from selfconf.rdf.provenance import failure_triples, moment
 from selfconf.rdf.turtle import ox_term
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
-from selfconf.serve.change import Body
+from selfconf.serve.watching.change import Body
 
 DEPLOYED = "urn:selfconf:selfconf/"
 """What the names of the graphs begin with in which configurators tell what they have deployed."""
