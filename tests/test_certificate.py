@@ -20,7 +20,7 @@ from selfconf.model.partition import Recruit
 from selfconf.model.template import Parameter, Setting, Task
 from selfconf.model.term import Literal
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import recruited
+from selfconf.search.recruiting.recruiting import recruited
 from selfconf.search.strategies import first
 from tests.search.oracle import World
 from tests.search.worlds import agreement, component, iri, problem, problems

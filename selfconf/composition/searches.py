@@ -16,8 +16,7 @@ from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.search.additions import with_additions
 from selfconf.search.problem import Problem
 from selfconf.search.reconfigure import Reconfiguration, nearest, nearest_configuration
-from selfconf.search.recruit_refusal import refusal_of_recruits
-from selfconf.search.recruiting import RECRUIT_STEPS, REPAIR_STEPS, first_recruited, recruited
+from selfconf.search.recruiting import RECRUIT_STEPS, REPAIR_STEPS, first_recruited, recruited, refusal_of_recruits
 from selfconf.search.strategies import BEST_STEPS, algorithm_1, answers, best_configuration
 
 SLICES = (10_000, 200_000, BEST_STEPS)

@@ -25,13 +25,13 @@ from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.template import TemplatePort
 from selfconf.search.additions import asking_for
 from selfconf.search.problem import Problem
-from selfconf.search.relaxations import with_relaxations
-from selfconf.search.relaxed_problem import relaxed_by
+from selfconf.search.relaxations.relaxations import with_relaxations
+from selfconf.search.relaxations.relaxed_problem import relaxed_by
 from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance
 from tests.search.possibility import possible
+from tests.search.recruiting.test_recruiting import Players, Recruit
 from tests.search.strategies.test_best_recruited import PricedWorld, a_priced_problem
-from tests.search.test_recruiting import Players, Recruit
 from tests.search.worlds import CLASSES, SIGNALS, agreement, iri
 
 Solution = tuple[Players, tuple[Recruit, ...]]

@@ -9,7 +9,7 @@ from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.profile import WantedSignal
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from tests.search.oracle import World
-from tests.search.test_recruiting import RecruitingWorld
+from tests.search.recruiting.test_recruiting import RecruitingWorld
 
 Players = tuple[tuple[Candidate, ...], ...]
 Need = tuple[str, WantedSignal, str | None]

@@ -7,9 +7,9 @@ from itertools import combinations, product
 
 from selfconf.model.cost import CostTerm
 from selfconf.search.cost_table import LEADING_LEVELS, CostTable
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.strategies.test_best import stating
 from tests.search.strategies.test_best_recruited import stated
-from tests.search.test_recruiting import with_recruits
 from tests.search.worlds import component, iri, problem
 
 

@@ -34,7 +34,7 @@ from selfconf.search.cost_table import LEADING_LEVELS, CostTable
 from selfconf.search.engines import ClauseSolver, ReducedSearch, least_of_clauses, minimise, solver_available
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
-from selfconf.search.recruit_refusal import refusal_of_recruits
+from selfconf.search.recruiting import refusal_of_recruits
 from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, in_order, pruned, reduced
 from selfconf.search.strategies.best_recruited import best_with_recruits, with_priced_recruits
 from selfconf.search.strategies.first import solution

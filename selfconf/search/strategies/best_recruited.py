@@ -32,10 +32,16 @@ from selfconf.search.budget import Budget
 from selfconf.search.cost_table import LEADING_LEVELS, NO_ROLE, CostTable, recruit_cost
 from selfconf.search.engines import FoundedSolver, least_of_clauses, minimise
 from selfconf.search.extension import solved, with_further_players
-from selfconf.search.fewest_recruits import fewest_of
 from selfconf.search.problem import Problem
-from selfconf.search.recruit_choice import RecruitChoice, players_of
-from selfconf.search.recruiting import RECRUIT_STEPS, first_recruited, founded, recruited
+from selfconf.search.recruiting import (
+    RECRUIT_STEPS,
+    RecruitChoice,
+    fewest_of,
+    first_recruited,
+    founded,
+    players_of,
+    recruited,
+)
 from selfconf.search.reduction import Option, ReducedProblem, assigned, in_order, pruned, with_recruits
 
 

@@ -12,10 +12,10 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines import FoundedSolver
 from selfconf.search.engines.founded import Reach
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import founded
+from selfconf.search.recruiting.recruiting import founded
 from selfconf.search.reduction import InterchangeabilityClass, Option
 from selfconf.search.reduction import with_recruits as reduced_with_recruits
-from tests.search.test_recruiting import with_recruits
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.worlds import component, problem
 
 pytest.importorskip("pysat")

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from selfconf.search.reduction import with_recruits as reduced_with_recruits
-from tests.search.test_recruiting import with_recruits
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.worlds import component, problem
 
 

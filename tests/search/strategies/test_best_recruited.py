@@ -23,7 +23,7 @@ from selfconf.search.problem import Problem
 from selfconf.search.strategies import best
 from tests.search.chance import Chance, by_chance
 from tests.search.oracle import Players
-from tests.search.test_recruiting import RecruitingWorld, a_recruiting_problem, with_recruits
+from tests.search.recruiting.test_recruiting import RecruitingWorld, a_recruiting_problem, with_recruits
 from tests.search.worlds import agreement, component, iri, problem
 
 LATENCY, ERROR = iri("latency"), iri("error")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from selfconf.model.profile import Condition, Output
 from selfconf.model.term import IRI
-from selfconf.search.supposed_outputs import supposed
+from selfconf.search.relaxations.supposed_outputs import supposed
 
 SIGNAL, METRE = IRI("urn:t:S"), IRI("urn:t:M")
 SHAPED = Output("o", (SIGNAL,), conforms=frozenset(("shape",)))

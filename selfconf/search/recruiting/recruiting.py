@@ -22,9 +22,9 @@ from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines import CandidateSearch, FoundedSolver, least_of_clauses, solver_available
 from selfconf.search.extension import solved, with_further_players
-from selfconf.search.fewest_recruits import fewest
 from selfconf.search.problem import Problem
-from selfconf.search.recruit_choice import RecruitChoice
+from selfconf.search.recruiting.fewest_recruits import fewest
+from selfconf.search.recruiting.recruit_choice import RecruitChoice
 from selfconf.search.reduction import (
     ReducedProblem,
     assigned,

@@ -7,9 +7,9 @@ import pytest
 from selfconf.model.refusal import Conflict
 from selfconf.model.requirement import InputFed, OneRoleEach, RolePlayed
 from selfconf.search.problem import Problem
-from selfconf.search.recruit_refusal import refusal_of_recruits
-from selfconf.search.recruiting import first_recruited
-from tests.search.test_recruiting import with_recruits
+from selfconf.search.recruiting.recruit_refusal import refusal_of_recruits
+from selfconf.search.recruiting.recruiting import first_recruited
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.worlds import component, iri, problem
 
 

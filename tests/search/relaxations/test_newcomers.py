@@ -8,9 +8,9 @@ from selfconf.model.partition import ANY_VALUE, Mention, Variable
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AddComponents, Addition
 from selfconf.model.term import IRI
-from selfconf.search.newcomers import impossible, newcomer, with_mentioned_variables, without_values
 from selfconf.search.problem import Problem
-from selfconf.search.relaxations import with_relaxations
+from selfconf.search.relaxations.newcomers import impossible, newcomer, with_mentioned_variables, without_values
+from selfconf.search.relaxations.relaxations import with_relaxations
 from selfconf.search.strategies import first
 from tests.search.worlds import component, iri, problem
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines import FoundedSolver, minimise, solver_available
-from selfconf.search.recruit_choice import RecruitChoice
+from selfconf.search.recruiting.recruit_choice import RecruitChoice
 
 MOST_RECRUITS_LOOKED_AT = 250_000
 """How many recruits are looked at, at most, to exchange one after the other: a part of a second."""

@@ -14,14 +14,14 @@ from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition
 from selfconf.search.additions import asking_for
-from selfconf.search.components_to_add import wanted_of
 from selfconf.search.problem import Problem
-from selfconf.search.recruit_refusal import refusal_of_recruits
-from selfconf.search.relaxations import with_relaxations
-from selfconf.search.relaxed_problem import relaxed_by
+from selfconf.search.recruiting.recruit_refusal import refusal_of_recruits
+from selfconf.search.relaxations.components_to_add import wanted_of
+from selfconf.search.relaxations.relaxations import with_relaxations
+from selfconf.search.relaxations.relaxed_problem import relaxed_by
 from selfconf.search.strategies import first
+from tests.search.recruiting.test_recruiting import RecruitingWorld, recruiting, with_recruits
 from tests.search.test_additions import choices, solvable
-from tests.search.test_recruiting import RecruitingWorld, recruiting, with_recruits
 from tests.search.worlds import agreement, component, iri, problem, problems
 
 OF_PIPPI = PropertyUnmet(iri("support"), (NotAmong(frozenset((iri("Pippi"),)), frozenset((iri("Astrid"),))),))

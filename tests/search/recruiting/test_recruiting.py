@@ -16,7 +16,7 @@ from selfconf.model.partition import Candidate, Recruit
 from selfconf.model.profile import Profile, WantedSignal
 from selfconf.model.refusal import Refusal
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import first_recruited, recruited
+from selfconf.search.recruiting.recruiting import first_recruited, recruited
 from selfconf.search.strategies import first
 from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance

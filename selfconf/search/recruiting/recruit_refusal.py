@@ -14,7 +14,7 @@ from selfconf.model.refusal import Conflict, Refusal
 from selfconf.search.budget import Budget
 from selfconf.search.engines import FoundedSolver, solver_available
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import founded
+from selfconf.search.recruiting.recruiting import founded
 from selfconf.search.reduction import Constraint, Distinct, Fed, Played, ReducedProblem, Shared, all_of, with_recruits
 
 REFUSAL_STEPS = 50_000

@@ -7,9 +7,9 @@ from dataclasses import replace
 from selfconf.model.profile import Condition, Ports
 from selfconf.model.relaxation import AddRecruits
 from selfconf.search.problem import Problem
-from selfconf.search.recruiting import possible_with_recruits
-from selfconf.search.recruits_to_add import MOST_LACKING, recruits_to_add, with_more_recruits
-from tests.search.test_recruiting import with_recruits
+from selfconf.search.recruiting.recruiting import possible_with_recruits
+from selfconf.search.relaxations.recruits_to_add import MOST_LACKING, recruits_to_add, with_more_recruits
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.worlds import component, iri, problem
 
 STEPS = 5_000

@@ -18,7 +18,7 @@ from selfconf.model.profile import Ports, Profile
 from selfconf.model.relaxation import AddComponents, Addition
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.search.problem import Problem
-from selfconf.search.supposed_outputs import supposed
+from selfconf.search.relaxations.supposed_outputs import supposed
 
 ADDITION = "urn:selfconf:addition:"
 """What the names of added components begin with, which do not exist yet."""

@@ -7,8 +7,8 @@ from dataclasses import replace
 from selfconf.model.profile import Condition
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AddComponents
-from selfconf.search.components_to_add import wanted_of
-from selfconf.search.relaxations import with_relaxations
+from selfconf.search.relaxations.components_to_add import wanted_of
+from selfconf.search.relaxations.relaxations import with_relaxations
 from selfconf.search.strategies import first
 from tests.search.worlds import component, iri, problem
 

@@ -8,8 +8,8 @@ from selfconf.model.obstacle import WrongType
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AddComponents, AskForFewer
-from selfconf.search import components_to_add, relaxation_effort
-from selfconf.search.relaxations import MOST_ROLES, NEAR, with_relaxations
+from selfconf.search.relaxations import components_to_add, relaxation_effort
+from selfconf.search.relaxations.relaxations import MOST_ROLES, NEAR, with_relaxations
 from selfconf.search.strategies import first
 from tests.search.worlds import component, iri, problem
 

@@ -15,7 +15,7 @@ from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.relaxation import Addition, AddRecruits
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
-from selfconf.search.supposed_outputs import supposed
+from selfconf.search.relaxations.supposed_outputs import supposed
 
 MOST_LACKING = 24
 """How many outputs are looked at, at most, each of which takes a trial."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from selfconf.search.budget import Budget
-from selfconf.search.fewest_recruits import fewest
-from tests.search.test_recruit_choice import choice
+from selfconf.search.recruiting.fewest_recruits import fewest
+from tests.search.recruiting.test_recruit_choice import choice
 from tests.search.worlds import component
 
 ONE_FOR_EACH = (component("a", "t:T u:U", "s:S"), component("b", "", "t:T"), component("c", "", "u:U"))

@@ -32,14 +32,14 @@ from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.template import Role
 from selfconf.model.term import IRI
 from selfconf.search.additions import asking_for_all, with_optional_slots
-from selfconf.search.components_to_add import components_to_add
-from selfconf.search.newcomers import with_values, without_values
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import first_recruited
-from selfconf.search.recruits_to_add import recruits_to_add
 from selfconf.search.reduction import recruits_that_matter, reduced
-from selfconf.search.relaxation_effort import RECRUIT_TRIAL_STEPS, TRIALS, RelaxationEffort, has_recruits
-from selfconf.search.relaxed_problem import relaxed_by
+from selfconf.search.relaxations.components_to_add import components_to_add
+from selfconf.search.relaxations.newcomers import with_values, without_values
+from selfconf.search.relaxations.recruits_to_add import recruits_to_add
+from selfconf.search.relaxations.relaxation_effort import RECRUIT_TRIAL_STEPS, TRIALS, RelaxationEffort, has_recruits
+from selfconf.search.relaxations.relaxed_problem import relaxed_by
 from selfconf.search.supply import Issued
 
 NEAR = 8

@@ -8,9 +8,9 @@ from selfconf.model.partition import Candidate
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, AddInteraction, AddRecruits, LetRecruit, Relaxation
 from selfconf.model.template import Interaction
 from selfconf.model.term import IRI
-from selfconf.search.newcomers import newcomer, with_mentioned_variables
 from selfconf.search.problem import Problem
-from selfconf.search.recruits_to_add import with_more_recruits
+from selfconf.search.relaxations.newcomers import newcomer, with_mentioned_variables
+from selfconf.search.relaxations.recruits_to_add import with_more_recruits
 
 
 def relaxed_by(problem: Problem, relaxation: Relaxation) -> Problem:

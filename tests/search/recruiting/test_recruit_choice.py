@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.profile import Profile
-from selfconf.search.recruit_choice import RecruitChoice
+from selfconf.search.recruiting.recruit_choice import RecruitChoice
 from selfconf.search.strategies import first
-from tests.search.test_recruiting import with_recruits
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.worlds import component, problem
 
 

@@ -22,12 +22,12 @@ from selfconf.model.profile import CALL_MARK, Input, Output, Ports, WantedSignal
 from selfconf.model.refusal import Undecided
 from selfconf.model.relaxation import AddComponents, Addition
 from selfconf.search.additions import with_optional_slots
-from selfconf.search.newcomers import ADDITION, impossible, with_mentioned_variables, with_values
 from selfconf.search.problem import Link, Problem
 from selfconf.search.reduction import Fed, LazyReduction, Played
-from selfconf.search.relaxation_effort import TRIALS, RelaxationEffort
-from selfconf.search.relaxed_problem import relaxed_by
-from selfconf.search.supposed_outputs import supposed
+from selfconf.search.relaxations.newcomers import ADDITION, impossible, with_mentioned_variables, with_values
+from selfconf.search.relaxations.relaxation_effort import TRIALS, RelaxationEffort
+from selfconf.search.relaxations.relaxed_problem import relaxed_by
+from selfconf.search.relaxations.supposed_outputs import supposed
 
 CHOICES = 8
 """How many choices of outputs are tried for a role, where interactions name outputs."""

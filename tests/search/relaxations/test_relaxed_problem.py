@@ -14,7 +14,7 @@ from selfconf.model.relaxation import (
     Relaxation,
 )
 from selfconf.search.problem import Problem
-from selfconf.search.relaxed_problem import relaxed_by
+from selfconf.search.relaxations.relaxed_problem import relaxed_by
 from tests.search.worlds import component, iri, problem
 
 
