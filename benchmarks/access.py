@@ -34,7 +34,7 @@ from benchmarks.quiet import until_quiet
 from selfconf.access import KeysFolder, PrincipalKind
 from selfconf.api.sites.local_site import SiteProcess
 from selfconf.bus.port import Urgency
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 

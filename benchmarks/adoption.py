@@ -33,7 +33,7 @@ import selfconf as sc
 from benchmarks.faults.ecology import PATIENCE, SITES, TASK, Ecology, Sign
 from benchmarks.machine import described, quantile, table
 from selfconf import rendezvous
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.protocol.keys import Keys
 
 KEEPERS = ("keeper-1", "keeper-2", "keeper-3")

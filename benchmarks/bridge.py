@@ -29,7 +29,7 @@ from selfconf import ros_messages
 from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.tokens import PUBLISHER, SUBSCRIPTION, RosEndpoint, RosNodeId, RosToken
 from selfconf.bus.port import Sample, Urgency
-from selfconf.bus.zenoh_bus import ZenohBus, client, router
+from selfconf.bus.zenoh import ZenohBus, client, router
 
 DOMAIN = 7
 PATIENCE = 60.0

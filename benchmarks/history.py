@@ -31,7 +31,7 @@ from benchmarks.machine import described, quantile
 from selfconf.api.living.past import past_graphs
 from selfconf.api.sites.local_site import SiteProcess
 from selfconf.bus.port import Request, Urgency
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.model.configuration import Assignment, Configuration
 from selfconf.model.template import Task
 from selfconf.model.term import IRI

@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 
 from benchmarks.failover import PAUSE, Lines, Process
 from benchmarks.machine import described, quantile, table
-from selfconf.bus.zenoh_bus import router
+from selfconf.bus.zenoh import router
 from selfconf.sdk import Component, Termination, open_host
 
 DOMAIN = 7

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI

@@ -10,8 +10,7 @@ from typing import Any, ClassVar
 
 from selfconf import files
 from selfconf.api.reading import described_in
-from selfconf.bus.memory import Faults, Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Bus
 from selfconf.composites import Composites
 from selfconf.composition.composer import Composer

@@ -20,7 +20,7 @@ from typing import Any
 
 from benchmarks.faults.actor import ADVERTISEMENTS
 from selfconf import rendezvous
-from selfconf.bus.zenoh_session import with_port
+from selfconf.bus.zenoh import with_port
 
 ROOT = Path(__file__).resolve().parents[2]
 TASK = Path(__file__).parent / "task.ttl"

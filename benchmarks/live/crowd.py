@@ -12,7 +12,7 @@ import time
 
 from benchmarks.live.world import bystander, written_for
 from selfconf import rendezvous
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.protocol.keys import Keys
 from selfconf.sdk import Component, Signal, open_host
 

@@ -26,7 +26,7 @@ from pathlib import Path
 from benchmarks.live.__main__ import cost, program
 from benchmarks.machine import described, table
 from selfconf import rendezvous, this_machine
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.protocol.keys import Keys
 
 PATIENCE = 240.0

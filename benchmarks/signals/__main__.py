@@ -35,7 +35,7 @@ from typing import Any, NamedTuple
 from benchmarks.machine import described, quantile, table
 from benchmarks.signals.ends import ECOLOGY, FOLDER_VARIABLE, OUTPUTS
 from selfconf.bus.port import Replies
-from selfconf.bus.zenoh_bus import ZenohBus, client, router
+from selfconf.bus.zenoh import ZenohBus, client, router
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys

@@ -18,8 +18,7 @@ from typing import Any
 import orjson
 import zenoh
 
-from selfconf.bus.zenoh_bus import client
-from selfconf.bus.zenoh_session import open_session
+from selfconf.bus.zenoh import client, open_session
 from selfconf.sdk import Component, Host, Signal
 
 ECOLOGY = "signals"

@@ -23,7 +23,7 @@ from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.rules import AccessRules, rules_of
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request, Urgency
-from selfconf.bus.refusals import RefusalLog
+from selfconf.bus.zenoh import RefusalLog
 from selfconf.errors import NetworkError, PeerError, SelfconfError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI

@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.discovery import Beliefs
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 from selfconf import rendezvous
 from selfconf.aside_writer import AsideHandler, AsideWriter, write_line
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.errors import SelfconfError
 from selfconf.model.setting_names import options_named
 from selfconf.model.wording import plain

@@ -16,8 +16,7 @@ from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered, text_of
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
-from selfconf.bus.memory import Faults, Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.composites import Composites
 from selfconf.composition import TimeLimit
 from selfconf.configurator import Phase, Policy

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from selfconf.bus.port import Replies, Request, Sample, Urgency
-from selfconf.bus.zenoh_bus import ZenohBus
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys

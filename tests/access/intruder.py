@@ -17,7 +17,7 @@ from typing import NamedTuple
 from selfconf.access import KeysFolder, PrincipalKind
 from selfconf.access.introduction import introduce
 from selfconf.bus.port import Replies, Request
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Cause, End, Fail, Page, Release, Stamp, Wake

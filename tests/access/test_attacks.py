@@ -13,10 +13,9 @@ import zenoh
 
 from selfconf.access import KeysFolder, Principal, PrincipalKind, certificates
 from selfconf.access.introduction import introduce
-from selfconf.bus import zenoh_session
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.zenoh_bus import ZenohBus, client
-from selfconf.bus.zenoh_session import Security, open_session
+from selfconf.bus.zenoh import Security, ZenohBus, client, open_session
+from selfconf.bus.zenoh import session as session_setup
 from selfconf.errors import NetworkError
 from tests.access.attacks import ATTACKS, Stage, refused
 from tests.cli.command import run
@@ -212,7 +211,7 @@ def test_no_session_takes_the_place_of_another(free: Stage, home: Home, tmp_path
     """Zenoh knows sessions by numbers that others get to know, and that each chooses for itself."""
     security, session = Security(shown(home, "comp", tmp_path)), free.observer._session
     for number in (session.zid(), *session.info.routers_zid()):
-        config = zenoh_session._config("client", [], [home.endpoint(SITE)], 0.3, False, security)
+        config = session_setup._config("client", [], [home.endpoint(SITE)], 0.3, False, security)
         config.insert_json5("id", json.dumps(str(number)))
         with pytest.raises(zenoh.ZError):
             zenoh.open(config)

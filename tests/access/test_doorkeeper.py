@@ -19,10 +19,9 @@ from selfconf.access import (
     first_rules,
 )
 from selfconf.access.doorkeeper import RAREST_RETRY
-from selfconf.bus.memory import Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
-from selfconf.bus.refusals import RefusalLog
+from selfconf.bus.zenoh import RefusalLog
 from selfconf.errors import NetworkError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode

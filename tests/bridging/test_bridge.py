@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bridging import Bridge
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.errors import NetworkError
 from selfconf.importing import ImportedComponent, ImportedDocument, ImportedPort
 from selfconf.model.term import IRI

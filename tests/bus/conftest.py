@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from selfconf.bus.zenoh_bus import ZenohBus, router
+from selfconf.bus.zenoh import ZenohBus, router
 from tests.bus.nets import MemoryNet, Net, ZenohNet
 
 

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Bus
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 
 
 class Net(Protocol):

@@ -7,8 +7,9 @@ from functools import partial
 
 import pytest
 
-from selfconf.bus import memory_questions, zenoh_bus
+from selfconf.bus.memory import questions
 from selfconf.bus.port import Replies, Request, Sample, Urgency
+from selfconf.bus.zenoh import bus as zenoh_bus
 from tests.bus.nets import Net
 
 EVERY_URGENCY = list(Urgency)
@@ -258,7 +259,7 @@ def test_several_replies_on_one_key_all_arrive(net: Net, top: str) -> None:
 def test_of_an_answer_that_is_too_large_the_rest_is_dropped(
     net: Net, top: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (memory_questions, zenoh_bus):
+    for module in (questions, zenoh_bus):
         monkeypatch.setattr(module, "LARGEST_REPLIES", 1000)
     asking, answering = net.node(), net.node()
 

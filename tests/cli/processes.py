@@ -20,7 +20,7 @@ import pytest
 from selfconf.access import KeysFolder, PrincipalKind, introduce
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.errors import NetworkError, PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode

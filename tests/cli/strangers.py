@@ -10,8 +10,7 @@ from pathlib import Path
 
 from selfconf.access import KeysFolder, PrincipalKind, introduce
 from selfconf.bus.port import Request
-from selfconf.bus.zenoh_bus import router
-from selfconf.bus.zenoh_session import Security
+from selfconf.bus.zenoh import Security, router
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from tests.cli.command import Outcome, each, run
 from tests.cli.desk import BOUND, Desk, with_template
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri, write_advertisements

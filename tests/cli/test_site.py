@@ -13,7 +13,7 @@ from pathlib import Path
 import pyoxigraph as ox
 import pytest
 
-from selfconf.bus.zenoh_bus import ZenohBus, router
+from selfconf.bus.zenoh import ZenohBus, router
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import End, Wake
 from selfconf.rendezvous import LIFE_VARIABLE

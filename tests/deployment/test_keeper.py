@@ -11,8 +11,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.memory import Faults
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.bus.port import Bus, Urgency
 from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies
 from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Phase, Policy

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.memory import Faults
-from selfconf.bus.memory_questions import MemoryRequest
+from selfconf.bus.memory import Faults, MemoryRequest
 from selfconf.bus.port import Request
 from selfconf.discovery import Discovery
 from selfconf.discovery.inquiry import DISCOVERY, LARGEST_ADVERTISEMENT

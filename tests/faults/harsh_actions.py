@@ -6,8 +6,7 @@ import random
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from selfconf.bus.memory_bus import MemoryBus
-from selfconf.bus.memory_questions import MemoryRequest
+from selfconf.bus.memory import MemoryBus, MemoryRequest
 from tests.faults import harsh
 from tests.faults.histories import History
 from tests.faults.script import Action

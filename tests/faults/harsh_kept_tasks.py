@@ -16,7 +16,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.deployment import Keeper, TaskFolder
 from selfconf.protocol.messages import TaskRecord
 from tests.faults.harsh import AWHILE, STALLS, STEPS

@@ -24,8 +24,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 from unittest import mock
 
-from selfconf.bus.memory import Faults
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.composites import InsideOfComposite
 from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner

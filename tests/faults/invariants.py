@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain, combinations
 
-from selfconf.bus.memory import LEASE
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import LEASE, MemoryBus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
 from selfconf.deployment.components.calls import RELEASE_AGAIN

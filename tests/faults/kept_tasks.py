@@ -19,8 +19,7 @@ from functools import partial
 from operator import attrgetter
 from pathlib import Path
 
-from selfconf.bus.memory import Faults
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.bus.port import Replies
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, TaskFolder

@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.sdk.code_thread import Action, CodeThread
 from selfconf.sdk.component_code import ComponentCode
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.zenoh_bus import ZenohBus, router
+from selfconf.bus.zenoh import ZenohBus, router
 from tests.sdk.living import LivingStage
 
 

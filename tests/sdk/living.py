@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from selfconf.bus.port import Replies, Sample
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys

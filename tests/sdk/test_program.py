@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.protocol.messages import Reserve
 from selfconf.sdk import Component, main, parent_environment
 from selfconf.sdk.program import HUNG_EXIT_CODE, TIME_TO_END

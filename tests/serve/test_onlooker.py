@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.memory import Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.log_line import LogLine
 from selfconf.protocol.codec import decode, encode

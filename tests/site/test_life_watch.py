@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.bus.memory import Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Request
 from selfconf.model.profile import START_DEADLINE, Profile
 from selfconf.protocol.codec import encode

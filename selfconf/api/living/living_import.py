@@ -15,7 +15,7 @@ def import_living_nodes(endpoint: str, domain: int, out: Path, namespace: str | 
     where the router cannot be reached, and AuthorError as `import_descriptions` does.
     """
     from selfconf.bridging.ros2 import living_graph
-    from selfconf.bus.zenoh_bus import client
+    from selfconf.bus.zenoh import client
 
     def read(ledger: ImportLedger) -> Iterator[ImportedDocument]:
         bus = client([endpoint])

@@ -67,7 +67,7 @@ def serve_nodes(
     """
     from selfconf import ros_messages
     from selfconf.bridging.ros2 import RosWorld
-    from selfconf.bus.zenoh_bus import client
+    from selfconf.bus.zenoh import client
 
     for left_out in ros_messages.learn(definitions or ros_messages.named_folders()):
         complain(str(left_out))

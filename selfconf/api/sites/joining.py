@@ -27,9 +27,7 @@ from pathlib import Path
 
 from selfconf import rendezvous, this_machine
 from selfconf.bus.port import Undo
-from selfconf.bus.zenoh_bus import ZenohBus, client, router
-from selfconf.bus.zenoh_relay import Hub, cut_connections
-from selfconf.bus.zenoh_session import Security
+from selfconf.bus.zenoh import Hub, Security, ZenohBus, client, cut_connections, router
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys
 from selfconf.this_machine import LocalSite

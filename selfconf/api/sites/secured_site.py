@@ -22,8 +22,7 @@ from selfconf.access import (
 )
 from selfconf.api.sites.joining import Joining
 from selfconf.bus.port import Bus
-from selfconf.bus.refusals import hear_refusals
-from selfconf.bus.zenoh_session import Security
+from selfconf.bus.zenoh import Security, hear_refusals
 from selfconf.errors import AuthorError
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI

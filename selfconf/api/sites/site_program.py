@@ -24,7 +24,7 @@ from selfconf.api.sites.joining import Joining
 from selfconf.api.tasks.work_queue import WorkQueue
 from selfconf.api.unknown_terms import unknown_in_ecology
 from selfconf.bus.port import Bus
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.deployment import Keeper, TaskFolder
 from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError

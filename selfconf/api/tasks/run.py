@@ -21,7 +21,7 @@ from selfconf.api.tasks.detached import AS_USUAL, TaskOptions, task_record
 from selfconf.api.tasks.living_tasks import LivingTasks
 from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.api.tasks.work_queue import UNDISTURBED, WorkQueue
-from selfconf.bus.zenoh_bus import ZenohBus
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.composition import Composer, TimeLimit
 from selfconf.configurator import Loss
 from selfconf.deployment import RunRequest, TaskRunner

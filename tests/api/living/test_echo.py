@@ -9,8 +9,7 @@ from functools import partial
 import pytest
 
 from selfconf.api.living.echo import SIGNALS_HELD, HeardSignal, echo
-from selfconf.bus.memory import Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Publisher, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import SignalEncoding

@@ -14,7 +14,7 @@ import pytest
 from selfconf import rendezvous, this_machine
 from selfconf.api.sites import joining
 from selfconf.api.sites.joining import Joining
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys, owner_of
 from tests.cli.processes import Home

@@ -9,8 +9,7 @@ import pytest
 
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.tasks.living_tasks import LivingTask, LivingTasks
-from selfconf.bus.memory import Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Request
 from selfconf.errors import NetworkError
 from selfconf.model.term import IRI

@@ -13,7 +13,7 @@ from typing import Any
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.ros_world import RosWorld
 from selfconf.bus.port import Publisher, Replies, Request, Sample, Urgency
-from selfconf.bus.zenoh_bus import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Apply, CallAnswer, Reserve, Wire
 from selfconf.sdk import Component, Signal

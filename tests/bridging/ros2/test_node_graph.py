@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.api.living.living_import import import_living_nodes
 from selfconf.bridging.ros2 import living_graph
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.importing import FileState, ImportLedger, described_text
 from tests.bridging.ros2.action_parts import parts_of
 from tests.bridging.ros2.nodes import ADD_KEY, DOMAIN, StandIn, bridging_domain

@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.ros_world import RosWorld
-from selfconf.bus.zenoh_bus import client
+from selfconf.bus.zenoh import client
 from selfconf.errors import NetworkError
 from selfconf.protocol.messages import Release
 from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, bridging_domain, node

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Urgency
 from selfconf.deployment.components.calls import GONE
 from selfconf.protocol.codec import encode

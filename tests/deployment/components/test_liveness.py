@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.events import Appeared, Event
 from selfconf.configurator.state import Phase, Policy

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.bus.memory import Faults
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.bus.port import Replies, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
@@ -109,7 +109,7 @@ def test_an_answer_that_is_too_large_for_the_bus_is_asked_for_only_as_often_as_b
         request.reply(KEYS.output(TRACKER, "pose"), b"7" * 200_000, encode(Stamp(TRACKER, "l", 1, 0.0)))
         request.finish()
 
-    monkeypatch.setattr("selfconf.bus.memory_questions.LARGEST_REPLIES", 100_000)
+    monkeypatch.setattr("selfconf.bus.memory.questions.LARGEST_REPLIES", 100_000)
     tracker.announce(KEYS.life(TRACKER, "l"))
     tracker.serve(KEYS.outputs(TRACKER), answer)
     stage.call(follow(1))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail, Stamp, Wire

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import decode, encode

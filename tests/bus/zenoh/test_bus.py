@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 from zenoh.handlers import Callback
 
-from selfconf.bus import zenoh_session
 from selfconf.bus.port import Replies, Request, Sample, Urgency
-from selfconf.bus.zenoh_bus import ZenohBus, client, router
+from selfconf.bus.zenoh import ZenohBus, client, router
+from selfconf.bus.zenoh import session as session_setup
 from selfconf.errors import NetworkError
 
 
@@ -77,13 +77,13 @@ def test_large_payloads_of_clients_that_want_it_go_through_shared_memory(
 ) -> None:
     wants = [client([zenoh_router.endpoint], shared_memory=True) for _ in range(2)]
     plain = client([zenoh_router.endpoint])
-    monkeypatch.setattr(zenoh_session, "ENOUGH_SHARED", 1 << 62)
+    monkeypatch.setattr(session_setup, "ENOUGH_SHARED", 1 << 62)
     in_a_small_container = client([zenoh_router.endpoint], shared_memory=True)
     source, sink = (bus._session for bus in wants)
-    assert shared(source, sink, 2 * zenoh_session.SHARED_FROM)
-    assert not shared(source, sink, zenoh_session.SHARED_FROM // 2)
-    assert not shared(source, plain._session, 2 * zenoh_session.SHARED_FROM)
-    assert not shared(in_a_small_container._session, sink, 2 * zenoh_session.SHARED_FROM)
+    assert shared(source, sink, 2 * session_setup.SHARED_FROM)
+    assert not shared(source, sink, session_setup.SHARED_FROM // 2)
+    assert not shared(source, plain._session, 2 * session_setup.SHARED_FROM)
+    assert not shared(in_a_small_container._session, sink, 2 * session_setup.SHARED_FROM)
     for bus in (*wants, plain, in_a_small_container):
         bus.close()
 

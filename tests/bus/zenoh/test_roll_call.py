@@ -12,9 +12,9 @@ import pytest
 import zenoh
 
 from selfconf.bus.loop import Loop
-from selfconf.bus.reader_threads import ReaderThreads
-from selfconf.bus.zenoh_channels import READ_TOGETHER
-from selfconf.bus.zenoh_roll_call import MOST_DOUBTFUL, MOST_ROLL_CALLS, MOST_ROLL_CALLS_OF_MANY, RollCalls
+from selfconf.bus.zenoh.channels import READ_TOGETHER
+from selfconf.bus.zenoh.reader_threads import ReaderThreads
+from selfconf.bus.zenoh.roll_call import MOST_DOUBTFUL, MOST_ROLL_CALLS, MOST_ROLL_CALLS_OF_MANY, RollCalls
 
 
 class Answer:
@@ -182,7 +182,7 @@ def test_calls_for_a_doubtful_life_that_time_out_say_nothing_and_it_is_called_ag
     known: list[str], alive: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A life that none of them has shown is shown once its router answers again, and no end before that."""
-    monkeypatch.setattr("selfconf.bus.zenoh_roll_call.CONFIRMATION", 0.05)
+    monkeypatch.setattr("selfconf.bus.zenoh.roll_call.CONFIRMATION", 0.05)
     late = [Answer([]) for _ in range(4)]
     caller, confirmed = Caller(*late, Answer(known)), list[bool]()
     caller.calls.doubtful[LIFE] = None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample
 
 if TYPE_CHECKING:
-    from selfconf.bus.memory_bus import MemoryBus
+    from selfconf.bus.memory.bus import MemoryBus
 
 
 class MemoryQuestion:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, open_session, with_port
+from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, open_session, with_port
 from selfconf.errors import NetworkError
 
 

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from selfconf.bus.refusals import MOST_ATTEMPTS, RefusalLog
+from selfconf.bus.zenoh.refusals import MOST_ATTEMPTS, RefusalLog
 
 PEER = "5ec1c06f0c48971bb2c118a3b409706c"
 LINK = f"{PEER} on Interface(lo)+CertCommonName(comp.x)+Transport(Tls)+{PEER}"

@@ -11,7 +11,7 @@ from typing import Any
 import zenoh
 from zenoh.handlers import FifoChannel
 
-from selfconf.bus.zenoh_receivers import callback
+from selfconf.bus.zenoh.receivers import callback
 
 _CHANNEL = 1 << 17
 """How much a channel holds that Python has not read yet, before Zenoh's thread waits."""

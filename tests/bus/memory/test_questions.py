@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.bus.memory import Faults, Network
-from selfconf.bus.memory_bus import MemoryBus
+from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.bus.port import Replies, Request
 from tests.bus.watched import Watched
 

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
 from selfconf.bus.key_expressions import intersects
-from selfconf.bus.memory_questions import MemoryQuestion, MemoryRequest
+from selfconf.bus.memory.questions import MemoryQuestion, MemoryRequest
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.model.immutable import immutable
 
 if TYPE_CHECKING:
-    from selfconf.bus.memory import Network
+    from selfconf.bus.memory.network import Network
 
 _T = TypeVar("_T")
 _LEAST_TIMER = 1e-6

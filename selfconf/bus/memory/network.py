@@ -15,8 +15,8 @@ from collections.abc import Callable
 from math import isfinite
 from numbers import Real
 
-from selfconf.bus.memory_bus import MemoryBus
-from selfconf.bus.memory_questions import MemoryRequest
+from selfconf.bus.memory.bus import MemoryBus
+from selfconf.bus.memory.questions import MemoryRequest
 from selfconf.errors import ProgrammerError
 from selfconf.model.immutable import immutable
 from selfconf.model.wording import listed

@@ -29,8 +29,8 @@ from typing import Any
 import zenoh
 
 from selfconf.bus.loop import Loop
-from selfconf.bus.zenoh_receivers import callback
-from selfconf.bus.zenoh_session import Security, open_session, with_port
+from selfconf.bus.zenoh.receivers import callback
+from selfconf.bus.zenoh.session import Security, open_session, with_port
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import endpoint_port
 

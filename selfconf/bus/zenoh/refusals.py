@@ -35,7 +35,7 @@ from contextlib import contextmanager
 from datetime import datetime
 from functools import cache
 
-from selfconf.bus.zenoh_session import begin_log
+from selfconf.bus.zenoh.session import begin_log
 from selfconf.protocol.messages import RefusedAttempt
 
 FILTER = "zenoh::net::routing::interceptor=trace,zenoh_link_tls::unicast=warn"

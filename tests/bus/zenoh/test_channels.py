@@ -8,7 +8,7 @@ import pytest
 import zenoh
 from zenoh.handlers import Callback
 
-from selfconf.bus.zenoh_channels import READ_TOGETHER, at_hand, each, may_be_many, read_together
+from selfconf.bus.zenoh.channels import READ_TOGETHER, at_hand, each, may_be_many, read_together
 
 
 class Channel:

@@ -11,8 +11,8 @@ import zenoh
 
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import Sample, Urgency
-from selfconf.bus.zenoh_bus import ZenohBus
-from selfconf.bus.zenoh_receivers import DirectReceiver, Receiver
+from selfconf.bus.zenoh import ZenohBus
+from selfconf.bus.zenoh.receivers import DirectReceiver, Receiver
 from tests.bus.nets import ZenohNet
 
 SAMPLE = Sample("a/b", b"1")

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from selfconf.bus.reader_threads import MOST_IDLE, ReaderThreads
+from selfconf.bus.zenoh.reader_threads import MOST_IDLE, ReaderThreads
 
 PATIENCE = 10.0
 

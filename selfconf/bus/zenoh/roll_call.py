@@ -24,8 +24,8 @@ from functools import partial
 from typing import Any
 
 from selfconf.bus.loop import Loop
-from selfconf.bus.reader_threads import ReaderThreads
-from selfconf.bus.zenoh_channels import READ_TOGETHER, at_hand, may_be_many, open_channel, read_together
+from selfconf.bus.zenoh.channels import READ_TOGETHER, at_hand, may_be_many, open_channel, read_together
+from selfconf.bus.zenoh.reader_threads import ReaderThreads
 
 MOST_DOUBTFUL = 1000
 """How many lives are noted as doubtful at most; then each that comes drives out the oldest one."""

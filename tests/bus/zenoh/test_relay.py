@@ -8,14 +8,13 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus import zenoh_relay
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
-from selfconf.bus.zenoh_bus import client
-from selfconf.bus.zenoh_relay import Hub, Relay
-from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, Security, with_port
+from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, client, with_port
+from selfconf.bus.zenoh import relay as relaying
+from selfconf.bus.zenoh.relay import Hub, Relay
 from selfconf.errors import NetworkError
-from tests.bus.test_zenoh_bus import until
+from tests.bus.zenoh.test_bus import until
 
 NOBODY = "tcp/127.0.0.1:1"
 """An endpoint on which nothing listens: an uplink does not wait for it. No hub that takes any free port is given it."""
@@ -40,8 +39,8 @@ def hub() -> Hub:
 @pytest.fixture
 def relay(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> Iterator[CountedRelay]:
     """A relay without others, which replaces its uplink without delay where there is need."""
-    monkeypatch.setattr(zenoh_relay, "QUIET", 0.0)
-    monkeypatch.setattr(zenoh_relay, "RETRY_SPREAD", 0.0)
+    monkeypatch.setattr(relaying, "QUIET", 0.0)
+    monkeypatch.setattr(relaying, "RETRY_SPREAD", 0.0)
     relay = CountedRelay(hub, Loop(), [])
     yield relay
     relay.close()
@@ -73,7 +72,7 @@ def test_nobody_stays_connected_to_a_hub_that_has_broken_inside_and_was_closed(m
     try:
         assert until(lambda: bool(connected.link), connected)
         with monkeypatch.context() as broken:
-            broken.setattr(zenoh_relay, "_close", lambda _: None)
+            broken.setattr(relaying, "_close", lambda _: None)
             hub.close()
         assert until(lambda: not connected.link, connected)
     finally:
@@ -139,9 +138,9 @@ def test_an_uplink_that_was_replaced_is_listened_to_no_more(relay: CountedRelay)
 
 
 def test_few_replaced_uplinks_stay_however_fast_links_change(relay: CountedRelay) -> None:
-    for _ in range(zenoh_relay.MOST_LINGERING + 3):
+    for _ in range(relaying.MOST_LINGERING + 3):
         relay.connect([NOBODY])
-    assert len(relay._lingering) == zenoh_relay.MOST_LINGERING
+    assert len(relay._lingering) == relaying.MOST_LINGERING
 
 
 def test_an_uplink_for_which_no_new_one_can_be_opened_stays_until_one_can(

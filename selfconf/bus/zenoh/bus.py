@@ -1,14 +1,14 @@
 """The bus over Zenoh.
 
-A site opens a *relay* (`zenoh_relay`): a router that listens on one endpoint and is connected to others. Everything
+A site opens a *relay* (`relay`): a router that listens on one endpoint and is connected to others. Everything
 else on its host, the site's own bus included, is a *client* of a relay. How sessions are set up stands in
-`zenoh_session`, the topology and the keys in `docs/protocol.md`.
+`session`, the topology and the keys in `docs/protocol.md`.
 
 * Callbacks of Zenoh only put into the loop's queues (`callback`): work in one would hold up every other message,
   and by default each would have a thread. The callback of a direct subscription puts into a queue of its owner.
-* What comes by the thousand, the answers and the lives of all, is read from a channel (`zenoh_channels`): with a
+* What comes by the thousand, the answers and the lives of all, is read from a channel (`channels`): with a
   callback for each, Zenoh's thread would wait so long for Python that it misses the signs of life of its router.
-* A roll-call is made again where its answer may lack something (`zenoh_roll_call`).
+* A roll-call is made again where its answer may lack something (`roll_call`).
 * Questions go to all queryables and are not consolidated, for that keeps one reply per key and waits for the slowest.
   They end when every queryable has finished, not at the time-out.
 * All control calls of one component have the same priority and are express, or they would overtake each other.
@@ -32,12 +32,12 @@ from zenoh.handlers import Callback
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
-from selfconf.bus.reader_threads import ReaderThreads
-from selfconf.bus.zenoh_channels import each, may_be_many, open_channel, read_together
-from selfconf.bus.zenoh_receivers import DirectReceiver, Receiver, ZenohRequest, callback, sample_of
-from selfconf.bus.zenoh_relay import Hub, Relay
-from selfconf.bus.zenoh_roll_call import RollCalls
-from selfconf.bus.zenoh_session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
+from selfconf.bus.zenoh.channels import each, may_be_many, open_channel, read_together
+from selfconf.bus.zenoh.reader_threads import ReaderThreads
+from selfconf.bus.zenoh.receivers import DirectReceiver, Receiver, ZenohRequest, callback, sample_of
+from selfconf.bus.zenoh.relay import Hub, Relay
+from selfconf.bus.zenoh.roll_call import RollCalls
+from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import endpoint_host, endpoint_port
 

@@ -1,0 +1,27 @@
+"""The bus over Zenoh: nothing else of selfconf imports Zenoh.
+
+* `client` opens the `ZenohBus` of a program, `router` that of a site with its `Hub`, which keeps the rules and the
+  certificate of a `Security`. `cut_connections` ends what is left of the connections to an endpoint.
+* `open_session` opens a bare session; `ANYWHERE_ON_LOOPBACK` is the endpoint of a hub that takes any free port, and
+  `with_port` puts a free port in place of port 0.
+* `hear_refusals` reads in Zenoh's log what the hub of this process refuses, and keeps it as a `RefusalLog`.
+"""
+
+from selfconf.bus.zenoh.bus import ZenohBus, client, router
+from selfconf.bus.zenoh.refusals import RefusalLog, hear_refusals
+from selfconf.bus.zenoh.relay import Hub, cut_connections
+from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, Security, open_session, with_port
+
+__all__ = [
+    "ANYWHERE_ON_LOOPBACK",
+    "Hub",
+    "RefusalLog",
+    "Security",
+    "ZenohBus",
+    "client",
+    "cut_connections",
+    "hear_refusals",
+    "open_session",
+    "router",
+    "with_port",
+]
