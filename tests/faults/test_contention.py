@@ -108,6 +108,7 @@ def test_of_tasks_that_wait_for_the_same_the_one_that_began_first_runs_first(see
     assert contention.settle(3.0).running == [oldest.name]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "value", "wrong"),
     [

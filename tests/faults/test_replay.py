@@ -30,6 +30,7 @@ def lines(text: str) -> set[str]:
     return {line.strip() for line in LIFE.sub("", text).splitlines()}
 
 
+@pytest.mark.slow
 def test_the_command_that_a_test_prints_as_it_fails_plays_its_history(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -28,6 +28,7 @@ def test_no_history_of_tasks_that_share_breaks_an_invariant(batch: int, folder: 
         play_well(recipe(seed), folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seed",
     [

@@ -30,6 +30,7 @@ def test_no_history_of_upgrades_breaks_an_invariant(batch: int, folder: Path) ->
         play_well(recipe(seed), folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seed",
     [
@@ -55,6 +56,7 @@ BROKEN_ONCE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", BROKEN_ONCE)
 def test_another_history_of_upgrades_that_was_broken_once_is_not_any_more(what: str, folder: Path) -> None:
     play_well(BROKEN_ONCE[what], folder)
