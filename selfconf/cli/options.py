@@ -199,10 +199,13 @@ def task_of(given: argparse.Namespace) -> TaskSpecification:
             complain(unknown)
         return task.bind(**typed).complete()
     except BindingError as error:
-        if error.parameter not in bound:
+        if error.parameter in bound:
+            raise AuthorError(f"{error} (bound in {given.project.place(BIND, table, error.parameter)})") from None
+        elsewhere = next((other for other, some in given.project.bound.items() if error.parameter in some), None)
+        if elsewhere is None or error.parameter in typed:
             raise
-        place = given.project.place(BIND, table, error.parameter)
-        raise AuthorError(f"{error} (bound in {place})") from None
+        place = given.project.place(BIND, elsewhere, error.parameter)
+        raise AuthorError(f"{error} (bound in {place} for {elsewhere!r} alone)") from None
 
 
 def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:

@@ -87,8 +87,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _project_paths(project: Project) -> list[Path]:
-    """What there is to validate in a project: its file, and its advertisements; nothing where there is no project."""
-    return [project.path, *project.values.get("ads", ())] if project.path.is_file() else []
+    """What there is to validate in a project: its file, and its advertisements; nothing where there is no project.
+
+    An advertisement that is not there is a mistake in the project file, which names it.
+    """
+    ads = (path for path in project.values.get("ads", ()) if path.exists())
+    return [project.path, *ads] if project.path.is_file() else []
 
 
 def explanation(code: str) -> str:

@@ -129,6 +129,15 @@ def test_a_binding_for_a_parameter_that_there_is_not_is_named_with_the_file(
     assert configure(capsys).is_one_sentence("3 cannot stand for the parameter 'robot'", "bound in ../selfconf.toml:3")
 
 
+def test_a_parameter_that_is_bound_for_another_template_is_named_with_that(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "selfconf.toml").write_text(PROJECT.replace("[bind.navigate]", "[bind.navigte]"))
+    outcome = configure(capsys)
+    assert outcome.is_one_sentence("'goal' needs a value", "(bound in ../selfconf.toml:4 for 'navigte' alone)")
+    assert outcome.code == 2
+
+
 def test_validate_in_a_project_checks_its_file_and_its_advertisements(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -203,6 +212,16 @@ def test_keys_in_a_project_file_are_one_folder_that_is_there(
         assert outcome.code == 1
         assert f"selfconf.toml:1:1: error[{code}]" in outcome.out
         assert words in outcome.out
+
+
+def test_advertisements_that_are_not_there_are_one_mistake_of_the_project_file(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "selfconf.toml").write_text('ads = ["home", "nowhere"]')
+    outcome = run(capsys, "validate")
+    assert outcome.code == 1
+    assert "selfconf.toml:1:1: error[SC-P05]: There is no file or folder nowhere." in outcome.out
+    assert f"1 error in 1 of {len(ADVERTISEMENTS) + 1} files." in outcome.err
 
 
 def test_the_file_counts_for_the_commands_below_a_command_too(

@@ -152,12 +152,14 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
                 bindings[parameter.iri] = parameter.default
             elif parameter.is_set and not parameter.in_shape:
                 raise BindingError(
-                    f"the parameter {parameter.name!r} needs a value; give it with {binding(parameter.name)}"
+                    f"the parameter {parameter.name!r} needs a value; give it with {binding(parameter.name)}",
+                    parameter=parameter.name,
                 )
             elif place := _rigid(given, parameter):
                 raise BindingError(
                     f"the parameter {parameter.name!r} cannot be left free, for it stands in {place}; "
-                    f"give it a value with {binding(parameter.name)}"
+                    f"give it a value with {binding(parameter.name)}",
+                    parameter=parameter.name,
                 )
         if parameter.iri in bindings:
             _check(parameter, bindings[parameter.iri], document)
