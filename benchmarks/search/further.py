@@ -2,11 +2,11 @@
 
     python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--half HALF] [--write]
 
-Each engine runs in a process of its own, on the problems of `further_families` and `later_families`, and is asked two
-questions: which configuration is the first one, or that there is none, which is what selfconf answers; and, where there
-is one, for any configuration, which is easier. An engine is stopped at the limit, or at `PATIENCE` times the best
-time so far where that is sooner, since what is slower does not change how selfconf compares to the best. `--write`
-writes `docs/benchmarks/further.md`.
+Each engine runs in a process of its own, on the problems of `further_families`, `later_families` and `last_families`,
+and is asked two questions: which configuration is the first one, or that there is none, which is what selfconf answers;
+and, where there is one, for any configuration, which is easier. An engine is stopped at the limit, or at `PATIENCE`
+times the best time so far where that is sooner, since what is slower does not change how selfconf compares to the best.
+`--write` writes `docs/benchmarks/further.md`.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from benchmarks.search import engines as anything
 from benchmarks.search import first
 from benchmarks.search.families import Instance
 from benchmarks.search.further_families import CHOOSING, REPORTING, SMALL, UNSEEN, Family, instances
+from benchmarks.search.last_families import LAST_CHOOSING, LAST_REPORTING, LAST_SMALL
 from benchmarks.search.later_families import LATER_CHOOSING, LATER_REPORTING, LATER_SMALL
 from benchmarks.search.measure import Measured, made, measure
 from benchmarks.search.report import WORK, Row, table
@@ -43,21 +44,23 @@ HALVES: dict[str, Mapping[str, Family]] = {
     "unseen": UNSEEN,
     "choosing later": LATER_CHOOSING,
     "reporting later": LATER_REPORTING,
+    "choosing last": LAST_CHOOSING,
+    "reporting last": LAST_REPORTING,
 }
 """The families by what they are for."""
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "further.md"
 
 SETTING = """\
-One run on {machine}, {cores} cores, load {load:.1f}, Python {python}; {seeds} seeds, {limit:g} s for each answer. Every
-engine has a process of its own and starts from the same problem in its memory; building a model is part of the time,
-importing a library is not. selfconf answers with the first configuration; where MiniCard does not end at once, clasp
-works beside it in a thread, and later CaDiCaL in a process. Every other engine has one thread. An engine that takes
-{patience:g} times as long as the best before it, and a second, is stopped, and its time is written as `>`. Ratios are
-of those instances that take selfconf or the best other engine {work:g} ms at least.
+One run on {machine}, {cores} cores, load {load:.1f} (above 1, other programs ran too), Python {python}; {seeds} seeds,
+{limit:g} s for each answer. Every engine has a process of its own and starts from the same problem in its memory;
+building a model is part of the time, importing a library is not. selfconf answers with the first configuration; where
+MiniCard does not end at once, clasp works beside it in a thread, and later CaDiCaL in a process. Every other engine has
+one thread. An engine that takes {patience:g} times as long as the best before it, and a second, is stopped, and its
+time is written as `>`. Ratios are of those instances that take selfconf or the best other engine {work:g} ms at least.
 
 The families `choosing` are those on which ideas and thresholds of the search were chosen; `reporting` were only
-measured; `unseen` were made after the search was finished, and those called `later` once more, to choose on and to
-measure. [Luck, and what was
+measured; `unseen` were made after the search was finished, and those called `later` and `last` once more each, to
+choose on and to measure. [Luck, and what was
 missing](../search.md#luck-and-what-was-missing) says why it lost, and what helped."""
 
 
@@ -215,7 +218,9 @@ def main() -> int:
     seeds = 1 if options.smoke else options.seeds
     engines = anything.installed()
     everything: list[Asked] = []
-    for half, families in {"smoke": {**SMALL, **LATER_SMALL}}.items() if options.smoke else HALVES.items():
+    for half, families in (
+        {"smoke": {**SMALL, **LATER_SMALL, **LAST_SMALL}}.items() if options.smoke else HALVES.items()
+    ):
         chosen = {name: sizes for name, sizes in families.items() if options.only in name}
         if options.half not in (None, half):
             continue

@@ -7,6 +7,7 @@ import pytest
 from benchmarks.search import families, first, further
 from benchmarks.search.further import Asked
 from benchmarks.search.further_families import counted, cover
+from benchmarks.search.last_families import Circuit, multiplied
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row
 from selfconf.model.partition import Candidate
@@ -32,10 +33,30 @@ def test_more_candidates_than_an_integer_has_bits_are_weighed_in_parts() -> None
     assert first.ENGINES["CP-SAT"](problem) == found
 
 
+def test_a_circuit_has_the_bits_that_its_gates_make() -> None:
+    built = Circuit()
+    wires = [built.wire(), built.wire()]
+    built.gate(lambda x, y: x & y, wires, 1)
+    assert first.selfconf(built.problem()) == tuple(
+        families.iri(name) for name in ("gate000.1", "gate001.1", "gate002.11")
+    )
+
+
+@pytest.mark.parametrize("known", range(1, 16))
+def test_two_numbers_of_two_bits_are_found_for_each_product_that_there_is(known: int) -> None:
+    found = first.selfconf(multiplied(2, known))
+    if known in {a * b for a in range(4) for b in range(4)}:
+        assert isinstance(found, tuple)
+        low, high, other_low, other_high = (int(name[-1]) for name in found[:4])
+        assert (low + 2 * high) * (other_low + 2 * other_high) == known
+    else:
+        assert found is False
+
+
 @pytest.mark.process
 def test_the_short_run_asks_all_engines_both_questions() -> None:
     printed = short_run("benchmarks.search.further")
-    for family in ("pigeonholes", "relay chain", "crossword"):
+    for family in ("pigeonholes", "relay chain", "crossword", "teams", "timetable"):
         assert f"| smoke | {family} | 1 |" in printed
     assert "## Any configuration" in printed
 
