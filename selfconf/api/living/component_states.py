@@ -67,11 +67,8 @@ class ComponentState(NamedTuple):
         }
 
 
-def component_states(discovery: Discovery, keys: Keys, replies: Replies) -> Iterator[ComponentState]:
-    """The state of each advertised component, sorted by IRI; the answers of strangers are passed over.
-
-    The state is `dormant` or `absent` for a component that has not answered; a caller that knows its life corrects it.
-    """
+def told_states(keys: Keys, replies: Replies) -> Mapping[IRI, CallAnswer]:
+    """What living components say of themselves, by component; of two lives of one the smaller, which stays."""
     answers: dict[IRI, CallAnswer] = {}
     for sample in replies.samples:
         try:
@@ -80,18 +77,36 @@ def component_states(discovery: Discovery, keys: Keys, replies: Replies) -> Iter
             continue
         known = answers.get(answer.component)
         if sample.key == keys.call(answer.component, "state") and (known is None or answer.life < known.life):
-            answers[answer.component] = answer  # of two lives the smaller one stays
+            answers[answer.component] = answer
+    return answers
+
+
+def component_states(discovery: Discovery, told: Mapping[IRI, CallAnswer]) -> Iterator[ComponentState]:
+    """The state of each advertised component, sorted by IRI; what strangers have told is passed over.
+
+    The state is `dormant` or `absent` for a component that has not answered; a caller that knows its life corrects it.
+    """
     for component, found in sorted(discovery.found.items()):
         types = tuple(sorted(found.advertisement.profile.types - {SC.Component}))
         state = "dormant" if found.startable else "absent"
         site = discovery.name_of_site(found)
         one = ComponentState(component, types, site, state, reason=found.unable)
-        heard = answers.get(component)
+        heard = told.get(component)
         if heard is not None:
             task = task_name(heard.task)
-            told = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.life
-            one = ComponentState(component, types, site, "alive", *told, stopping=heard.stopping)
+            what = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.life
+            one = ComponentState(component, types, site, "alive", *what, stopping=heard.stopping)
         yield one
+
+
+def unadvertised(discovery: Discovery, told: Mapping[IRI, CallAnswer]) -> Iterator[str]:
+    """A sentence for each component that a task holds and no site advertises, as its file is gone since it began.
+
+    None where a site has not answered, which may advertise it.
+    """
+    for component, answer in sorted(told.items()) if not discovery.missing else ():
+        if answer.task and component not in discovery.found:
+            yield f"{component} lives, and the task {task_name(answer.task)} holds it, but no site advertises it"
 
 
 def issue_rates(before: ComponentState, now: ComponentState, seconds: float) -> dict[str, float]:

@@ -20,7 +20,7 @@ from selfconf.api.arguments import (
     listed_endpoints,
 )
 from selfconf.api.ecology import Ecology
-from selfconf.api.living.component_states import ComponentState, component_states
+from selfconf.api.living.component_states import ComponentState, component_states, told_states, unadvertised
 from selfconf.api.living.configurators import Configurators
 from selfconf.api.living.echo import HeardSignal, echo
 from selfconf.api.living.output_sources import follow_output
@@ -135,8 +135,8 @@ class LivingEcology(Ecology):
     def component_states(self) -> tuple[ComponentState, ...]:
         """How each advertised component is: whether it lives, who holds it, where, since when; sorted by IRI.
 
-        A component that lives and does not answer is named among the `complaints`. A reader (`read.NAME`)
-        learns from configurators alone which task holds it.
+        A component that lives and does not answer is named among the `complaints`, as is one that a task holds and no
+        site advertises any more. A reader (`read.NAME`) learns from configurators alone which task holds it.
         """
         discovery = self.discover()
         asked = self._view.keys.any_call("state")
@@ -145,7 +145,8 @@ class LivingEcology(Ecology):
         holders = self.holders() if self._membership.looks_on_only else {}
         found = []
         silent: list[str] = []
-        for one in component_states(discovery, self._view.keys, replies):
+        told = told_states(self._view.keys, replies)
+        for one in component_states(discovery, told):
             if one.state != "alive" and self._life(one.component) is not None:
                 held_by = holders.get(one.component)
                 one = one._replace(state="alive", task=task_name(held_by.task) if held_by is not None else "")
@@ -153,7 +154,7 @@ class LivingEcology(Ecology):
             found.append(one)
         if silent and self._membership.looks_on_only:
             silent = ["components do not tell readers how they are; that takes keys of conf.NAME"]
-        self._complaints = (*self.complaints, *silent)
+        self._complaints = (*self.complaints, *silent, *unadvertised(discovery, told))
         return tuple(found)
 
     def out_of_control(self) -> Mapping[IRI, str]:

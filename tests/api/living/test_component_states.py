@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from selfconf.api.living.component_states import ComponentState, component_states, issue_rates
+from selfconf.api.living.component_states import (
+    ComponentState,
+    component_states,
+    issue_rates,
+    told_states,
+    unadvertised,
+)
 from selfconf.bus.port import Replies, Sample
 from selfconf.discovery import Discovery, FoundAdvertisement
 from selfconf.model.term import IRI
@@ -27,7 +33,7 @@ FOUND = {
 
 
 def states(*samples: Sample) -> dict[IRI, ComponentState]:
-    found = component_states(Discovery(found=FOUND), KEYS, Replies(samples))
+    found = component_states(Discovery(found=FOUND), told_states(KEYS, Replies(samples)))
     return {one.component: one for one in found}
 
 
@@ -48,11 +54,11 @@ def test_what_a_component_says_is_its_state_and_the_others_are_dormant_or_absent
 def test_of_two_sites_of_one_name_each_component_names_its_own() -> None:
     lives = {CLOCK: "1", LAMP: "2"}
     found = {component: replace(one, site_life=lives[component]) for component, one in FOUND.items()}
-    replies = Replies((answer(CLOCK),))
-    both = {one.component: one for one in component_states(Discovery(found, ("home (1)", "home (2)")), KEYS, replies)}
+    told = told_states(KEYS, Replies((answer(CLOCK),)))
+    both = {one.component: one for one in component_states(Discovery(found, ("home (1)", "home (2)")), told)}
     assert {component: one.site for component, one in both.items()} == {CLOCK: "home (1)", LAMP: "home (2)"}
     assert both[LAMP].body()["site"] == "home (2)"
-    assert {one.site for one in component_states(Discovery(found, ("home",)), KEYS, replies)} == {"home"}
+    assert {one.site for one in component_states(Discovery(found, ("home",)), told)} == {"home"}
 
 
 def test_a_component_that_has_not_come_to_rest_is_shown_as_stopping() -> None:
@@ -68,6 +74,15 @@ def test_of_two_lives_the_smaller_one_counts_and_what_is_no_answer_is_passed_ove
     assert states(answer(CLOCK, "a"), answer(CLOCK, "b"))[CLOCK].life == "a"
     strangers = Sample("x", b"nothing"), answer(CLOCK, key=KEYS.call(LAMP, "state"))
     assert {one.state for one in states(*strangers).values()} == {"absent", "dormant"}
+
+
+def test_a_component_that_is_held_and_advertised_no_more_is_named() -> None:
+    told = told_states(KEYS, Replies((answer(CLOCK), answer(LAMP, task=""))))
+    assert list(unadvertised(Discovery(found=FOUND), told)) == []
+    assert list(unadvertised(Discovery(), told)) == [
+        f"{CLOCK} lives, and the task t holds it, but no site advertises it"
+    ]
+    assert list(unadvertised(Discovery(missing=("home",)), told)) == [], "home may advertise it"
 
 
 def test_rates_are_taken_over_one_life() -> None:
