@@ -174,7 +174,7 @@ CODES: tuple[Code, ...] = (
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:rate 50 ] .',
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ;\n'
         "    sc:rate [ sc:value 50 ; sc:unit unit:HZ ] ] .",
-        ("RateOnce", "RateOfInput", "RateNode", "RateValue", "RateUnit"),
+        ("RateOnce", "RateElsewhere", "RateNode", "RateValue", "RateUnit"),
     ),
     Code(
         "SC-A11", "An operational parameter has exactly one name, a plain string.",
@@ -248,7 +248,7 @@ CODES: tuple[Code, ...] = (
         f'{_DISPLAY} ; sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ; sc:accepts :any ] .',
         f'{_DISPLAY} ; sc:hasInput [ sc:name "text" ; sc:signalType rob:Text ;\n'
         "    sc:accepts [ sh:property [ sh:path ( sc:rate sc:value ) ; sh:minInclusive 5 ] ] ] .",
-        ("Accepts", "AcceptingOutput"),
+        ("Accepts", "AcceptsElsewhere"),
     ),
     Code(
         "SC-A21", "An operation has one name of its own, and at most one type of request and one of response.",

@@ -201,6 +201,8 @@ SIGNAL_TYPE = Field(SC.signalType, RESOURCE, most=None)
 PARAMETER_TYPE = Field(SC.parameterType, RESOURCE, least=1)
 PORT = (PORT_NAME, SIGNAL_TYPE, Field(SC.unit, RESOURCE), Field(SC.frame, NAMED_OR_TEXT))
 """What an input and an output may both say."""
+NO_RATE = Field(SC.rate, NODE, most=0)
+NO_SHAPE = Field(SC.accepts, ACCEPTED_SHAPE, most=0)
 RATE = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, HERTZ, least=1)))
 DURATION = Subject((Field(SC.value, POSITIVE, least=1), Field(SC.unit, SECOND, least=1)))
 INPUT = Subject(
@@ -219,13 +221,13 @@ OUTPUT = Subject(
         Field(SC.rate, NODE, into=RATE),
         Field(SC.depth, COUNT_FROM_ONE, most=0),
         Field(SC.optional, TRUE_OR_FALSE, most=0),
-        Field(SC.accepts, ACCEPTED_SHAPE, most=0),
+        NO_SHAPE,
     ),
     SC.Output,
 )
-PARAMETER = Subject((PORT_NAME, PARAMETER_TYPE), SC.OperationalParameter)
+PARAMETER = Subject((PORT_NAME, PARAMETER_TYPE, NO_RATE, NO_SHAPE), SC.OperationalParameter)
 REQUEST, RESPONSE = Field(SC.request, RESOURCE), Field(SC.response, RESOURCE)
-OPERATION_FIELDS = (PORT_NAME, REQUEST, RESPONSE, Field(SC.accepts, ACCEPTED_SHAPE, most=0))
+OPERATION_FIELDS = (PORT_NAME, REQUEST, RESPONSE, NO_RATE, NO_SHAPE)
 """What an operation that is offered and one that is needed may both say."""
 OPERATION = Subject((*OPERATION_FIELDS, Field(SC.optional, TRUE_OR_FALSE, most=0)), SC.Operation)
 NEEDED_OPERATION = Subject((*OPERATION_FIELDS, Field(SC.optional, TRUE_OR_FALSE)), SC.Operation)
@@ -246,11 +248,13 @@ COMPONENT = Subject(
         Field(SC.deadline, NODE, into=DURATION),
         Field(SC.restarts, COUNT),
         Field(SC.grounding, NODE, into=GROUNDING),
+        NO_RATE,
+        NO_SHAPE,
     ),
     SC.Component,
 )
 
-OF_COMPONENT = COMPONENT.predicates - {TYPE}
+OF_COMPONENT = frozenset(field.predicate for field in COMPONENT.fields if field.most != 0) - {TYPE}
 """What only a component says of itself, and of its ports a template."""
 PORTS = tuple(COMPONENT[link] for link in (SC.hasInput, SC.hasOutput, SC.hasParameter))
 """The fields of a component that lead to what most components have: inputs, outputs, operational parameters."""
@@ -282,6 +286,18 @@ LINKS = frozenset(field.predicate for subject in COMPONENT.walk() for field in s
 """What leads from a component to what else its profile is made of."""
 SHAPE_LINKS = PERMITTED_IN_SHAPES - {TYPE} | {SC.accepts}
 """What leads from an input to what the shape that it accepts is made of."""
-STRUCTURE = COMPONENT.predicates | {SC.name, SC.signalType}
-"""The predicates that are no properties of a component: those that its profile has fields for, and the name and type
-that only its ports have."""
+SAID_BY: Mapping[IRI, tuple[IRI, ...]] = {
+    SC.roles: (SC.Template,),
+    SC.cost: (SC.Template,),
+    SC.priority: (SC.Template, SC.Task),
+    SC.binding: (SC.Task,),
+    **dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits), (SC.Role,)),
+    **dict.fromkeys((SC["from"], SC.to), (SC.Interaction, SC.Connection)),
+    **dict.fromkeys((SC.assignment, SC.connection, SC.setting, SC.epoch), (SC.Configuration,)),
+}
+"""What a component and its ports do not say, with the classes of what does."""
+OF_PORTS_ALONE = frozenset((SC.name, SC.signalType))
+"""What only ports and parameters say; of a component it says nothing, and is no mistake."""
+STRUCTURE = COMPONENT.predicates.union(OF_PORTS_ALONE, SAID_BY)
+"""The predicates that are no properties of a component: those that its profile has fields for, and those that only its
+ports, or roles, templates and their like have."""

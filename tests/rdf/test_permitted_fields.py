@@ -43,6 +43,7 @@ from selfconf.rdf.permitted_fields import (
     POSITIVE,
     RATE,
     RESOURCE,
+    SAID_BY,
     SECOND,
     SETTINGS,
     TRUE_OR_FALSE,
@@ -171,14 +172,13 @@ def test_the_names_that_have_to_differ_are_those_of_the_shape() -> None:
 
 
 def test_every_field_of_a_component_is_a_type_a_port_or_a_member_of_its_profile() -> None:
-    assert COMPONENT.predicates == {
-        str(RDF.type),
+    assert {
         SC.hasOperation,
         SC.needsOperation,
         *(link.predicate for link in PORTS),
         *SETTINGS,
         SC.grounding,
-    }
+    } == OF_COMPONENT
     assert {setting.member for setting in SETTINGS.values()} <= set(Profile.__dataclass_fields__)
 
 
@@ -204,6 +204,45 @@ def test_what_says_what_only_a_component_says_has_to_be_declared_one() -> None:
         for predicate in SHAPE.objects(URIRef(SHAPES[shape]), SH.targetSubjectsOf)
     }
     assert targets == OF_COMPONENT
+
+
+def test_what_an_advertisement_does_not_say_is_what_the_shapes_of_other_things_say() -> None:
+    others = [Graph().parse(path) for path in library.shapes() if path.stem in ("template", "task", "configuration")]
+    said = [
+        (
+            str(predicate),
+            {str(owner) for one in (shape, *alternatives(graph, shape)) for owner in graph[one : SH["class"]]},
+        )
+        for graph in others
+        for shape, predicate in graph.subject_objects(SH.targetSubjectsOf)
+    ]
+    found = {predicate: owners for predicate, owners in said if owners}
+    assert found == {predicate: set(owners) for predicate, owners in SAID_BY.items()}
+
+
+def alternatives(graph: Graph, shape: Node) -> Iterator[Node]:
+    """The shapes to one of which a shape asks its nodes to conform."""
+    for choice in graph[shape : SH["or"]]:
+        yield from Collection(graph, choice)
+
+
+@pytest.mark.parametrize("predicate", SAID_BY)
+@pytest.mark.parametrize("place", ["", 'sc:hasOutput [ sc:name "a" ; sc:signalType :S ; VALUE ] ;'])
+def test_what_only_something_else_says_keeps_a_component_out(predicate: model.IRI, place: str) -> None:
+    said = f"<{predicate}> 1"
+    text = f"{PREFIXES} :c a sc:Component, :L ; " + (place.replace("VALUE", said) if place else said) + " ."
+    good, (bad,) = read_advertisements(text.encode(), "a.ttl")
+    owners = " or ".join(f"a sc:{owner.short}" for owner in SAID_BY[predicate])
+    assert not good
+    but = ", and 'a' is an output" if place else ""
+    assert bad.problems == (f"only {owners} has sc:{predicate.short}{but}",)
+    assert not prefilter(text.encode()).clear
+
+
+def test_a_component_that_is_also_a_template_may_have_a_priority() -> None:
+    text = f"{PREFIXES} :c a sc:Component, sc:Template ; sc:priority 3 ."
+    ((advertisement,), bad) = read_advertisements(text.encode(), "a.ttl")
+    assert (advertisement.component.short, bad) == ("c", [])
 
 
 def test_the_number_of_a_cost_is_the_number_of_an_advertisement() -> None:
@@ -265,6 +304,8 @@ COMPONENTS = {
     ":c a sc:Component, :L ; sc:tolerates [ sc:value 5 ; VALUE ] .": DURATION,
     ":c a sc:Component, :L ; sc:deadline [ sc:unit unit:SEC ; VALUE ] .": DURATION,
     ":c a sc:Component, :L ; sc:grounding [ VALUE ] .": GROUNDING,
+    ':c a sc:Component, :L ; sc:hasOperation [ sc:name "a" ; VALUE ] .': OPERATION,
+    ':c a sc:Component, :L ; sc:needsOperation [ sc:name "a" ; VALUE ] .': NEEDED_OPERATION,
 }
 PLACES = [(field, text) for text, subject in COMPONENTS.items() for field in subject.fields]
 SHAREABLE, OPTIONAL = (

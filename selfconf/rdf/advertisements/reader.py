@@ -43,6 +43,7 @@ from selfconf.rdf.permitted_fields import (
     PORT_NAME,
     REQUEST,
     RESPONSE,
+    SAID_BY,
     SETTINGS,
     SIGNAL_TYPE,
     STRUCTURE,
@@ -60,6 +61,8 @@ _COUNTERPARTS = {
     SC.hasParameter: ("an operational parameter", ""),
 }
 """What a link leads to, and what says what it may not say."""
+_OWNERS = {SC.rate: "an output", SC.accepts: "an input"}
+"""What alone says what neither a component nor any other part of it may say."""
 UNDECLARED = ("it has ports, parameters, a preference or a grounding, and is not declared a sc:Component",)
 """What is wrong with what says such things and is no component."""
 
@@ -113,6 +116,7 @@ class _Reader:
             return None
         statements = self.document.statements[self.component]
         types = self._types()
+        self._look_for_misplaced(COMPONENT, self.component)
         inputs = [self._input(name, node) for name, node in self._named(COMPONENT[SC.hasInput])]
         outputs = [self._output(name, node) for name, node in self._named(COMPONENT[SC.hasOutput])]
         inputs += [self._needed(name, node) for name, node in self._named(COMPONENT[SC.needsOperation])]
@@ -161,20 +165,25 @@ class _Reader:
             if PORT_NAME.distinct and name.lexical in names:
                 self._problem(f"the name {name.lexical!r} stands for two values of {_word(link.predicate)}")
             names.add(name.lexical)
-            self._look_for_misplaced(link, node, name.lexical)
+            here, there = _COUNTERPARTS[link.predicate]
+            self._look_for_misplaced(link.into, node, there, f", and {name.lexical!r} is {here}")
             yield name.lexical, node
 
-    def _look_for_misplaced(self, link: Field, node: Term, name: str) -> None:
-        """Note what only a port of the other direction says, or only a component."""
-        here, there = _COUNTERPARTS[link.predicate]
-        if SC.Component not in self.document.values(node, TYPE):
-            for predicate, _ in self.document.about(node):
-                if predicate in OF_COMPONENT:
-                    self._problem(f"only a component has a {_word(predicate)}, and {name!r} is {here}")
-        for field in link.into.fields:
+    def _look_for_misplaced(self, subject: Subject, node: Term, counterpart: str = "", but: str = "") -> None:
+        """Note what only a port of the other direction says, or only a component, or no part of an advertisement."""
+        types = self.document.values(node, TYPE)
+        for predicate, _ in self.document.about(node):
+            if predicate in OF_COMPONENT and SC.Component not in types:
+                self._problem(f"only a component has a {_word(predicate)}{but}")
+            owners = SAID_BY.get(predicate)
+            if owners is not None and not set(owners) & set(types):
+                self._problem(
+                    f"only {' or '.join(f'a {_word(owner)}' for owner in owners)} has {_word(predicate)}{but}"
+                )
+        for field in subject.fields:
             if field.most == 0 and self.document.values(node, field.predicate):
-                owner = "an input" if field.predicate == SC.accepts else there
-                self._problem(f"only {owner} has a {_word(field.predicate)}, and {name!r} is {here}")
+                owner = _OWNERS.get(field.predicate, counterpart)
+                self._problem(f"only {owner} has a {_word(field.predicate)}{but}")
 
     def _parameter_type(self, name: str, node: Term) -> IRI | None:
         type_ = self._required(node, PARAMETER_TYPE)

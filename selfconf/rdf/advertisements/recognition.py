@@ -18,6 +18,7 @@ from selfconf.rdf.permitted_fields import (
     OF_COMPONENT,
     PARAMETER_TYPE,
     PORTS,
+    SAID_BY,
     SETTINGS,
     SIGNAL_TYPE,
     Field,
@@ -61,7 +62,8 @@ class _PortPattern(NamedTuple):
         groups = SC.name.short, kind.short, SC.value.short, SC.depth.short
         there = "".join(allowed)  # where there is no rate or no depth, a group for it matches nothing
         allowed += [f"(?P<{group}>(?!))" for group in groups if f"(?P<{group}>" not in there]
-        others = f"<(?!(?:{'|'.join(sorted(link.into.predicates | OF_COMPONENT))})>)[^<>]*> {_VALUE}"
+        known = sorted(link.into.predicates.union(OF_COMPONENT, SAID_BY))
+        others = f"<(?!(?:{'|'.join(known)})>)[^<>]*> {_VALUE}"
         statement = f"(?:{_KINDS}|{'|'.join(allowed)}|{others})"
         pattern = re.compile(rf"<{link.predicate}> \[ (?:{statement}(?:{NEXT}| (?=\])))+\]")
         name, type_, rate, depth = (pattern.groupindex[group] for group in groups)

@@ -17,7 +17,7 @@ from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import LANGUAGES, RDF_PROPERTY, allowed
 from selfconf.rdf.advertisements.recognition import SUBJECT, port_of, ported, property_of, setting_of
-from selfconf.rdf.permitted_fields import COMPONENT, LINKS, NEXT, STRUCTURE
+from selfconf.rdf.permitted_fields import LINKS, NEXT, OF_PORTS_ALONE, STRUCTURE
 from selfconf.rdf.vocabulary import SC, TYPE
 
 END = " .\n"
@@ -29,8 +29,7 @@ _NO_TYPES: frozenset[IRI] = frozenset()
 _BEYOND = f"<{SC.Component}>"
 """What a blank node may not say if it is to be inlined: that it is a component itself."""
 _STRUCTURE = {f"<{predicate}>" for predicate in STRUCTURE if predicate != TYPE} | {"a"}
-_SILENT = {f"<{predicate}>" for predicate in STRUCTURE - COMPONENT.predicates}
-"""What says nothing of a component itself."""
+_SILENT = {f"<{predicate}>" for predicate in OF_PORTS_ALONE}
 _LINK = {f"<{predicate}>" for predicate in LINKS}
 _LINKS = re.compile(r"<[^<>]*>(?: , <[^<>]*>)*")
 _GOOD_TYPE = f"<(?!{'|'.join(map(re.escape, (*LANGUAGES, RDF_PROPERTY, turtle.SKOLEM)))})[^<> ]*>"

@@ -19,7 +19,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.unit_dimension import meant_unit
 from selfconf.model.wording import is_one_line
-from selfconf.rdf.permitted_fields import COMPONENT, Field, Subject
+from selfconf.rdf.permitted_fields import COMPONENT, OF_COMPONENT, SAID_BY, Field, Subject
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE
 
 MOST_PROBLEMS = 100
@@ -28,15 +28,13 @@ MOST_PROBLEMS = 100
 _PREFIX = re.compile(rb"(?i:@?\bprefix)\s+([^\s:]*):\s*<([^>\s]*)>")
 _SUBJECTS = tuple(COMPONENT.walk())
 _RATE = COMPONENT[SC.hasOutput].into[SC.rate]
-_OWN = COMPONENT.predicates - {TYPE}
-"""What only a component has."""
 _TYPED = frozenset((SC.signalType, SC.parameterType))
 """What a port or an operational parameter has."""
 _LINKS = (SC.hasInput, SC.hasOutput, SC.hasParameter)
 """How a component has them."""
 _FIELDS = frozenset((ROB.field, ROB.fieldName, ROB.datatype, ROB.repeated, ROB.optional))
 """What is said of kinds of signals and their fields."""
-_PART_TERMS = frozenset().union(*(subject.predicates for subject in _SUBJECTS)) - COMPONENT.predicates
+_PART_TERMS = frozenset().union(*(subject.predicates for subject in _SUBJECTS)) - OF_COMPONENT - {TYPE, *SAID_BY}
 _PARTS = frozenset(subject.type for subject in _SUBJECTS if subject.type is not None) - {SC.Component}
 _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
 _SCHEMA = frozenset((OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDFS.Class, RDF.Property))
@@ -223,7 +221,7 @@ def _harmless(properties: Properties) -> bool:
         if predicate == TYPE:
             if not all(isinstance(kind, str) and _harmless_type(kind) for kind in values):
                 return False
-        elif predicate in _OWN:
+        elif predicate in OF_COMPONENT:
             if not component:
                 return False
         elif predicate in SC:
