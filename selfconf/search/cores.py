@@ -181,7 +181,7 @@ def _among(given: ReducedProblem, roles: Collection[int]) -> tuple[Constraint, .
     return tuple(
         one
         for one in all_of(given)
-        if isinstance(one, Distinct)
+        if isinstance(one, Distinct | Shared)
         or (isinstance(one, Played) and one.role in roles)
         or (isinstance(one, Fed) and {given.needs[one.need].role, *_sources(given, one.need)} <= set(roles))
     )

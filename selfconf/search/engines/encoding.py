@@ -34,7 +34,6 @@ from functools import reduce
 from operator import and_, or_
 from typing import NamedTuple
 
-from selfconf.model.partition import ANY_VALUE
 from selfconf.search.engines.exclusion import ExclusiveGroups, exclusive_groups
 from selfconf.search.engines.nearby import nearby
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
@@ -94,7 +93,7 @@ class Encoding:
         if guarded and distinct:
             self._distinct()
         self._needs(groups.stated)
-        self._values()
+        self._values(groups.settled)
         self._groups(groups)
         if not guarded:
             self._limits(reduced.limits)
@@ -221,21 +220,15 @@ class Encoding:
             self.statements.append(Implied(found, literals))
         return found
 
-    def _values(self) -> None:
-        constrained: list[list[tuple[int, int]]] = [[] for _ in self.reduced.values]
-        for options, literals in zip(self.reduced.options, self.plays, strict=True):
-            # Variable by variable: of many, most roles constrain few.
-            for variable, masks in enumerate(zip(*[option.kind.admits for option in options], strict=True)):
-                if masks.count(ANY_VALUE) < len(masks):
-                    common = self.reduced.values[variable]
-                    constrained[variable] += [
-                        (literal, mask & common)
-                        for literal, mask in zip(literals, masks, strict=True)
-                        if mask != ANY_VALUE
-                    ]
-        for variable, some in enumerate(constrained):
-            if some:
-                self._one_value(some, self._in_force(Shared(variable)))
+    def _values(self, settled: frozenset[int]) -> None:
+        """Write what variables say that is not stated otherwise."""
+        if len(settled) == len(self.reduced.values):
+            return
+        options = [literal for literals in self.plays for literal in literals]
+        for variable, some in enumerate(self.reduced.constraining()):
+            if some and variable not in settled:
+                constrained = [(options[number], mask) for _, number, mask in some]
+                self._one_value(constrained, self._in_force(Shared(variable)))
 
     def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> None:
         """Let options have a common value of a variable, given their literals and the masks of what they admit."""

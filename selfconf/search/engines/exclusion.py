@@ -1,4 +1,4 @@
-"""Groups of options of which at most one can play, read off the needs; and what counting says about them.
+"""Groups of options of which at most one can play, read off needs and values; and what counting says about them.
 
 *Conflicts.* Where a need can be fed by one role alone, which has one slot, an option with the need excludes the options
 of that role which do not support it. So do two options that are one component, and two of a role that has one slot. A
@@ -6,6 +6,8 @@ of that role which do not support it. So do two options that are one component, 
 frequency" may be wired by port names, pair by pair, and is a group for each frequency in the end. Groups are
 grown greedily until each conflict that is counted here is in one of them, so that they say all that these needs say;
 one constraint with many options propagates like all of its pairs, in a fraction of the space.
+Where each role that constrains a free parameter admits other values of it than all other roles, the options that
+constrain it are a group too: "who has the room at nine" lets one lecture have it.
 
 *Counting.* Let each option of some roles be in one group. The slots of these roles then draw on the groups as on
 components: if they have fewer groups than slots between them, there is no solution (Hall's theorem); an option whose
@@ -23,11 +25,14 @@ need a slot each between their options, on average.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import reduce
 from itertools import accumulate, chain, pairwise
+from operator import or_
 
 from selfconf.model.immutable import immutable
+from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
 from selfconf.search.engines.matching import HallSet, unmatchable
 from selfconf.search.reduction import NeedScope, Option, ReducedProblem
@@ -36,6 +41,8 @@ SHARE_UNFIT = 2
 """A need says little if at most one in this number of the options that could feed it do not."""
 SHARE_FED_BY_ONE = 8
 """One in this number of the needs at least has to be fed by one role alone, or they are not looked at."""
+SHARE_APART = 2
+"""The first options of roles have to differ in one in this number of the variables, or values are not looked at."""
 CONFLICTS_PER_OPTION = 200
 """How many conflicts are looked at, for each option."""
 SHARES_PER_OPTION = 2
@@ -53,6 +60,8 @@ class ExclusiveGroups:
     groups: Sequence[Sequence[int]] = ()
     stated: frozenset[int] = frozenset()
     """The needs of which the groups say all."""
+    settled: frozenset[int] = frozenset()
+    """The variables of whose values the groups say all."""
     played: Sequence[Sequence[int]] = ()
     """Sets of options of which at least one plays in every solution."""
     excluded: frozenset[int] = frozenset()
@@ -81,16 +90,55 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True, patience: i
     needs = _fed_by_one(reduced)
     names = [option.component for options in reduced.options for option in options if option.component]
     shared = distinct and len(set(names)) < len(names)
-    if not needs and not shared:
+    of_values = _groups_of_values(reduced)
+    by_values = [some for some in of_values.values() if some]
+    if not needs and not shared and not by_values:
         return ExclusiveGroups()
     graph = _Conflicts(reduced, needs)
-    if not any(graph.across):
+    if not by_values and not any(graph.across):
         of_components = _groups_of_components(reduced) if shared else ExclusiveGroups()
         return replace(of_components, stated=frozenset(graph.stated))
     if shared:
         graph.add_components()
-    groups = list(graph.groups())
+    graph.settled = frozenset(of_values)
+    groups = [*by_values, *graph.groups()]
     return _Counting(graph, groups).counted(groups, patience)
+
+
+def _groups_of_values(reduced: ReducedProblem) -> dict[int, list[int]]:
+    """Return by variable the options that constrain it, where no value of it suits two roles, each of one slot.
+
+    As each option has some value, that one of them plays at most is all that the variable says; where they are of one
+    role that is nothing, and no options are returned.
+    """
+    if not _often_apart(reduced):
+        return {}
+    asked = Counter(reduced.slots)
+    found: dict[int, list[int]] = {}
+    for variable, some in enumerate(reduced.constraining()):
+        admitted: dict[int, int] = {}
+        for role, _, mask in some:
+            admitted[role] = admitted.get(role, 0) | mask
+        if (
+            _disjoint(admitted.values())
+            and all(asked[role] == 1 for role in admitted)
+            and all(mask > 0 for _, _, mask in some)
+        ):
+            found[variable] = [number for _, number, _ in some] if len(admitted) > 1 else []
+    return found
+
+
+def _often_apart(reduced: ReducedProblem) -> bool:
+    """Return whether the first options of the roles that constrain a variable mostly admit other values of it each."""
+    firsts = zip(*[options[0].kind.admits for options in reduced.options if options], strict=True)
+    apart = [_disjoint(masks) for masks in firsts if masks.count(ANY_VALUE) + 1 < len(masks)]
+    return bool(apart) and SHARE_APART * sum(apart) >= len(apart)
+
+
+def _disjoint(masks: Iterable[int]) -> bool:
+    """Return whether no value is in two of some masks, but for those that have all values."""
+    some = [mask for mask in masks if mask != ANY_VALUE]
+    return reduce(or_, some, 0).bit_count() == sum([mask.bit_count() for mask in some])
 
 
 def _groups_of_components(reduced: ReducedProblem) -> ExclusiveGroups:
@@ -175,6 +223,8 @@ class _Conflicts:
         self.across = [0] * len(self.options)
         """For each option the options of other roles that it excludes."""
         self.stated: set[int] = set()
+        self.settled = frozenset[int]()
+        """The variables of whose values groups say all, beside the conflicts of this graph."""
         if needs:
             self._by_needs(needs)
 
@@ -322,6 +372,7 @@ class _Counting:
         return ExclusiveGroups(
             groups,
             frozenset(self.graph.stated),
+            self.graph.settled,
             [list(_bits(group)) for group in self.played],
             frozenset(_bits(self.excluded)),
             self.crowded,

@@ -20,7 +20,7 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from selfconf.model.immutable import immutable
-from selfconf.model.partition import Candidate
+from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.profile import Ports
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
@@ -97,6 +97,24 @@ class ReducedProblem:
     def kinds(self) -> list[InterchangeabilityClass]:
         """Return the interchangeability classes of the options, in order."""
         return list(dict.fromkeys([option.kind for options in self.options for option in options]))
+
+    def constraining(self) -> list[list[tuple[int, int, int]]]:
+        """Return for each variable the options that admit some values alone: role, number in all, and values.
+
+        Options are numbered through all roles.
+        """
+        found: list[list[tuple[int, int, int]]] = [[] for _ in self.values]
+        start = 0
+        for role, options in enumerate(self.options):
+            # Variable by variable: of many, most roles constrain few.
+            for variable, masks in enumerate(zip(*[option.kind.admits for option in options], strict=True)):
+                if masks.count(ANY_VALUE) < len(masks):
+                    common = self.values[variable]
+                    found[variable] += [
+                        (role, number, mask & common) for number, mask in enumerate(masks, start) if mask != ANY_VALUE
+                    ]
+            start += len(options)
+        return found
 
     def components(self) -> list[list[IRI]]:
         """Return for each role the components of its options, in order: what matching works on."""

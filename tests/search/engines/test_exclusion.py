@@ -6,14 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.search.families import distinct
-from benchmarks.search.further_families import colouring, frequencies, latin, pigeonholes, queens, tour
+from benchmarks.search.families import distinct, iri, profile
+from benchmarks.search.further_families import colouring, counted, frequencies, latin, pigeonholes, queens, tour
+from selfconf.model.partition import ANY_VALUE, Candidate, Variable
 from selfconf.search.budget import Budget
 from selfconf.search.engines import exclusion
+from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, pruned, reduced
+from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
 from selfconf.search.strategies import solution
 from tests.search.comparison import least_numbers, numbers
 from tests.search.oracle import World
@@ -89,6 +91,45 @@ def test_groups_take_the_place_of_the_needs_that_they_state() -> None:
     given_ = pruned(reduced(colouring(12, 3, 4.0, 1)))
     used = {need for options in given_.options for option in options for need in option.kind.needs}
     assert exclusive_groups(given_).stated == used
+
+
+def lectures(number: int, asked: int = 1) -> ReducedProblem:
+    """So many lectures, all of them by one teacher, each of which may be at one of three times."""
+    busy = tuple(Variable(iri(f"time{t}"), tuple(iri(f"lecture{k}") for k in range(number))) for t in range(3))
+    parts = [
+        [
+            Candidate(profile(f"lecture{k}.{t}"), tuple(1 << k if t == time else ANY_VALUE for time in range(3)))
+            for t in range(3)
+        ]
+        for k in range(number)
+    ]
+    return pruned(reduced(counted(parts, [asked] * number, (), busy)))
+
+
+def test_lectures_of_one_teacher_have_a_time_each() -> None:
+    assert exclusive_groups(lectures(4)).crowded == {0, 1, 2, 3}
+    groups = exclusive_groups(lectures(3))
+    assert not groups.impossible
+    assert groups.settled == {0, 1, 2}
+    assert sorted(groups.groups) == [[0, 3, 6], [1, 4, 7], [2, 5, 8]]
+
+
+def test_where_groups_say_all_of_values_these_have_no_literals() -> None:
+    given_ = lectures(3)
+    assert Encoding(given_).top == sum(map(len, given_.options))
+
+
+def test_a_role_of_several_slots_may_have_one_value_in_all_of_them() -> None:
+    given_ = lectures(2, asked=2)
+    assert not exclusive_groups(given_).settled
+    assert least_by_clauses(given_, Budget()) is None  # four slots, three times, each of one lecture
+    assert least_by_clauses(lectures(1, asked=2), Budget()) is not None
+
+
+def test_roles_that_may_agree_on_a_value_do_not_exclude_each_other() -> None:
+    site = (Variable(iri("site"), (iri("north"), iri("south"))),)
+    parts = [[Candidate(profile(f"{name}{k}"), (1 << k,)) for k in range(2)] for name in "ab"]
+    assert not exclusive_groups(pruned(reduced(counted(parts, [1, 1], (), site)))).settled
 
 
 def test_counting_that_is_left_for_want_of_results_is_gone_on_with(monkeypatch: pytest.MonkeyPatch) -> None:
