@@ -29,6 +29,7 @@ from selfconf.model.sharing import agreed
 from selfconf.model.template import Role
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
+from selfconf.rdf.tasks import InsideReader
 from selfconf.rdf.turtle import Document
 
 
@@ -109,21 +110,21 @@ class Inquiry:
 
         Where the document that says what is inside is not at hand, as of a text, nothing is known of that.
         """
-        documents: dict[str, Document | None] = {}
+        readers: dict[str, InsideReader | None] = {}
         eligible = {candidate.profile.component for some in partition.candidates for candidate in some}
         for component in sorted(eligible.union(one.component for one in partition.recruits)):
             advertisement = self.ecology[component]
             if advertisement.profile.inside is None:
                 continue
             source = self._place(component).source
-            if source not in documents:  # one file may advertise many
+            if source not in readers:  # one file may advertise many
                 with suppress(SelfconfError):
-                    documents[source] = described_in(advertisement)
-            document = documents.setdefault(source, None)
-            if document is None:
+                    readers[source] = InsideReader(described_in(advertisement))
+            reader = readers.setdefault(source, None)
+            if reader is None:
                 continue
             try:
-                Inside.of(advertisement.profile, document, self.composer.hierarchy)
+                Inside.of(advertisement.profile, reader, self.composer.hierarchy)
             except SelfconfError as error:
                 yield LeftOut(self._place(component), component, str(error))
 
@@ -138,7 +139,15 @@ class Inquiry:
         """
         if not any(self.ecology[component].profile.inside for component in answer.components):
             return []
-        return list(insides(self.ecology, described_in, answer.plain, self.composer.hierarchy))
+        documents: dict[Place | None, Document] = {}  # one file may advertise many
+
+        def document_of(advertisement: Advertisement) -> Document:
+            place = advertisement.place
+            if place not in documents:
+                documents[place] = described_in(advertisement)
+            return documents[place]
+
+        return list(insides(self.ecology, document_of, answer.plain, self.composer.hierarchy))
 
     def answer(self, what_if: bool = False) -> Answer | Refusal | Undecided:
         """The configuration, or why there is none, within the time of the method."""

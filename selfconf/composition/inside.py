@@ -21,7 +21,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.model.wording import MANY
 from selfconf.rdf import tasks
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.tasks import TaskDocument
+from selfconf.rdf.tasks import InsideReader, TaskDocument
 from selfconf.rdf.turtle import Document
 from selfconf.render import holder_text
 
@@ -44,9 +44,9 @@ class Inside:
     """Composes the inside as it is before that, with these parameters left free and all inputs fed."""
 
     @classmethod
-    def of(cls, profile: Profile, document: Document, hierarchy: Hierarchy) -> Inside:
-        """What a component is inside that is advertised in a document. Raises SelfconfError if it cannot be."""
-        task = tasks.read_inside(document, profile.component)
+    def of(cls, profile: Profile, reader: InsideReader, hierarchy: Hierarchy) -> Inside:
+        """What a component is inside, by the reader of its document. Raises SelfconfError if it cannot be."""
+        task = reader.read(profile.component)
         _check_ports(profile, task)
         later = frozenset(parameter.name for parameter in profile.parameters)
         _check_parameters(later, task)
@@ -117,10 +117,13 @@ def configurable(
     """The composites whose inside can be configured, and of the others why not."""
     found: dict[IRI, Inside] = {}
     why: dict[IRI, str] = {}
+    readers: dict[int, InsideReader] = {}  # by the identity of the document, of which one may advertise many
     for component, advertisement in known.items():
         if advertisement.profile.inside is not None:
             try:
-                found[component] = Inside.of(advertisement.profile, document_of(advertisement), hierarchy)
+                document = document_of(advertisement)
+                reader = readers.setdefault(id(document), InsideReader(document))
+                found[component] = Inside.of(advertisement.profile, reader, hierarchy)
             except SelfconfError as error:
                 why[component] = str(error)
     composers = {one: inside.composer for one, inside in found.items()}

@@ -14,7 +14,7 @@ from selfconf.api.method import Method
 from selfconf.api.reading import described_in
 from selfconf.composition import Strategy
 from selfconf.errors import AuthorError, BindingError, ProgrammerError, TemplateError
-from selfconf.model.configuration import Wants
+from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
@@ -138,6 +138,32 @@ def test_a_file_that_advertises_many_composites_is_read_once_for_what_they_are_i
     inquiry = Inquiry(task, read(tmp_path), Method())
     assert read_again == [iri("radio-set"), iri("set0")]
     assert inquiry.eligible == {str(iri("set")): 1}
+
+
+def test_what_composites_of_one_file_are_inside_is_read_from_it_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sets = [f":set{n} a sc:Component, :Radio ; SAID" for n in range(9)]
+    head, _, said = RADIO.replace("TYPE", "rob:Audio").partition(":radio-set a sc:Component, :Radio ; ")
+    said = said.partition(":old-radio")[0]
+    text = head + "\n".join(one.replace("SAID", said) for one in sets) + ":tuner1 a sc:Component, rob:Tuner ; "
+    (tmp_path / "sets.ttl").write_text(f'{text} sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .')
+    task = template(f"{PREFIXES}:listen a sc:Template ; sc:roles ( :set ) . :set a sc:Role ; sh:class :Radio .")
+    inquiry = Inquiry(task, read(tmp_path), Method())
+    answer = inquiry.answer()
+    assert isinstance(answer, Answer)
+    read_again: list[IRI] = []
+
+    def described(advertisement: Advertisement) -> Document:
+        read_again.append(advertisement.component)
+        return described_in(advertisement)
+
+    monkeypatch.setattr("selfconf.api.inquiry.described_in", described)
+    ((component, inside),) = inquiry.insides(answer)
+    assert component == iri("set0")
+    assert isinstance(inside, Configuration)
+    assert inside.components == (iri("tuner1"),)
+    assert read_again == [iri("set0")]
 
 
 def test_a_refusal_of_text_that_is_in_no_file_has_its_lines(clock: sc.TaskSpecification) -> None:

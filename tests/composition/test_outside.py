@@ -28,7 +28,7 @@ WHOLE, TRACKER_ROLE = iri("whole"), iri("tracker")
 
 def answered(tracker: str) -> object:
     """The inside of the composite with one tracker."""
-    composer = Composer(tasks.read_inside(parse(TEXT, "t.ttl"), WHOLE), outside=WHOLE)
+    composer = Composer(tasks.InsideReader(parse(TEXT, "t.ttl")).read(WHOLE), outside=WHOLE)
     found, _ = read_advertisements((PREFIXES + tracker).encode(), "ads.ttl")
     return composer.compose({one.component: one for one in found}, frozenset((WHOLE,)), None)
 
@@ -52,7 +52,7 @@ def test_an_inside_that_does_not_give_what_the_template_promises_is_refused() ->
 
 
 def test_what_is_outside_is_a_role_of_its_own_that_is_left_out_in_the_end() -> None:
-    task = tasks.read_inside(parse(TEXT, "t.ttl"), WHOLE).task
+    task = tasks.InsideReader(parse(TEXT, "t.ttl")).read(WHOLE).task
     whole = with_outside(task, WHOLE)
     assert whole.template.roles == (*task.template.roles, Role(WHOLE))
     assert whole.template.interactions == (

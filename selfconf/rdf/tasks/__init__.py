@@ -1,6 +1,6 @@
 """Templates and tasks: read from RDF, with values bound to their parameters.
 
-`TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one, `read_inside` the one that
+`TaskDocument` is a task with the document in which its shapes stand; `read_task` makes one, `InsideReader` those that
 a composite is inside, and `placed` finds the line and column of an error that they raise. `bind`, `complete` and
 `read_term` give parameters their values, `suitable` and `misfits` tell which values a parameter can and cannot have,
 and `free_parameters` which ones are left. `mentions`, `shape_statements`, `substituted` and
@@ -11,10 +11,11 @@ from selfconf.rdf.tasks.bindings import bind, complete, free_parameters, read_te
 from selfconf.rdf.tasks.mistakes import placed
 from selfconf.rdf.tasks.parameters import misfits, suitable
 from selfconf.rdf.tasks.roles import ROLE_STRUCTURE, mentions, shape_statements, substituted
-from selfconf.rdf.tasks.templates import TaskDocument, read_inside, read_task
+from selfconf.rdf.tasks.templates import InsideReader, TaskDocument, read_task
 
 __all__ = [
     "ROLE_STRUCTURE",
+    "InsideReader",
     "TaskDocument",
     "bind",
     "complete",
@@ -22,7 +23,6 @@ __all__ = [
     "mentions",
     "misfits",
     "placed",
-    "read_inside",
     "read_task",
     "read_term",
     "shape_statements",

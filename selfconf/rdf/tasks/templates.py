@@ -19,6 +19,7 @@ from selfconf.model.literal_values import fraction
 from selfconf.model.setting_names import setting
 from selfconf.model.template import MOST_PRIORITY, Task, Template
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.rdf.permitted_fields import SAID_BY
 from selfconf.rdf.tasks.interactions_and_ports import interactions_of, template_ports
 from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
 from selfconf.rdf.tasks.parameters import parameters_of
@@ -28,9 +29,7 @@ from selfconf.rdf.vocabulary import FIRST, LABEL, SC, TYPE, XSD
 
 _PRIORITY = re.compile(r"[+-]?[0-9]{1,300}")
 _SAID_OF = {
-    **dict.fromkeys((SC.feeds, SC.sets, SC.minCount, SC.maxCount, SC.recruits), (SC.Role,)),
-    SC.cost: (SC.Template,),
-    SC.priority: (SC.Template, SC.Task),
+    SC[name]: SAID_BY[SC[name]] for name in ("feeds", "sets", "minCount", "maxCount", "recruits", "cost", "priority")
 }
 """What is said only of instances of a class, or of one of two."""
 _FIXED = frozenset(
@@ -71,22 +70,33 @@ def read_task(document: Document, wanted: IRI | None = None) -> TaskDocument:
     return TaskDocument(Task(_Reader(document).template(chosen)), document)
 
 
-def read_inside(document: Document, component: IRI) -> TaskDocument:
-    """The task that a composite is inside, from the document that advertises it. Raises TemplateError."""
-    grounding = document.value(component, SC.grounding)
-    if grounding is None or isinstance(grounding, Literal) or not document.values(grounding, SC.template):
-        raise TemplateError(
-            f"{worded(component)} is no composite: its grounding has no sc:template", file=document.source
-        )
-    return TaskDocument(_Reader(document).task(grounding), document)
+class InsideReader:
+    """Reads what the composites of one document are inside; of a template that many have inside it is read once."""
+
+    def __init__(self, document: Document) -> None:
+        self._document, self._reader = document, _Reader(document)
+
+    def read(self, component: IRI) -> TaskDocument:
+        """The task that a composite is inside. Raises TemplateError."""
+        document = self._document
+        grounding = document.value(component, SC.grounding)
+        if grounding is None or isinstance(grounding, Literal) or not document.values(grounding, SC.template):
+            raise TemplateError(
+                f"{worded(component)} is no composite: its grounding has no sc:template", file=document.source
+            )
+        return TaskDocument(self._reader.task(grounding), document)
 
 
 class _Reader(DocumentReader):
     """Reads one document; every method raises TemplateError with a sentence for the author."""
 
+    def __init__(self, document: Document) -> None:
+        super().__init__(document)
+        self._templates: dict[Term, Template] = {}
+
     def task(self, task: Node) -> Task:
         template_iri = self.only(task, SC.template, "a task names exactly one template by sc:template")
-        if template_iri not in self.document.instances(SC.Template):
+        if (TYPE, SC.Template) not in self.document.about(template_iri):
             problem = f"the template {worded(template_iri)} of the task is not in this file"
             raise self.mistake(problem, task, SC.template, template_iri)
         template = self.template(template_iri)
@@ -104,7 +114,12 @@ class _Reader(DocumentReader):
             bindings[parameter] = value
         return Task(template, bindings, task if isinstance(task, IRI) else None, self._priority(task))
 
-    def template(self, template: Node | Term) -> Template:
+    def template(self, template: Term) -> Template:
+        if template not in self._templates:
+            self._templates[template] = self._template(template)
+        return self._templates[template]
+
+    def _template(self, template: Term) -> Template:
         if not isinstance(template, IRI):
             raise self.mistake("a template needs an IRI", template)
         names = self._listed(template)
@@ -159,7 +174,7 @@ class _Reader(DocumentReader):
         """Raises where something is said that is said of roles or templates alone."""
         for subject, statements in self.document.statements.items():
             if _SAID_OF.keys().isdisjoint([said for said, _ in statements]):
-                continue  # nearly all that a file says; one that advertises many composites is read for each
+                continue  # nearly all that a file says
             for predicate, kinds in _SAID_OF.items():
                 described = any((TYPE, kind) in statements for kind in kinds)
                 if not described and any(said == predicate for said, _ in statements):

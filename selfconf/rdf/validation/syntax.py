@@ -15,6 +15,7 @@ _HINTS = (
     ("A dot is expected", "Perhaps a semicolon is missing before this."),
     ("is not a valid predicate", "A predicate is an IRI or a; perhaps the dot before this should be a semicolon."),
     ("property lists should end", "Perhaps a semicolon or the closing ] is missing before this."),
+    ("Invalid IRI code point ' '", "In an IRI a blank is written %20."),
     ("Line jumps are not allowed", "Perhaps the closing quotation mark is missing."),
     (", is not a valid RDF object", "The members of a list stand side by side, without commas."),
     ("‘", 'Quotation marks are straight: ".'),

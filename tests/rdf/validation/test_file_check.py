@@ -10,6 +10,7 @@ from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.hierarchy import NOTHING_ABOVE
 from selfconf.rdf.advertisements import read_advertisements
+from selfconf.rdf.tasks import InsideReader
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.validation import file_check
 from selfconf.rdf.validation.file_check import FileCheck, shapes_of
@@ -112,7 +113,7 @@ def test_a_composite_has_the_types_of_its_template_as_whoever_configures_it_asks
     assert ("SC-A22" not in [code for code, _, _ in told(text)]) is same
     ((composite,), _) = read_advertisements((PREFIXES + text).encode(), "a.ttl")
     try:
-        Inside.of(composite.profile, parse(PREFIXES + text, "a.ttl"), NOTHING_ABOVE)
+        Inside.of(composite.profile, InsideReader(parse(PREFIXES + text, "a.ttl")), NOTHING_ABOVE)
     except AuthorError:
         assert not same
     else:

@@ -36,6 +36,7 @@ def said(text: str) -> list[tuple[int, str, str | None]]:
         ("rob:place", "unit:place", 4, "Write @prefix unit: <http://qudt.org/vocab/unit/> ."),
         ("rob:place", "my:place", 4, "Write @prefix my: <...> ."),
         (":kitchen", "( :kitchen , :hall )", 4, "without commas"),
+        (":kitchen", "<https://example.org/living room>", 4, "a blank is written %20"),
         ("a sc:Component", "is sc:Component", 2, "A predicate is an IRI or a"),
     ],
 )
