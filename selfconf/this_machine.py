@@ -81,6 +81,12 @@ def _writing() -> Iterator[Path]:
         ) from None
 
 
+def made_runtime_folder() -> Path:
+    """The folder, made for this user alone if it is not there. Raises NetworkError where that cannot be."""
+    with _writing() as root:
+        return root
+
+
 @contextmanager
 def turn(seconds: float = TURN) -> Iterator[bool]:
     """Hold a lock in which one site, and no other, looks for other sites, opens its relay, and announces itself.

@@ -11,7 +11,8 @@
     revoked.pem       what the authority has revoked: a copy in each folder that it has issued to
 
 Keys have the mode 0600 and folders 0700; a folder that others may read is refused. The authority of a host is believed
-by the hubs of that host alone: what a site issues to its components opens no door anywhere else.
+by the hubs of that host alone: what a site issues to its components opens no door anywhere else. The sites of a user
+there have it in common, whatever folders they are given, as the components of all connect to the hub of one of them.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ class KeysFolder:
         self.path = path
         if not path.is_dir():
             raise AuthorError(f"there is no folder {path}; make an authority with `selfconf keys init {path}`")
-        self.authority = self._certificate(path / f"{_AUTHORITY}.pem")
+        self.authority = _certificate(path / f"{_AUTHORITY}.pem")
         for key in (_AUTHORITY, _HOST_AUTHORITY, _OWN):
             check_private(path / f"{key}.key")
 
@@ -117,7 +118,7 @@ class KeysFolder:
             raise AuthorError(f"{folder} holds no certificate that was issued; nothing to renew")
         if old.authority != self.authority:
             raise AuthorError(f"{folder} is of another authority than {self.path}")
-        certificate, key = old._pair(_OWN)
+        certificate, key = _pair(folder / _OWN)
         principal = _principal(certificate, folder)
         if self._revoked_serials(principal):
             raise AuthorError(f"the certificate of {principal} was revoked")
@@ -182,7 +183,7 @@ class KeysFolder:
 
     def issued(self) -> list[Certificate]:
         """The certificates that this authority has issued, by name and time."""
-        found = [self._certificate(path) for path in (self.path / "issued").glob("*.pem")]
+        found = [_certificate(path) for path in (self.path / "issued").glob("*.pem")]
         return sorted(found, key=lambda one: (one.common_name, one.begins))
 
     def revoked(self) -> frozenset[int]:
@@ -196,7 +197,7 @@ class KeysFolder:
 
     def own(self) -> Certificate:
         """The certificate that this folder speaks by. Raises AuthorError if it holds none."""
-        return self._certificate(self.path / f"{_OWN}.pem")
+        return _certificate(self.path / f"{_OWN}.pem")
 
     def credentials(self, kinds: Sequence[PrincipalKind], name: str = MAIN) -> Credentials:
         """What a program of some kinds shows: of the first if it can be chosen. Raises AuthorError for what is wrong.
@@ -210,17 +211,31 @@ class KeysFolder:
     def believed_authorities(self) -> tuple[Certificate, ...]:
         """Who can have issued what this folder holds: the authority, and that of its host, if it knows of one."""
         host = self.path / f"{_HOST_AUTHORITY}.pem"
-        return (self.authority, *([self._certificate(host)] if host.is_file() else []))
+        return (self.authority, *([_certificate(host)] if host.is_file() else []))
 
     def hub_authorities(self) -> Path:
         """The file of the authorities that the hub of a site here believes: the ecology's, and that of this host."""
         trusted = self.path / "trusted.pem"
-        with self._turn():
+        with _turn(self.path):
             self._host_authority()
             together = self.authority.pem + read_file(self.path / f"{_HOST_AUTHORITY}.pem")
             if not trusted.is_file() or trusted.read_bytes() != together:
                 write_private(trusted, together)
         return trusted
+
+    def share_host_authority(self, shared: Path) -> None:
+        """Issue to components as the other sites of this user on this host do, by what they share in a folder.
+
+        The first site with keys of an ecology's authority gives what it has; the others take that instead of their own.
+        """
+        digest = hashlib.blake2s(self.authority.pem, digest_size=8).hexdigest()
+        common, own = shared / f"{_HOST_AUTHORITY}-{digest}", self.path / _HOST_AUTHORITY
+        with _turn(shared), _turn(self.path):
+            given = _pair_of_this_user(common)
+            if given is not None:
+                _write(own, *given)
+            else:
+                _write(common, *self._host_authority())
 
     def component(self, principal: Principal, also: Sequence[Principal] = ()) -> Path:
         """The folder of a process on this host, by its first component, with a certificate made or renewed now.
@@ -228,10 +243,11 @@ class KeysFolder:
         `also` are the other components of the process.
         """
         folder = self.path / "components" / _whose((principal, *also))
-        with self._turn():
+        with _turn(self.path):
             authority, key = self._host_authority()
             ends = self._component_ends()
-            if self._stale(folder) or self._certificate(folder / f"{_OWN}.pem").ends > ends:
+            kept = None if self._stale(folder) else _certificate(folder / f"{_OWN}.pem")
+            if kept is None or kept.ends > ends or kept.fault((authority,)):
                 mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
                 certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
                 _write_holder(folder, self.authority, certificate, mine)
@@ -247,7 +263,7 @@ class KeysFolder:
         """Renew the certificates of the processes of this host that are to be. Raises AuthorError."""
         for folder in (self.path / "components").glob("*"):
             try:
-                first, *others = self._certificate(folder / f"{_OWN}.pem").principals
+                first, *others = _certificate(folder / f"{_OWN}.pem").principals
             except (AuthorError, PeerError):
                 continue  # it is made anew when its process is started
             self.component(first, others)
@@ -257,8 +273,8 @@ class KeysFolder:
 
         With the folder of an authority also those of the programs that are given it, which need not be shown.
         """
-        shown = [self._certificate(path) for path in (self.path / "admitted" / ecology).glob("*.pem")]
-        shown += [self._certificate(self.path / "own" / name / f"{_OWN}.pem") for name in KNOWN if self.is_authority]
+        shown = [_certificate(path) for path in (self.path / "admitted" / ecology).glob("*.pem")]
+        shown += [_certificate(self.path / "own" / name / f"{_OWN}.pem") for name in KNOWN if self.is_authority]
         revoked = self.revoked()
         good = (one for one in shown if one.serial not in revoked and not one.fault(self._authorities_for(one)))
         return {_whose(one.principals): one for one in good}
@@ -283,7 +299,7 @@ class KeysFolder:
         Certificates are no secret: one that is shown by another than its holder must not bring the end forward.
         """
         try:
-            kept = self._certificate(path)
+            kept = _certificate(path)
         except AuthorError:
             return False
         good = kept.serial not in self.revoked() and not kept.fault(self._authorities_for(kept))
@@ -313,7 +329,7 @@ class KeysFolder:
 
     def _self_issued(self, principal: Principal) -> Path:
         folder = self.path / "own" / principal.common_name
-        with self._turn():
+        with _turn(self.path):
             if self._stale(folder):
                 self._issued(principal, folder, new_key(), (), DAYS)
         return folder
@@ -321,7 +337,7 @@ class KeysFolder:
     def _stale(self, folder: Path) -> bool:
         """Whether a folder lacks a certificate, or has one that is to be renewed."""
         try:
-            certificate = self._certificate(folder / f"{_OWN}.pem")
+            certificate = _certificate(folder / f"{_OWN}.pem")
         except AuthorError:
             return True
         return certificate.half_over() or certificate.serial in self.revoked()
@@ -330,24 +346,16 @@ class KeysFolder:
         path = self.path / _HOST_AUTHORITY
         if not path.with_suffix(".key").is_file():
             _write(path, *new_authority("the components of a host"))
-        return self._pair(_HOST_AUTHORITY)
+        return _pair(path)
 
     def _authority_pair(self) -> tuple[Certificate, Key]:
         if not self.is_authority:
             raise AuthorError(f"{self.path} is not the folder of an authority: there is no {_AUTHORITY}.key in it")
-        return self._pair(_AUTHORITY)
-
-    def _pair(self, name: str) -> tuple[Certificate, Key]:
-        path = self.path / f"{name}.key"
-        key = named_in_errors(path, lambda: read_key(read_file(path)))
-        certificate = self._certificate(self.path / f"{name}.pem")
-        if not certificate.belongs_to(key):
-            raise AuthorError(f"{path} is not the key of {name}.pem beside it")
-        return certificate, key
+        return _pair(self.path / _AUTHORITY)
 
     def _credentials(self, kinds: Sequence[PrincipalKind], given: KeysFolder) -> Credentials:
         """What this folder shows, checked; `given` is the folder that the program was given."""
-        certificate, _ = self._pair(_OWN)
+        certificate, _ = _pair(self.path / _OWN)
         fault = certificate.fault(self.believed_authorities())
         if not fault and certificate.serial in given.revoked() | self.revoked():
             fault = "was revoked"
@@ -372,24 +380,6 @@ class KeysFolder:
     def _expired(self, certificate: Certificate) -> bool:
         return "expired" in certificate.fault((self.authority,))
 
-    def _certificate(self, path: Path) -> Certificate:
-        return named_in_errors(path, lambda: Certificate.read(read_file(path)))
-
-    @contextmanager
-    def _turn(self) -> Iterator[None]:
-        """Programs that share a folder write into it one at a time."""
-        try:
-            descriptor = os.open(self.path, os.O_RDONLY)
-        except OSError as error:
-            raise AuthorError(reason(error)) from None
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
-            yield
-        except OSError as error:
-            raise AuthorError(reason(error)) from None
-        finally:
-            os.close(descriptor)
-
 
 def _whose(principals: Sequence[Principal]) -> str:
     """The name of a file about the principals of a certificate.
@@ -413,6 +403,46 @@ def _write_holder(folder: Path, authority: Certificate, certificate: Certificate
     make_private_folder(folder)
     write_private(folder / f"{_AUTHORITY}.pem", authority.pem)
     _write(folder / _OWN, certificate, key)
+
+
+def _certificate(path: Path) -> Certificate:
+    return named_in_errors(path, lambda: Certificate.read(read_file(path)))
+
+
+def _pair(path: Path) -> tuple[Certificate, Key]:
+    """A certificate and its key, by their path without an ending."""
+    secret = path.with_suffix(".key")
+    key = named_in_errors(secret, lambda: read_key(read_file(secret)))
+    certificate = _certificate(path.with_suffix(".pem"))
+    if not certificate.belongs_to(key):
+        raise AuthorError(f"{secret} is not the key of {path.name}.pem beside it")
+    return certificate, key
+
+
+def _pair_of_this_user(path: Path) -> tuple[Certificate, Key] | None:
+    """A certificate and its key, if there is a good pair whose key this user has written and nobody else may read."""
+    secret = path.with_suffix(".key")
+    try:
+        check_private(secret)
+        return _pair(path) if secret.stat().st_uid == os.getuid() else None
+    except (AuthorError, OSError):
+        return None
+
+
+@contextmanager
+def _turn(folder: Path) -> Iterator[None]:
+    """Programs that share a folder write into it one at a time."""
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except OSError as error:
+        raise AuthorError(reason(error)) from None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    except OSError as error:
+        raise AuthorError(reason(error)) from None
+    finally:
+        os.close(descriptor)
 
 
 def _write(path: Path, certificate: Certificate, key: Key) -> None:

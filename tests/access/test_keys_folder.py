@@ -181,6 +181,48 @@ def test_what_a_host_issues_to_its_components_opens_no_other_door(authority: Key
     assert {one.principals for one in attic.admitted("lab").values()} == {(first, second), (first,)}
 
 
+def test_the_sites_of_a_host_believe_the_components_of_each_other(authority: KeysFolder, tmp_path: Path) -> None:
+    lamp, shared = Principal.component(IRI("urn:lamp")), tmp_path / "shared"
+    shared.mkdir(0o700)
+    sites = []
+    for name in ("attic", "cellar"):
+        authority.issue(Principal(SITE, name), tmp_path / name)
+        sites.append(KeysFolder(tmp_path / name))
+    attic, cellar = sites
+    before = KeysFolder(cellar.component(lamp)).own()
+    for site in (attic, cellar):
+        site.share_host_authority(shared)
+    assert attic.hub_authorities().read_bytes() == cellar.hub_authorities().read_bytes()
+    with pytest.raises(PeerError, match="issued by another authority"):
+        attic.admit("lab", before.pem)
+    renewed = KeysFolder(cellar.component(lamp)).own()
+    assert attic.admit("lab", renewed.pem) == renewed, "its certificate is made anew by the common authority"
+    assert all(not stat.S_IMODE(path.stat().st_mode) & 0o077 for path in shared.iterdir())
+
+
+def test_a_common_authority_that_is_spoilt_is_made_anew(authority: KeysFolder, tmp_path: Path) -> None:
+    shared = tmp_path / "shared"
+    shared.mkdir(0o700)
+    authority.share_host_authority(shared)
+    (key,) = shared.glob("*.key")
+    for spoil in (lambda: key.write_bytes(b"nothing"), lambda: key.chmod(0o644), key.unlink):
+        spoil()
+        authority.share_host_authority(shared)
+        assert key.read_bytes() == (authority.path / "components.key").read_bytes()
+        assert not stat.S_IMODE(key.stat().st_mode) & 0o077
+
+
+def test_the_authorities_of_two_ecologies_share_nothing(tmp_path: Path) -> None:
+    shared = tmp_path / "shared"
+    shared.mkdir(0o700)
+    one, other = (KeysFolder.init(tmp_path / name) for name in ("one", "other"))
+    for folder in (one, other):
+        folder.share_host_authority(shared)
+    assert len(list(shared.glob("*.key"))) == 2
+    assert one.component(Principal.component(IRI("urn:c"))) != other.component(Principal.component(IRI("urn:c")))
+    assert (one.path / "components.key").read_bytes() != (other.path / "components.key").read_bytes()
+
+
 def test_a_host_cannot_make_itself_a_configurator(authority: KeysFolder, tmp_path: Path) -> None:
     authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
     attic = KeysFolder(tmp_path / "attic")

@@ -33,7 +33,7 @@ class SecuredSite:
     """A site that has keys."""
 
     def __init__(self, keys: Path, name: str | None) -> None:
-        """Raises AuthorError for keys that are none, or of another holder than a site of that name.
+        """Raises AuthorError for keys that are none, or of another holder than a site of that name, and NetworkError.
 
         From now on, what Zenoh logs is read: it must be made before any session is opened.
         """
@@ -46,6 +46,7 @@ class SecuredSite:
             raise AuthorError(
                 f"{keys} is for the site {self.name}, not for {name}; give {setting('name', self.name)}, or no name"
             )
+        self._folder.share_host_authority(this_machine.made_runtime_folder())
         self._credentials = replace(self._credentials, authorities=self._folder.hub_authorities())
         self._refusals = hear_refusals()
         self._first = AccessRules(())

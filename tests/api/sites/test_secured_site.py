@@ -82,6 +82,19 @@ def test_two_hosts_are_one_ecology(home: Home, tmp_path: Path) -> None:
         attic.close()
 
 
+def test_two_sites_of_a_host_have_keys_of_their_own(home: Home) -> None:
+    """The second one is a client of the hub of the first, which believes the components of both."""
+    assert home.authority is not None
+    for name in ("sonar", "encoder", "control", "drive", "tracker"):
+        dormant(home, name)
+    for name, *served in (("first", "pippi", "sonar", "encoder", "control", "drive"), ("second", "tracker")):
+        home.authority.issue(Principal(PrincipalKind.SITE, name), home.folder / f"{name}-keys")
+        home.site(name, *(f"ads/{one}.ttl" for one in served), options=("--keys", str(home.folder / f"{name}-keys")))
+    task = home.run("--wait")
+    task.act("running")  # of one site alone the template would not be filled
+    assert task.end(signal.SIGINT) == 0
+
+
 def test_another_site_of_the_host_relays_when_the_first_is_gone(home: Home) -> None:
     dormant(home, "tracker")
     first = home.site("first", "ads/drive.ttl")
