@@ -420,7 +420,7 @@ def _pair(path: Path) -> tuple[Certificate, Key]:
 
 
 def _pair_of_this_user(path: Path) -> tuple[Certificate, Key] | None:
-    """A certificate and its key, if there is a good pair whose key this user has written and nobody else may read."""
+    """A certificate and its key, if there is a good pair whose key this user has written and no other may read."""
     secret = path.with_suffix(".key")
     try:
         check_private(secret)
