@@ -13,6 +13,7 @@ from pathlib import Path
 import pyoxigraph as ox
 import pytest
 
+from selfconf.bus.port import Replies
 from selfconf.bus.zenoh import ZenohBus, router
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import End, Wake
@@ -96,8 +97,14 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
 
 def wake(home: Home, name: str) -> None:
     """Have the site start a component."""
-    asked = home.ask(home.keys.wake("a"), encode(Wake(component_of(name))))
-    assert [sample.payload for sample in asked.samples] == [b"started"], asked.errors
+    answers: list[Replies] = []
+
+    def answered() -> bool:  # the hub listens before it has heard what its site answers
+        answers.append(home.ask(home.keys.wake("a"), encode(Wake(component_of(name)))))
+        return bool(answers[-1].samples or answers[-1].errors)
+
+    assert home.until(answered)
+    assert [sample.payload for sample in answers[-1].samples] == [b"started"], answers[-1].errors
 
 
 def test_a_component_that_crashes_lives_again_though_nobody_asked(home: Home) -> None:
