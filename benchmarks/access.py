@@ -31,7 +31,7 @@ import selfconf as sc
 from benchmarks import failover
 from benchmarks.machine import described, quantile, table
 from benchmarks.quiet import until_quiet
-from selfconf.access import KeysFolder, PrincipalKind
+from selfconf.access import Authority, PrincipalKind, open_keys
 from selfconf.api.sites.local_site import SiteProcess
 from selfconf.bus.port import Urgency
 from selfconf.bus.zenoh import ZenohBus, client
@@ -76,7 +76,7 @@ def ecology_of(folder: Path, way: str) -> Iterator[Path | None]:
         os.environ.pop(name, None)
     if way == UNREAD:
         os.environ["RUST_LOG"] = "off"
-    yield None if way == PLAIN else KeysFolder.init(folder / "keys").path
+    yield None if way == PLAIN else Authority.init(folder / "keys").path
 
 
 def observe(folder: Path, way: str, keys: Path | None, components: int, signals: int, times: Times) -> None:
@@ -98,7 +98,7 @@ def observe(folder: Path, way: str, keys: Path | None, components: int, signals:
                     raise SystemExit("the discovery is not complete")
                 times.setdefault(("discovery", way), []).append(time.perf_counter() - began)
                 living._view.known.clear()  # as if it were the first
-        shown = None if keys is None else KeysFolder(keys).credentials((PrincipalKind.SITE,), site.name)
+        shown = None if keys is None else open_keys(keys).credentials((PrincipalKind.SITE,), site.name)
         for size in SIZES:
             ends = [client(list(site.endpoints), credentials=shown) for _ in range(2)]
             what = f"signal of {size:,} bytes", way
@@ -133,7 +133,7 @@ def flood(folder: Path, way: str, keys: Path | None, seconds: float, times: Time
     name = f"access-{secrets.token_hex(3)}"
     (folder / "none").mkdir()
     with SiteProcess([folder / "none"], name, keys=keys) as site:
-        shown = None if keys is None else KeysFolder(keys).credentials((PrincipalKind.SITE,), site.name)
+        shown = None if keys is None else open_keys(keys).credentials((PrincipalKind.SITE,), site.name)
         (hub,) = (one.process for one in sc.sites(name))
         for rate in RATES:
             ends = [client(list(site.endpoints), credentials=shown) for _ in range(2)]

@@ -89,9 +89,9 @@ def credentials(keys: Path | None, *kinds: str, name: str = "main") -> Credentia
     folder = keys_folder(keys)
     if folder is None:
         return None
-    from selfconf.access import KeysFolder, PrincipalKind  # what it needs is an extra
+    from selfconf.access import PrincipalKind, open_keys  # what it needs is an extra
 
-    return KeysFolder(folder).credentials([PrincipalKind(kind) for kind in kinds], name)
+    return open_keys(folder).credentials([PrincipalKind(kind) for kind in kinds], name)
 
 
 def component_credentials(keys: Path | None, components: Sequence[IRI]) -> Credentials | None:
@@ -105,12 +105,12 @@ def component_credentials(keys: Path | None, components: Sequence[IRI]) -> Crede
         return None
     if not components:
         raise ProgrammerError("with keys a process has to say which components it is, for it speaks for no others")
-    from selfconf.access import KeysFolder, Principal, PrincipalKind  # what it needs is an extra
+    from selfconf.access import HostAuthority, Principal, PrincipalKind, open_keys  # what it needs is an extra
 
-    opened = KeysFolder(folder)
+    opened = open_keys(folder)
     if opened.serves_a_host:
         first, *others = map(Principal.component, components)
-        opened = KeysFolder(opened.component(first, others))
+        opened = open_keys(HostAuthority(opened).component(first, others))
     shown = opened.credentials((PrincipalKind.COMPONENT,))
     speaks = opened.own().principals
     for component in components:

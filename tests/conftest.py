@@ -81,9 +81,9 @@ def keys_of_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.delenv("SELFCONF_KEYS", raising=False)
         if "SELFCONF_TEST_KEYS" in os.environ:
-            from selfconf.access import KeysFolder
+            from selfconf.access import Authority
 
-            patch.setenv("SELFCONF_KEYS", str(KeysFolder.init(tmp_path_factory.mktemp("authority") / "keys").path))
+            patch.setenv("SELFCONF_KEYS", str(Authority.init(tmp_path_factory.mktemp("authority") / "keys").path))
         yield
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import rendezvous, this_machine
-from selfconf.access import KeysFolder, Principal
+from selfconf.access import Authority, Principal
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.term import IRI
 from selfconf.rendezvous import usual_endpoints
@@ -114,7 +114,7 @@ def test_a_program_that_is_started_hears_of_the_ontologies_of_its_site(
 
 
 def test_a_process_of_components_has_keys_that_speak_for_each_of_them(tmp_path: Path) -> None:
-    authority = KeysFolder.init(tmp_path / "keys")
+    authority = Authority.init(tmp_path / "keys")
     lamp, bell = IRI("urn:lamp"), IRI("urn:bell")
     authority.issue(Principal.component(lamp), tmp_path / "lamp")
     for folder in (authority.path, tmp_path / "lamp"):

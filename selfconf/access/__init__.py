@@ -1,28 +1,33 @@
 """Who may do what: an authority and its certificates, and the rules that follow from the holders' names.
 
-`KeysFolder` is what `--keys` names: it issues, renews and revokes certificates, and gives a program what it shows to
-others. `Principal` is what a certificate names, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
+`open_keys` opens what `--keys` names: a `KeysFolder`, which gives a program what it shows to others, or the folder of
+an `Authority`, which also issues, renews and revokes certificates. A `HostAuthority` issues to the components of a
+host. `Principal` is what a certificate names, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
 `Doorkeeper` keeps the rules of the `GuardedHub` of a site (`SiteIdentity`), from `first_rules` on; `introduce` shows a
 program's certificate to the sites, and `CertificateWatch` shows it again when it is renewed, and says that it expires.
 `believe` notes which site owns a component that two sites advertise. It needs the extra `keys`.
 """
 
+from selfconf.access.authority import DAYS, Authority, open_keys
 from selfconf.access.beliefs import believe, believed
 from selfconf.access.certificates import Certificate
 from selfconf.access.doorkeeper import Doorkeeper, GuardedHub, SiteIdentity, first_rules
 from selfconf.access.expiry import CertificateWatch
+from selfconf.access.host_authority import HostAuthority
 from selfconf.access.introduction import introduce
-from selfconf.access.keys_folder import DAYS, KeysFolder
+from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.rules import AccessRules, rules_of
 
 __all__ = [
     "DAYS",
     "AccessRules",
+    "Authority",
     "Certificate",
     "CertificateWatch",
     "Doorkeeper",
     "GuardedHub",
+    "HostAuthority",
     "KeysFolder",
     "Principal",
     "PrincipalKind",
@@ -31,5 +36,6 @@ __all__ = [
     "believed",
     "first_rules",
     "introduce",
+    "open_keys",
     "rules_of",
 ]

@@ -18,6 +18,7 @@ from typing import TypeGuard
 from selfconf.access.beliefs import believed, claims
 from selfconf.access.certificates import Certificate
 from selfconf.access.expiry import CertificateWatch
+from selfconf.access.host_authority import HostAuthority
 from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.rules import AccessRules, rules_of
@@ -340,7 +341,7 @@ class Doorkeeper:
         """Renew the certificates of components, and have the hub show the site's own as it lies in the folder now."""
         try:
             changed = self._credentials.certificate.stat().st_mtime_ns
-            self._folder.renew_components()
+            HostAuthority(self._folder).renew_components()
         except (SelfconfError, OSError) as error:
             self._tell_fault(str(error))
             return

@@ -11,9 +11,9 @@ import logging
 from collections.abc import Callable
 from datetime import datetime, timezone
 
+from selfconf.access.authority import open_keys
 from selfconf.access.certificates import Certificate
 from selfconf.access.introduction import ANSWER
-from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.principal import Principal
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
@@ -71,7 +71,7 @@ class CertificateWatch:
     def _renew_own(self) -> None:
         """A program that is given the folder of an authority renews its certificate by itself."""
         if self._certificate.half_over(self._now()):
-            folder = KeysFolder(self._credentials.folder)
+            folder = open_keys(self._credentials.folder)
             if folder.is_authority:
                 own = Principal.of(self._credentials.name)
                 folder.credentials((own.kind,), own.name)

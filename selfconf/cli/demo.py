@@ -104,10 +104,10 @@ def _keys(given: argparse.Namespace) -> Path | None:
     folder = given.out / OWN_KEYS if given.keys is True else rendezvous.keys_folder(given.keys)
     if folder is None:
         return None
-    from selfconf.access import KeysFolder  # what it needs is an extra
+    from selfconf.access import Authority, open_keys  # what it needs is an extra
 
     there = folder.is_dir() and any(folder.iterdir())
-    keys = KeysFolder(folder) if there else KeysFolder.init(folder)
+    keys = open_keys(folder) if there else Authority.init(folder)
     if not keys.is_authority:
         raise AuthorError(f"{folder} is not the folder of an authority, and the demo makes keys for all its programs")
     return folder

@@ -13,7 +13,7 @@ from selfconf.errors import AuthorError
 from selfconf.model.wording import utc_text
 
 if TYPE_CHECKING:
-    from selfconf.access import Certificate, KeysFolder
+    from selfconf.access import Authority, Certificate, KeysFolder
 
 EXAMPLE = """  selfconf keys init keys                                    # once; the folder stays on this machine
   selfconf site examples/clock --ecology clock --keys keys   # here the folder is all that is needed
@@ -84,9 +84,9 @@ def run(given: argparse.Namespace) -> int:
 
 
 def _init(given: argparse.Namespace) -> int:
-    from selfconf.access import KeysFolder
+    from selfconf.access import Authority
 
-    KeysFolder.init(given.folder)
+    Authority.init(given.folder)
     print(f"made an authority in {given.folder}; this folder permits everything, so keep it to yourself")
     return 0
 
@@ -122,10 +122,10 @@ def _revoke(given: argparse.Namespace) -> int:
 
 
 def _show(given: argparse.Namespace) -> int:
-    from selfconf.access import KeysFolder
+    from selfconf.access import Authority, open_keys
 
-    folder = KeysFolder(given.folder)
-    shown = [_described(one, folder) for one in (folder.issued() if folder.is_authority else [folder.own()])]
+    folder = open_keys(given.folder)
+    shown = [_described(one, folder) for one in (folder.issued() if isinstance(folder, Authority) else [folder.own()])]
     if given.format == "json":
         print(json.dumps({"authority": folder.is_authority, "certificates": shown}, indent=2))
     else:
@@ -147,11 +147,11 @@ def _described(certificate: Certificate, folder: KeysFolder) -> dict[str, Any]:
     }
 
 
-def _authority(given: argparse.Namespace) -> KeysFolder:
+def _authority(given: argparse.Namespace) -> Authority:
     from selfconf import rendezvous
-    from selfconf.access import KeysFolder
+    from selfconf.access import Authority
 
     folder = rendezvous.keys_folder(given.keys)
     if folder is None:
         raise AuthorError("which authority? give its folder: --keys DIR; `selfconf keys init DIR` makes one")
-    return KeysFolder(folder)
+    return Authority(folder)

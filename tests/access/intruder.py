@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from selfconf.access import KeysFolder, PrincipalKind
+from selfconf.access import PrincipalKind, open_keys
 from selfconf.access.introduction import introduce
 from selfconf.bus.port import Replies, Request
 from selfconf.bus.zenoh import ZenohBus, client
@@ -136,7 +136,7 @@ def attempts(kind: str) -> list[str]:
 def main() -> None:
     """Try everything; the floods first, as they are over then."""
     kind, folder, ecology, endpoint = sys.argv[1:]
-    credentials = KeysFolder(Path(folder)).credentials((PrincipalKind(kind),))
+    credentials = open_keys(Path(folder)).credentials((PrincipalKind(kind),))
     bus = client([endpoint], credentials=credentials)
     introduce(bus, ecology, credentials)
     answered = [attack for attack in attempts(kind) if ATTACKS[attack].attack(bus, Keys(ecology))]

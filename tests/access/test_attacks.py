@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 import zenoh
 
-from selfconf.access import KeysFolder, Principal, PrincipalKind, certificates
+from selfconf.access import Authority, HostAuthority, Principal, PrincipalKind, certificates, open_keys
+from selfconf.access.certificate_files import read_pair
 from selfconf.access.introduction import introduce
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh import Security, ZenohBus, client, open_session
@@ -100,18 +101,18 @@ def shown(home: Home, kind: str, folder: Path) -> Credentials:
     """What an attacker of a kind shows: a good certificate of the home's authority."""
     assert home.authority is not None
     if kind in ("comp", "router"):
-        keys = KeysFolder(home.authority.component(Principal.component(component_of("sonar"))))
+        keys = open_keys(HostAuthority(home.authority).component(Principal.component(component_of("sonar"))))
         return keys.credentials((PrincipalKind.COMPONENT,))
     if kind == "boss":
         return strange(home, folder, "boss")
     home.authority.issue(Principal(PrincipalKind(kind), "eve"), folder)
-    return KeysFolder(folder).credentials((PrincipalKind(kind),))
+    return open_keys(folder).credentials((PrincipalKind(kind),))
 
 
 def strange(home: Home, folder: Path, name: str) -> Credentials:
     """What somebody shows whom the authority has given a certificate with a name that means nothing here."""
     assert home.authority is not None
-    authority, key = home.authority._authority_pair()
+    authority, key = read_pair(home.authority.path / "authority")
     mine = certificates.new_key()
     principal = Principal(PrincipalKind.READER, "x")
     folder.mkdir()
@@ -237,7 +238,7 @@ Outsider = Callable[[Home, Path], Credentials]
 
 def of_another_authority(home: Home, folder: Path) -> Credentials:
     """A certificate with a good name, of an authority that nobody here knows."""
-    other = KeysFolder.init(folder.with_name("other"))
+    other = Authority.init(folder.with_name("other"))
     assert home.authority is not None
     return Credentials(
         "conf.main",
@@ -252,7 +253,7 @@ def expired(home: Home, folder: Path) -> Credentials:
     """A certificate that was good a second ago."""
     assert home.authority is not None
     folder.mkdir()
-    authority, key = home.authority._authority_pair()
+    authority, key = read_pair(home.authority.path / "authority")
     mine = certificates.new_key()
     principal = Principal(PrincipalKind.CONFIGURATOR, "main")
     certificate = certificates.issue(authority, key, principal, mine.public_key(), (), -1 / 86400)
@@ -312,7 +313,7 @@ def test_who_is_revoked_is_out_at_once_and_stays_out(home: Home, tmp_path: Path)
     assert home.authority is not None
     principal = Principal(PrincipalKind.CONFIGURATOR, "mallory")
     home.authority.issue(principal, tmp_path / "keys")
-    credentials = KeysFolder(tmp_path / "keys").credentials((PrincipalKind.CONFIGURATOR,))
+    credentials = open_keys(tmp_path / "keys").credentials((PrincipalKind.CONFIGURATOR,))
     bus = client([home.endpoint(SITE)], credentials=credentials)
     introduce(bus, home.ecology, credentials)
 

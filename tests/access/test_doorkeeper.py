@@ -8,6 +8,7 @@ import pytest
 
 from selfconf.access import (
     AccessRules,
+    Authority,
     Certificate,
     Doorkeeper,
     GuardedHub,
@@ -85,11 +86,11 @@ class Door:
 @pytest.fixture
 def door(tmp_path: Path) -> Door:
     """A door."""
-    return Door(KeysFolder.init(tmp_path / "keys"))
+    return Door(Authority.init(tmp_path / "keys"))
 
 
 def test_who_shows_a_good_certificate_is_let_in_and_shown_that_of_the_site(door: Door, tmp_path: Path) -> None:
-    authority = KeysFolder.init(tmp_path / "elsewhere")
+    authority = Authority.init(tmp_path / "elsewhere")
     site = tmp_path / "site"
     authority.issue(Principal(PrincipalKind.SITE, "home"), site)
     alice = authority.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice")
@@ -132,8 +133,8 @@ def test_who_shows_nonsense_is_refused(certificate: str, door: Door) -> None:
     assert door.enforced == []
 
 
-class LookedAt(KeysFolder):
-    """A folder of keys that counts how often all that was shown is looked at."""
+class LookedAt(Authority):
+    """The folder of an authority that counts how often all that was shown is looked at."""
 
     times = 0
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import CertificateWatch, KeysFolder, Principal, PrincipalKind
+from selfconf.access import Authority, CertificateWatch, KeysFolder, Principal, PrincipalKind
 from selfconf.access.certificates import Certificate
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
@@ -48,7 +48,7 @@ class Watched:
 
 
 def test_a_certificate_is_spoken_of_before_it_expires_and_shown_again_when_it_is_renewed(tmp_path: Path) -> None:
-    authority = KeysFolder.init(tmp_path / "keys")
+    authority = Authority.init(tmp_path / "keys")
     authority.issue(ALICE, tmp_path / "alice", days=8.0)
     watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
     watched.pass_days(5.9)
@@ -69,7 +69,7 @@ def test_a_certificate_is_spoken_of_before_it_expires_and_shown_again_when_it_is
 
 
 def test_a_certificate_that_cannot_be_read_any_more_is_told_of_once(tmp_path: Path) -> None:
-    KeysFolder.init(tmp_path / "keys").issue(ALICE, tmp_path / "alice")
+    Authority.init(tmp_path / "keys").issue(ALICE, tmp_path / "alice")
     watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
     (tmp_path / "alice/certificate.pem").write_text("nonsense")
     watched.pass_days(0.0)
@@ -79,9 +79,9 @@ def test_a_certificate_that_cannot_be_read_any_more_is_told_of_once(tmp_path: Pa
 
 
 def test_a_program_that_has_the_folder_of_an_authority_renews_its_certificate_by_itself(tmp_path: Path) -> None:
-    authority = KeysFolder.init(tmp_path / "keys")
+    authority = Authority.init(tmp_path / "keys")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("selfconf.access.keys_folder.DAYS", 10 * SECOND)
+        patch.setattr("selfconf.access.authority.DAYS", 10 * SECOND)
         (authority.path / "own/conf.main/certificate.pem").unlink()
         watched = Watched(tmp_path, authority)
     watched.pass_days(0.0)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import KeysFolder, PrincipalKind
+from selfconf.access import Authority, PrincipalKind
 from selfconf.access.introduction import ROUNDS, introduce
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
@@ -17,9 +17,9 @@ from selfconf.protocol.messages import Introduction
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> KeysFolder:
+def folder(tmp_path: Path) -> Authority:
     """The folder of an authority."""
-    return KeysFolder.init(tmp_path / "keys")
+    return Authority.init(tmp_path / "keys")
 
 
 class Door:
@@ -43,14 +43,14 @@ class Door:
 
 
 @pytest.mark.parametrize("known_after", [0, 1, 3])
-def test_a_certificate_is_shown_until_it_is_known(known_after: int, folder: KeysFolder) -> None:
+def test_a_certificate_is_shown_until_it_is_known(known_after: int, folder: Authority) -> None:
     network = Network(1)
     door, mine = Door(network, known_after), folder.credentials((PrincipalKind.READER,))
     introduce(network.node(), "lab", mine)
     assert door.shown == [mine.certificate.read_text()] * (known_after + 1)
 
 
-def test_a_site_of_the_same_host_that_has_lost_its_hub_for_a_moment_is_waited_for(folder: KeysFolder) -> None:
+def test_a_site_of_the_same_host_that_has_lost_its_hub_for_a_moment_is_waited_for(folder: Authority) -> None:
     network = Network(1)
     first, mine, seen = Door(network, known_after=0, beside=("home", "attic")), network.node(), []
     attic = Keys("lab").introduce("attic")
@@ -66,19 +66,19 @@ def test_a_site_of_the_same_host_that_has_lost_its_hub_for_a_moment_is_waited_fo
     assert 1 < seen[-1] < ROUNDS
 
 
-def test_who_is_not_let_in_hears_why(folder: KeysFolder) -> None:
+def test_who_is_not_let_in_hears_why(folder: Authority) -> None:
     network = Network(1)
     Door(network, refuses="it was revoked")
     with pytest.raises(NetworkError, match=r"read.main is not let in: it was revoked"):
         introduce(network.node(), "lab", folder.credentials((PrincipalKind.READER,)))
 
 
-def test_it_is_not_shown_for_ever(folder: KeysFolder) -> None:
+def test_it_is_not_shown_for_ever(folder: Authority) -> None:
     network = Network(1)
     door = Door(network, known_after=100)
     introduce(network.node(), "lab", folder.credentials((PrincipalKind.READER,)))
     assert len(door.shown) == ROUNDS
 
 
-def test_nobody_need_answer(folder: KeysFolder) -> None:
+def test_nobody_need_answer(folder: Authority) -> None:
     introduce(Network(1).node(), "lab", folder.credentials((PrincipalKind.READER,)))

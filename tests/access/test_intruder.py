@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import KeysFolder, Principal, PrincipalKind
+from selfconf.access import HostAuthority, Principal, PrincipalKind, open_keys
 from tests.access import intruder
 from tests.access.attacks import refused
 from tests.cli.command import run
@@ -41,7 +41,7 @@ def folder_of(home: Home, kind: str) -> Path:
     """Good keys of a kind: of a component that is not in the task, or of a person or site that nobody has met."""
     assert home.authority is not None
     if kind == "comp":
-        return home.authority.component(Principal.component(component_of("pippi")))
+        return HostAuthority(home.authority).component(Principal.component(component_of("pippi")))
     folder = home.folder / kind
     home.authority.issue(Principal(PrincipalKind(kind), "eve"), folder)
     return folder
@@ -54,7 +54,7 @@ def test_an_insider_that_turns_bad_comes_to_nothing_and_is_named(
 ) -> None:
     home, task = attacked
     folder = folder_of(home, kind)
-    name = KeysFolder(folder).own().common_name
+    name = open_keys(folder).own().common_name
     assert home.until(lambda: home.active(*TASK) == set(TASK))
     before = {one: home.state(component_of(one)) for one in TASK}
     bad = home.program(sys.executable, "-m", "tests.access.intruder", kind, str(folder), home.ecology, home.endpoint())

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import KeysFolder, Principal, PrincipalKind
+from selfconf.access import Authority, Principal, PrincipalKind
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.handshake import why_refused
 
@@ -52,36 +52,36 @@ def server(folder: Path | None, trusts: Path | None = None) -> Iterator[str]:
 
 
 @pytest.fixture
-def authority(tmp_path: Path) -> KeysFolder:
+def authority(tmp_path: Path) -> Authority:
     """A new authority."""
-    return KeysFolder.init(tmp_path / "authority")
+    return Authority.init(tmp_path / "authority")
 
 
-def site_of(authority: KeysFolder) -> Path:
+def site_of(authority: Authority) -> Path:
     """The keys of a site."""
     authority.credentials((PrincipalKind.SITE,), "home")
     return authority.path / "own/site.home"
 
 
-def shown(authority: KeysFolder) -> Credentials:
+def shown(authority: Authority) -> Credentials:
     """What a reader shows."""
     return authority.credentials((PrincipalKind.READER,))
 
 
-def test_who_is_welcome_finds_nothing_wrong(authority: KeysFolder) -> None:
+def test_who_is_welcome_finds_nothing_wrong(authority: Authority) -> None:
     with server(site_of(authority)) as endpoint:
         assert why_refused(endpoint, shown(authority)) == ""
 
 
-def test_another_authority_is_named_at_either_end(authority: KeysFolder, tmp_path: Path) -> None:
-    other = KeysFolder.init(tmp_path / "other")
+def test_another_authority_is_named_at_either_end(authority: Authority, tmp_path: Path) -> None:
+    other = Authority.init(tmp_path / "other")
     with server(site_of(other)) as endpoint:
         assert "its certificate was issued by another authority" in why_refused(endpoint, shown(authority))
     with server(site_of(authority), trusts=other.path / "authority.pem") as endpoint:
         assert "does not know the authority that has issued read.main" in why_refused(endpoint, shown(authority))
 
 
-def test_an_expired_certificate_is_named_at_either_end(authority: KeysFolder, tmp_path: Path) -> None:
+def test_an_expired_certificate_is_named_at_either_end(authority: Authority, tmp_path: Path) -> None:
     authority.issue(Principal(PrincipalKind.SITE, "old"), tmp_path / "old", days=-1e-5)
     with server(tmp_path / "old") as endpoint:
         assert "its certificate has expired" in why_refused(endpoint, shown(authority))
@@ -91,18 +91,18 @@ def test_an_expired_certificate_is_named_at_either_end(authority: KeysFolder, tm
         assert "the certificate of site.old has expired" in why_refused(endpoint, mine)
 
 
-def test_a_host_that_the_certificate_does_not_name_is_named(authority: KeysFolder) -> None:
+def test_a_host_that_the_certificate_does_not_name_is_named(authority: Authority) -> None:
     with server(site_of(authority)) as endpoint, pytest.MonkeyPatch.context() as patch:
         real = socket.create_connection
         patch.setattr(socket, "create_connection", lambda place, wait: real(("127.0.0.1", place[1]), wait))
         assert "host='10.0.0.7'" in why_refused(endpoint.replace("127.0.0.1", "10.0.0.7"), shown(authority))
 
 
-def test_what_speaks_no_tls_is_named(authority: KeysFolder) -> None:
+def test_what_speaks_no_tls_is_named(authority: Authority) -> None:
     with server(None) as endpoint:
         assert "does not speak TLS" in why_refused(endpoint, shown(authority))
 
 
-def test_where_nobody_listens_nothing_is_found(authority: KeysFolder) -> None:
+def test_where_nobody_listens_nothing_is_found(authority: Authority) -> None:
     assert why_refused("tls/127.0.0.1:1", shown(authority)) == ""
     assert why_refused("tls/nonsense", shown(authority)) == ""

@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from selfconf.access import KeysFolder, PrincipalKind, introduce
+from selfconf.access import Authority, PrincipalKind, introduce
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh import ZenohBus, client
@@ -213,7 +213,7 @@ class Home:
             "PYTHONPATH": str(Path(__file__).parent.parent.parent),
         }
         given = os.environ.get("SELFCONF_KEYS") if keys is None else None
-        self.authority = KeysFolder(Path(given)) if given else KeysFolder.init(folder / "keys") if keys else None
+        self.authority = Authority(Path(given)) if given else Authority.init(folder / "keys") if keys else None
         if self.authority is not None:
             self.environment["SELFCONF_KEYS"] = str(self.authority.path)
         self._programs: list[Program] = []

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from selfconf.access import KeysFolder, PrincipalKind, introduce
+from selfconf.access import Authority, PrincipalKind, introduce
 from selfconf.bus.port import Request
 from selfconf.bus.zenoh import Security, router
 from selfconf.model.term import IRI
@@ -81,7 +81,7 @@ class Strangers:
         neighbour: str,
         said: Mapping[IRI, bytes],
         extra: Sequence[tuple[bytes, bytes]] = (),
-        authority: KeysFolder | None = None,
+        authority: Authority | None = None,
     ) -> None:
         """With an `authority` the strangers have a certificate of a site: they are insiders that cannot be trusted."""
         self._keys, self._said, self._extra = keys, said, extra

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import KeysFolder, Principal, PrincipalKind
+from selfconf.access import Authority, Principal, PrincipalKind
 from selfconf.cli import demo
 from tests.cli.command import run
 
@@ -71,7 +71,7 @@ def test_a_window_needs_a_display_that_answers(
 @pytest.mark.sim
 def test_the_keys_of_a_demo_are_those_of_an_authority(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("pybullet", reason="there is no PyBullet here")
-    authority = KeysFolder.init(tmp_path / "keys")
+    authority = Authority.init(tmp_path / "keys")
     authority.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice")
     out = str(tmp_path / "out")
     assert run(capsys, "demo", "--out", out, "--keys", str(tmp_path / "alice")).is_one_sentence(

@@ -53,13 +53,13 @@ def test_nothing_stays_of_mangled_advertisements() -> None:
 @cache
 def keys() -> Path:
     """The folder of an authority that has issued certificates; made once, and never changed."""
-    from selfconf.access import KeysFolder, Principal, PrincipalKind
+    from selfconf.access import Authority, HostAuthority, Principal, PrincipalKind, open_keys
 
     folder = Path(mkdtemp(prefix="selfconf-mangled-"))
-    authority = KeysFolder.init(folder / "authority")
+    authority = Authority.init(folder / "authority")
     authority.issue(Principal(PrincipalKind.SITE, "home"), folder / "site")
     authority.revoke(Principal(PrincipalKind.READER, "main"))
-    KeysFolder(folder / "site").hub_authorities()
+    HostAuthority(open_keys(folder / "site")).hub_authorities()
     return folder
 
 
@@ -85,9 +85,9 @@ def mangled_pem(pem: bytes, random: Random) -> bytes:
 @given(st.randoms(use_true_random=False))
 def test_a_mangled_certificate_is_none_or_says_what_is_wrong_with_it(random: Random) -> None:
     pytest.importorskip("cryptography")
-    from selfconf.access import Certificate, KeysFolder
+    from selfconf.access import Authority, Certificate
 
-    site, authority = keys() / "site", KeysFolder(keys() / "authority")
+    site, authority = keys() / "site", Authority(keys() / "authority")
     good = (site / "certificate.pem").read_bytes()
     pem = mangled_pem(good, random)
     with in_time():
@@ -109,7 +109,7 @@ def test_a_mangled_certificate_is_none_or_says_what_is_wrong_with_it(random: Ran
 @given(st.randoms(use_true_random=False))
 def test_a_folder_of_keys_with_a_mangled_file_is_refused_with_a_sentence(random: Random) -> None:
     pytest.importorskip("cryptography")
-    from selfconf.access import KeysFolder, PrincipalKind
+    from selfconf.access import Authority, HostAuthority, PrincipalKind, open_keys
 
     with TemporaryDirectory() as place, in_time():
         folder = Path(place) / "keys"
@@ -121,12 +121,12 @@ def test_a_folder_of_keys_with_a_mangled_file_is_refused_with_a_sentence(random:
             else random.choice(TOKENS)
         )
         for use in (
-            lambda: KeysFolder(folder).credentials((PrincipalKind.SITE,), "home"),
-            lambda: KeysFolder(folder).hub_authorities(),
-            lambda: KeysFolder(folder).admitted("lab"),
-            lambda: KeysFolder(folder).revoked(),
-            lambda: KeysFolder(folder).issued(),
-            lambda: KeysFolder(keys() / "authority").authority.fault(KeysFolder(folder).believed_authorities()),
+            lambda: open_keys(folder).credentials((PrincipalKind.SITE,), "home"),
+            lambda: HostAuthority(open_keys(folder)).hub_authorities(),
+            lambda: open_keys(folder).admitted("lab"),
+            lambda: open_keys(folder).revoked(),
+            lambda: Authority(folder).issued(),
+            lambda: open_keys(keys() / "authority").authority.fault(open_keys(folder).believed_authorities()),
         ):
             with suppress(SelfconfError):
                 use()

@@ -143,9 +143,9 @@ def _of_authority(keys: Path | None) -> Path | None:
     """A folder of keys by which a site of any name can be started. Raises AuthorError for that of one holder."""
     if keys is None:
         return None
-    from selfconf.access import KeysFolder  # what it needs is an extra
+    from selfconf.access import open_keys  # what it needs is an extra
 
-    if not KeysFolder(keys).is_authority:
+    if not open_keys(keys).is_authority:
         raise AuthorError(
             f"{keys} is not the folder of an authority, by which a site can be started for these files; start one with"
             " `selfconf site`, and leave the files out here"

@@ -12,13 +12,14 @@ from selfconf.access import (
     AccessRules,
     Doorkeeper,
     GuardedHub,
-    KeysFolder,
+    HostAuthority,
     Principal,
     PrincipalKind,
     SiteIdentity,
     believed,
     first_rules,
     introduce,
+    open_keys,
 )
 from selfconf.api.sites.joining import Joining
 from selfconf.bus.port import Bus
@@ -37,7 +38,7 @@ class SecuredSite:
 
         From now on, what Zenoh logs is read: it must be made before any session is opened.
         """
-        self._folder = KeysFolder(keys)
+        self._folder = open_keys(keys)
         wanted = name or f"s{secrets.token_hex(3)}"  # only an authority can choose
         self._credentials = self._folder.credentials((PrincipalKind.SITE,), wanted)
         self.name = self._credentials.name.partition(".")[2]
@@ -46,8 +47,9 @@ class SecuredSite:
             raise AuthorError(
                 f"{keys} is for the site {self.name}, not for {name}; give {setting('name', self.name)}, or no name"
             )
-        self._folder.share_host_authority(this_machine.made_runtime_folder())
-        self._credentials = replace(self._credentials, authorities=self._folder.hub_authorities())
+        self._host = HostAuthority(self._folder)
+        self._host.share(this_machine.made_runtime_folder())
+        self._credentials = replace(self._credentials, authorities=self._host.hub_authorities())
         self._refusals = hear_refusals()
         self._first = AccessRules(())
         self._programs: Callable[[], Mapping[IRI, IRI]] = dict
@@ -69,7 +71,7 @@ class SecuredSite:
     def keys_of(self, program: IRI) -> Path:
         """The folder of keys of a process that this site starts, by the component that stands for it."""
         sharing = sorted(c for c, first in self._programs().items() if first == program and c != program)
-        return self._folder.component(Principal.component(program), [Principal.component(c) for c in sharing])
+        return self._host.component(Principal.component(program), [Principal.component(c) for c in sharing])
 
     def believed(self) -> Mapping[IRI, str]:
         """The site of each component, for tasks of this site: its own are its own, unless a person says otherwise.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import KeysFolder, Principal, PrincipalKind
+from selfconf.access import Authority, Principal, PrincipalKind
 from selfconf.api.sites.local_site import SiteProcess
 from selfconf.api.sites.secured_site import SecuredSite
 from selfconf.errors import AuthorError
@@ -19,7 +19,7 @@ DOORBELL = Path(__file__).parents[3] / "examples/doorbell"
 
 
 def test_the_keys_of_somebody_else_are_refused(tmp_path: Path) -> None:
-    authority = KeysFolder.init(tmp_path / "keys")
+    authority = Authority.init(tmp_path / "keys")
     authority.issue(Principal(PrincipalKind.SITE, "attic"), tmp_path / "attic")
     authority.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice")
     with pytest.raises(AuthorError, match="is for the site attic, not for cellar"):
@@ -29,7 +29,7 @@ def test_the_keys_of_somebody_else_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_site_of_any_name_takes_the_keys_of_an_authority(tmp_path: Path) -> None:
-    authority = KeysFolder.init(tmp_path / "keys")
+    authority = Authority.init(tmp_path / "keys")
     authority.issue(Principal(PrincipalKind.CONFIGURATOR, "alice"), tmp_path / "alice")
     SiteProcess([tmp_path], keys=tmp_path / "keys")
     with pytest.raises(AuthorError, match=r"not the folder of an authority.*start one with `selfconf site`"):

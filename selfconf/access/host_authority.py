@@ -1,0 +1,100 @@
+"""The authority of one host, which issues to the components that its sites start.
+
+It is believed by the hubs of that host alone: what a site issues to its components opens no door anywhere else. The
+sites of a user there have it in common, whatever folders of keys they are given, as the components of all connect to
+the hub of one of them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+from selfconf.access.certificate_files import (
+    HOST_AUTHORITY,
+    OWN,
+    exclusive,
+    read_certificate,
+    read_pair,
+    read_pair_of_this_user,
+    write_holder,
+    write_pair,
+)
+from selfconf.access.certificates import Certificate, Key, issue, new_authority, new_key
+from selfconf.access.keys_folder import KeysFolder, holder_name
+from selfconf.access.principal import Principal
+from selfconf.access.private_files import read_file, write_private
+from selfconf.errors import AuthorError, PeerError
+
+COMPONENT_DAYS = 1.0
+"""For how many days the certificate of a component which a site starts is good; the site renews it."""
+
+
+class HostAuthority:
+    """What a site does with its folder of keys for the components of its host."""
+
+    def __init__(self, keys: KeysFolder) -> None:
+        self._keys, self._pair_path = keys, keys.path / HOST_AUTHORITY
+
+    def _pair(self) -> tuple[Certificate, Key]:
+        """The certificate of this authority and its key, made now where there are none."""
+        if not self._pair_path.with_suffix(".key").is_file():
+            write_pair(self._pair_path, *new_authority("the components of a host"))
+        return read_pair(self._pair_path)
+
+    def hub_authorities(self) -> Path:
+        """The file of the authorities that the hub of a site here believes: the ecology's, and that of this host."""
+        trusted = self._keys.path / "trusted.pem"
+        with exclusive(self._keys.path):
+            self._pair()
+            together = self._keys.authority.pem + read_file(self._pair_path.with_suffix(".pem"))
+            if not trusted.is_file() or trusted.read_bytes() != together:
+                write_private(trusted, together)
+        return trusted
+
+    def share(self, shared: Path) -> None:
+        """Issue to components as the other sites of this user on this host do, by what they share in a folder.
+
+        The first site with keys of an ecology's authority gives what it has; the others take that instead of their own.
+        """
+        digest = hashlib.blake2s(self._keys.authority.pem, digest_size=8).hexdigest()
+        common = shared / f"{HOST_AUTHORITY}-{digest}"
+        with exclusive(shared), exclusive(self._keys.path):
+            given = read_pair_of_this_user(common)
+            if given is not None:
+                write_pair(self._pair_path, *given)
+            else:
+                write_pair(common, *self._pair())
+
+    def component(self, principal: Principal, also: Sequence[Principal] = ()) -> Path:
+        """The folder of a process on this host, by its first component, with a certificate made or renewed now.
+
+        `also` are the other components of the process.
+        """
+        folder = self._keys.path / "components" / holder_name((principal, *also))
+        with exclusive(self._keys.path):
+            authority, key = self._pair()
+            ends = self._component_ends()
+            kept = None if self._keys.is_stale(folder) else read_certificate(folder / f"{OWN}.pem")
+            if kept is None or kept.ends > ends or kept.fault((authority,)):
+                mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
+                certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
+                write_holder(folder, self._keys.authority, certificate, mine)
+                write_private(folder / f"{HOST_AUTHORITY}.pem", authority.pem)
+        return folder
+
+    def _component_ends(self) -> datetime:
+        """Until when a component gets a certificate: for no longer than its site has one."""
+        ends = datetime.now(timezone.utc) + timedelta(days=COMPONENT_DAYS)
+        return min(ends, self._keys.own().ends) if (self._keys.path / f"{OWN}.pem").is_file() else ends
+
+    def renew_components(self) -> None:
+        """Renew the certificates of the processes of this host that are to be. Raises AuthorError."""
+        for folder in (self._keys.path / "components").glob("*"):
+            try:
+                first, *others = read_certificate(folder / f"{OWN}.pem").principals
+            except (AuthorError, PeerError):
+                continue  # it is made anew when its process is started
+            self.component(first, others)

@@ -1,0 +1,120 @@
+"""The folder of an authority issues, renews and revokes, and knows which folders have heard of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from selfconf.access import Authority, KeysFolder, Principal, PrincipalKind, certificates
+from selfconf.errors import AuthorError, PeerError
+
+CONF, READ, SITE = PrincipalKind.CONFIGURATOR, PrincipalKind.READER, PrincipalKind.SITE
+ALICE = Principal(READ, "alice")
+
+
+@pytest.fixture
+def authority(tmp_path: Path) -> Authority:
+    """A new authority."""
+    return Authority.init(tmp_path / "authority")
+
+
+def test_with_the_folder_of_an_authority_a_program_gets_what_it_needs(authority: Authority) -> None:
+    assert authority.credentials((CONF, READ)).name == "conf.main"
+    assert authority.credentials((SITE,), "attic").name == "site.attic"
+    assert authority.credentials((SITE,), "attic") == authority.credentials((SITE,), "attic")
+    assert {"conf.main", "read.main"} == authority.admitted("lab").keys()
+
+
+def test_a_certificate_is_renewed_for_the_same_key(authority: Authority, tmp_path: Path) -> None:
+    old = authority.issue(ALICE, tmp_path / "alice", ["10.0.0.1"], days=1)
+    key = (tmp_path / "alice/certificate.key").read_bytes()
+    new = authority.renew(tmp_path / "alice", days=9)
+    assert (tmp_path / "alice/certificate.key").read_bytes() == key
+    assert new.ends > old.ends
+    assert new.hosts == old.hosts
+    assert KeysFolder(tmp_path / "alice").own() == new
+    other = Authority.init(tmp_path / "other")
+    with pytest.raises(AuthorError, match="another authority"):
+        other.renew(tmp_path / "alice")
+    with pytest.raises(AuthorError, match="nothing to renew"):
+        authority.renew(authority.path)
+
+
+def test_what_is_half_over_is_renewed_by_itself(authority: Authority, monkeypatch: pytest.MonkeyPatch) -> None:
+    def serial() -> int:
+        return KeysFolder(authority.path / "own/site.attic").own().serial
+
+    authority.credentials((SITE,), "attic")
+    first = serial()
+    authority.credentials((SITE,), "attic")
+    assert serial() == first
+    monkeypatch.setattr(certificates.Certificate, "half_over", lambda self: True)
+    authority.credentials((SITE,), "attic")
+    assert serial() != first
+
+
+def test_who_is_revoked_is_admitted_no_more_and_gets_no_new_certificate(authority: Authority, tmp_path: Path) -> None:
+    certificate = authority.issue(ALICE, tmp_path / "alice")
+    authority.admit("lab", certificate.pem)
+    assert "read.alice" in authority.admitted("lab")
+    assert "read.alice" not in authority.admitted("home")
+    assert authority.revoke(ALICE) == 1
+    assert authority.revoked() == {certificate.serial}
+    assert "read.alice" not in authority.admitted("lab")
+    for forbidden in (
+        lambda: authority.issue(ALICE, tmp_path / "again"),
+        lambda: authority.renew(tmp_path / "alice"),
+        lambda: authority.admit("lab", certificate.pem),
+    ):
+        with pytest.raises((AuthorError, PeerError), match="revoked"):
+            forbidden()
+    assert authority.revoke(Principal(CONF, "main")) == 1
+    assert certificate.serial in authority.revoked(), "a list holds what it held before"
+    with pytest.raises(AuthorError, match="nothing to revoke"):
+        authority.revoke(Principal(READ, "bob"))
+
+
+def test_a_site_whose_folder_cannot_be_told_what_is_revoked_is_named(authority: Authority, tmp_path: Path) -> None:
+    authority.credentials((SITE,), "home")
+    for name in ("attic", "cellar", "moved", "replaced"):
+        authority.issue(Principal(SITE, name), tmp_path / name)
+    authority.issue(ALICE, tmp_path / "alice")
+    (tmp_path / "moved").rename(tmp_path / "elsewhere")
+    (tmp_path / "replaced").rename(tmp_path / "before")
+    Authority.init(tmp_path / "replaced")
+    (tmp_path / "cellar/revoked.pem").mkdir()  # it cannot be written, by root either
+    authority.revoke(ALICE)
+    assert not (tmp_path / "replaced/revoked.pem").exists()
+    assert (tmp_path / "attic/revoked.pem").read_bytes() == (authority.path / "revoked.pem").read_bytes()
+    unaware = [(f"site.{name}", tmp_path / name) for name in ("cellar", "moved", "replaced")]
+    assert authority.unaware() == unaware
+    authority.revoke(Principal(SITE, "moved"))
+    assert authority.unaware() == [unaware[0], unaware[2]]
+    for note in (authority.path / "issued").glob("site.cellar*.folder"):
+        note.unlink()
+    assert authority.unaware()[0] == ("site.cellar", None)
+
+
+def test_a_site_whose_folder_was_moved_and_renewed_has_the_list(authority: Authority, tmp_path: Path) -> None:
+    site = Principal(SITE, "attic")
+    authority.issue(site, tmp_path / "before")
+    (tmp_path / "before").rename(tmp_path / "now")
+    authority.renew(tmp_path / "now")
+    authority.issue(ALICE, tmp_path / "alice")
+    authority.revoke(ALICE)
+    assert authority.unaware() == []
+    assert set(authority.aware()) == {tmp_path / "now", tmp_path / "alice"}
+    authority.issue(site, tmp_path / "another")
+    (tmp_path / "another").rename(tmp_path / "away")
+    assert authority.unaware() == [("site.attic", tmp_path / "another")], "it has another key"
+
+
+def test_nothing_is_written_over(authority: Authority, tmp_path: Path) -> None:
+    with pytest.raises(AuthorError, match="not empty"):
+        Authority.init(authority.path)
+    authority.issue(ALICE, tmp_path / "alice")
+    with pytest.raises(AuthorError, match="not empty"):
+        authority.issue(ALICE, tmp_path / "alice")
+    with pytest.raises(AuthorError, match="there is no folder"):
+        KeysFolder(tmp_path / "nowhere")

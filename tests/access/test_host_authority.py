@@ -1,0 +1,105 @@
+"""What a host issues to its components is believed there alone, by all sites of one user."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+
+import pytest
+
+from selfconf.access import Authority, HostAuthority, KeysFolder, Principal, PrincipalKind
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+
+CONF, SITE, COMP = PrincipalKind.CONFIGURATOR, PrincipalKind.SITE, PrincipalKind.COMPONENT
+
+
+@pytest.fixture
+def authority(tmp_path: Path) -> Authority:
+    """A new authority."""
+    return Authority.init(tmp_path / "authority")
+
+
+def test_what_a_host_issues_to_its_components_opens_no_other_door(authority: Authority, tmp_path: Path) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
+    authority.issue(Principal(SITE, "cellar"), tmp_path / "cellar")
+    attic, cellar = KeysFolder(tmp_path / "attic"), KeysFolder(tmp_path / "cellar")
+    first, second = Principal.component(IRI("urn:a")), Principal.component(IRI("urn:b"))
+    component = KeysFolder(HostAuthority(attic).component(first, [second]))
+    assert component.credentials((COMP,)).name == first.common_name
+    assert attic.admit("lab", component.own().pem).principals == (first, second)
+    with pytest.raises(PeerError, match="another authority"):
+        cellar.admit("lab", component.own().pem)
+    assert component.own().fault((*cellar.believed_authorities(), authority.authority))
+    assert component.own().fault(())
+    assert not component.own().fault(attic.believed_authorities())
+    before = component.own()
+    assert KeysFolder(HostAuthority(attic).component(first, [second])).own() == before
+    alone = KeysFolder(HostAuthority(attic).component(first)).own()
+    assert (alone.principals, alone.common_name) == ((first,), before.common_name)
+    shared = KeysFolder(HostAuthority(attic).component(first, [second]))
+    assert shared.own() == before, "in another ecology it shares a process"
+    attic.admit("lab", alone.pem)
+    assert {one.principals for one in attic.admitted("lab").values()} == {(first, second), (first,)}
+
+
+def test_the_sites_of_a_host_believe_the_components_of_each_other(authority: Authority, tmp_path: Path) -> None:
+    lamp, shared = Principal.component(IRI("urn:lamp")), tmp_path / "shared"
+    shared.mkdir(0o700)
+    sites = []
+    for name in ("attic", "cellar"):
+        authority.issue(Principal(SITE, name), tmp_path / name)
+        sites.append(KeysFolder(tmp_path / name))
+    attic, cellar = sites
+    before = KeysFolder(HostAuthority(cellar).component(lamp)).own()
+    for site in (attic, cellar):
+        HostAuthority(site).share(shared)
+    assert HostAuthority(attic).hub_authorities().read_bytes() == HostAuthority(cellar).hub_authorities().read_bytes()
+    with pytest.raises(PeerError, match="issued by another authority"):
+        attic.admit("lab", before.pem)
+    renewed = KeysFolder(HostAuthority(cellar).component(lamp)).own()
+    assert attic.admit("lab", renewed.pem) == renewed, "its certificate is made anew by the common authority"
+    assert all(not stat.S_IMODE(path.stat().st_mode) & 0o077 for path in shared.iterdir())
+
+
+def test_a_common_authority_that_is_spoilt_is_made_anew(authority: Authority, tmp_path: Path) -> None:
+    shared = tmp_path / "shared"
+    shared.mkdir(0o700)
+    HostAuthority(authority).share(shared)
+    (key,) = shared.glob("*.key")
+    for spoil in (lambda: key.write_bytes(b"nothing"), lambda: key.chmod(0o644), key.unlink):
+        spoil()
+        HostAuthority(authority).share(shared)
+        assert key.read_bytes() == (authority.path / "components.key").read_bytes()
+        assert not stat.S_IMODE(key.stat().st_mode) & 0o077
+
+
+def test_the_authorities_of_two_ecologies_share_nothing(tmp_path: Path) -> None:
+    shared = tmp_path / "shared"
+    shared.mkdir(0o700)
+    one, other = (Authority.init(tmp_path / name) for name in ("one", "other"))
+    for folder in (one, other):
+        HostAuthority(folder).share(shared)
+    assert len(list(shared.glob("*.key"))) == 2
+    assert (one.path / "components.key").read_bytes() != (other.path / "components.key").read_bytes()
+
+
+def test_a_host_cannot_make_itself_a_configurator(authority: Authority, tmp_path: Path) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
+    attic = KeysFolder(tmp_path / "attic")
+    forged = HostAuthority(attic).component(Principal(CONF, "main"))
+    with pytest.raises(PeerError, match="another authority"):
+        attic.admit("lab", KeysFolder(forged).own().pem)
+
+
+def test_a_component_has_no_certificate_for_longer_than_its_site(authority: Authority, tmp_path: Path) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic", days=0.5)
+    attic, lamp = KeysFolder(tmp_path / "attic"), Principal.component(IRI("urn:lamp"))
+    component = KeysFolder(HostAuthority(attic).component(lamp))
+    assert component.own().ends == attic.own().ends
+    authority.renew(attic.path, days=0.25)
+    HostAuthority(attic).renew_components()
+    assert component.own().ends == attic.own().ends
+    authority.renew(attic.path, days=30.0)
+    HostAuthority(attic).renew_components()
+    assert not component.own().half_over(), "it is renewed when half of its time has passed"
