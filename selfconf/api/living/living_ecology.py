@@ -79,8 +79,9 @@ class LivingEcology(Ecology):
         self._released = ReleasedComponents(self._synchronous, self._view.keys)
         self._configurators = Configurators(self._synchronous, self._view.keys)
         try:
-            if not any(self._sites_answer(pause) for pause in PAUSES):
-                raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
+            with rendezvous.suspended_sites_named(self.endpoints):
+                if not any(self._sites_answer(pause) for pause in PAUSES):
+                    raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
         except BaseException:
             self.close()
             raise

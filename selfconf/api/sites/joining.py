@@ -8,7 +8,9 @@ go cost two processors and do not recover from a common stall; fifty clients of 
 A site with an endpoint of its own, or that connects to another machine, relays beside the others.
 
 A relay that hangs receives nothing. A site that has had no hub for `HUNG` seconds takes its place on another port and
-writes into its file that it relays no more; when it goes on it reads that, and closes its hub.
+writes into its file that it relays no more; when it goes on it reads that, and closes its hub. The others may still be
+waiting for the one that hangs to answer them, so they let the new one have `REACHED` seconds: else each would take the
+place of the one before, and nothing would relay for longer than a moment.
 
 A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
 and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
@@ -54,6 +56,8 @@ BUSY = 0.5
 """Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear it."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
+REACHED = 2.0
+"""Seconds until a site has surely reached one that has begun to relay since: longer than a handshake is waited for."""
 
 
 class Joining:
@@ -77,7 +81,10 @@ class Joining:
         self._file: Path | None = None
         self.log = ""
         """The log of the site, for others on this machine."""
-        self._lost_at: float | None = None
+        self._awaited = relays
+        """Those that relayed when this site last had a hub, or that it has been trying to reach since."""
+        self._hung_at: float | None = None
+        """When they are taken to hang; None while there is a hub."""
         self._look_again: Undo = lambda: None
         self._unanswered = 0
         """How many questions in a row the hub has not answered."""
@@ -160,9 +167,24 @@ class Joining:
     # The one that relays may be gone, or it was stopped and another has taken its place.
 
     def _link_changed(self) -> None:
-        self._lost_at = None if self.bus.link else self._lost_at or self.bus.now()
+        if self.bus.link:
+            self._reached()
+        else:
+            self._lost()
         self._look_again()
         self._look_again = self.bus.later(random.uniform(0.0, HASTE), self._look)
+
+    def _reached(self) -> None:
+        """There is a hub; where it is one that has begun since, say so, or others would try the one before first."""
+        self._awaited, self._hung_at = self._relays(), None
+        if self._file is not None and not self.relays and self._awaited and self._reached_at not in self._awaited:
+            self._reached_at = self._awaited[0]
+            self.announce()
+
+    def _lost(self) -> None:
+        """There is no hub, from now on unless it was so before."""
+        if self._hung_at is None:
+            self._hung_at = self.bus.now() + HUNG
 
     def _look_from_time_to_time(self) -> None:
         self.bus.later(STILL_MINE * (1 if self.bus.endpoint else STILL_HEARD), self._look_from_time_to_time)
@@ -211,8 +233,8 @@ class Joining:
     def _look(self) -> None:
         if self._file is None:
             return
-        if not self.bus.link and self._lost_at is None:
-            self._lost_at = self.bus.now()  # when the change was reported, the link was not lost yet
+        if not self.bus.link:
+            self._lost()  # when the change was reported, it was not lost yet
         done = self._in_order() or self._looked_in_turn()
         if not done or not self.bus.link:
             self._look_again = self.bus.later(LOOK_AGAIN, self._look)
@@ -240,9 +262,10 @@ class Joining:
 
     def _take_place(self) -> None:
         """Relay, if no site does, or if the one that does hangs."""
-        relays = self._relays()
-        hung = self._lost_at is not None and self.bus.now() - self._lost_at > HUNG
-        if not relays or hung:
+        relays, now = self._relays(), self.bus.now()
+        if relays != self._awaited:
+            self._awaited, self._hung_at = relays, now + REACHED
+        if not relays or (self._hung_at is not None and now > self._hung_at):
             self._relay_at(self._usual, relays)
 
     def _relay_at(self, endpoints: Sequence[str], relays: Sequence[str]) -> None:

@@ -9,12 +9,13 @@ from typing import Any
 import pytest
 
 import selfconf as sc
-from selfconf import LivingEcology, Refusal, join, template
+from selfconf import LivingEcology, Refusal, join, template, this_machine
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
 from selfconf.bus.port import Request
 from selfconf.discovery import ecology_view
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
+from selfconf.this_machine import LocalSite
 from tests.cli.processes import Home
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 from tests.suspended_run import suspended_run
@@ -263,6 +264,10 @@ def test_an_ecology_that_is_not_there_is_an_error_that_says_what_to_try(house: H
         join()
     with pytest.raises(AuthorError, match="cannot name an ecology"):
         join("a/b", connect=[house.endpoint()])
+    with suspended_run("elsewhere", "patrol") as program:
+        this_machine.announce(LocalSite("elsewhere", "attic", house.endpoint(), program.pid))
+        with pytest.raises(NetworkError, match="the site 'attic' of ecology 'elsewhere', is suspended; `kill -CONT"):
+            join("elsewhere", connect=[house.endpoint()])
 
 
 def test_an_advertisement_that_does_not_conform_is_not_found(house: Home, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import socket
 import time
@@ -211,3 +212,18 @@ def test_the_place_of_one_that_hangs_is_taken_and_it_joins_the_others_when_it_go
     sites["a"].send(signal.SIGCONT)
     assert home.until(lambda: home.endpoint("a") == home.endpoint(taker))
     assert home.until(lambda: seen_at(home, home.endpoint(taker)) == {"a", "b", "c"})
+
+
+def test_one_site_alone_takes_the_place_of_one_that_hangs_and_all_say_where_it_is(home: Home) -> None:
+    """The others wait for one that hangs for longer than until another takes its place."""
+    sites = {name: home.site(name, "ads/drive.ttl") for name in "abcde"}
+    took: set[str] = set()
+
+    def settled() -> bool:
+        files = [json.loads((home.runtime / f"{home.ecology}@{name}.json").read_text()) for name in "bcde"]
+        took.update(site["endpoint"] for site in files if site["relays"])
+        return {site["endpoint"] for site in files} == took
+
+    sites["a"].send(signal.SIGSTOP)
+    assert home.until(lambda: settled() and seen_at(home, home.endpoint("b")) == {"b", "c", "d", "e"})
+    assert len(took) == 1
