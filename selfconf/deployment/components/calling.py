@@ -176,12 +176,9 @@ class Calling:
 
     def answer_in(self, replies: Replies, life: str | None) -> CallAnswer | None:
         """The answer of the life that was meant, if it has answered; else that of another."""
-        answers: list[CallAnswer] = []
-        for sample in replies.samples:
-            try:
-                answers.append(decode(sample.payload, CallAnswer))
-            except PeerError as error:
-                log.warning("passed over an answer on %s: %s", sample.key, error)
+        answers, problems = _read(replies)
+        for key, problem in problems.items():
+            log.warning("passed over an answer on %s: %s", key, problem)
         return min(answers, key=lambda answer: answer.life != life, default=None)
 
 
@@ -266,8 +263,13 @@ class _Attempt:
                 return
         if not (current or self._hasty):
             return
-        stopping = answer is not None and answer.stopping
-        detail = "its code has not come to rest" if stopping else "it does not answer"
+        if answer is not None and answer.stopping:
+            detail = "its code has not come to rest"
+        else:  # a program in another language may answer what is no answer: its author needs to know why
+            _, problems = _read(replies)
+            detail = next(
+                (f"its answer cannot be read: {problem}" for problem in problems.values()), "it does not answer"
+            )
         self._calling.unreachable(self._component, self._call, self._message.epoch, detail)
 
     def _takes_longer(self, answer: CallAnswer | None, replies: Replies) -> bool:
@@ -306,6 +308,18 @@ class _Attempt:
         came = answer.epoch == self._message.epoch and answer.task == self._message.task
         elapsed = self._calling.bus.now() - self._first
         return (came or answer.stopping) and elapsed < max(STARTING, deadline or 0.0) + CALL
+
+
+def _read(replies: Replies) -> tuple[list[CallAnswer], dict[str, str]]:
+    """The answers among some replies, and by its key what is wrong with each that is none."""
+    answers: list[CallAnswer] = []
+    problems: dict[str, str] = {}
+    for sample in replies.samples:
+        try:
+            answers.append(decode(sample.payload, CallAnswer))
+        except PeerError as error:
+            problems[sample.key] = str(error)
+    return answers, problems
 
 
 def _configurator(answer: CallAnswer) -> str:

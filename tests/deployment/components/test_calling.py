@@ -10,6 +10,7 @@ from selfconf.bus.port import Replies, Request
 from selfconf.configurator.state import Phase
 from selfconf.deployment.components import calling
 from selfconf.deployment.components.calling import CALL, STARTING
+from selfconf.model.run_event import ComponentLost
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import component_chunk
 from selfconf.protocol.messages import CallAnswer, Cause, Reserve, Verdict
@@ -198,16 +199,29 @@ def test_a_life_whose_end_was_never_heard_of_has_ended_when_only_another_answers
     assert lab.running(agent)
 
 
-def test_a_component_that_speaks_another_protocol_is_replaced(lab: Lab) -> None:
-    """A component whose program speaks another protocol is replaced, not trusted."""
+@pytest.mark.parametrize(
+    ("answer", "problem"),
+    [
+        pytest.param(b"yes sir", "not a message: ", id="no JSON"),
+        pytest.param(b'{"kind": "yes"}', "not a message of kind 'answer'", id="another message"),
+        pytest.param(b'{"kind": "answer", "verdict": "done", "component": "urn:x"}', "lacks 'life'", id="incomplete"),
+    ],
+)
+def test_a_component_that_speaks_another_protocol_is_replaced_and_it_is_said_why(
+    lab: Lab, answer: bytes, problem: str
+) -> None:
+    """A component whose program speaks another protocol is not trusted; its author reads what is wrong with it."""
     runtime = lab.runtimes["tracker"]
     runtime.calls.close()
 
     def babble(request: Request) -> None:
-        request.reply(lab.keys.call(iri("person-tracker"), "apply"), b"yes sir")
+        request.reply(lab.keys.call(iri("person-tracker"), "apply"), answer)
         request.finish()
 
     runtime.bus.serve(lab.keys.call(iri("person-tracker")), babble)
     agent = lab.agent()
     assert lab.running(agent)
     assert lab.active() == TASK | {"odometry"}
+    (lost,) = [event for event in lab.events if isinstance(event, ComponentLost)]
+    assert lost.detail.startswith("its answer cannot be read: ")
+    assert problem in lost.detail
