@@ -160,16 +160,19 @@ class LivingTasks:
 
     def kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""
-        records = _records(self._bus.ask(self._keys.kept_tasks()))
-        return [record for record in records if name in (None, task_name(record.task))]
+        return [record for record in self._records() if name in (None, task_name(record.task)) and not record.ended]
+
+    def _records(self) -> list[TaskRecord]:
+        """The newest record of each task that lives in the sites, or has ended there."""
+        return _newest(self._bus.ask(self._keys.kept_tasks()))
 
     def all(self, by_components: bool = False) -> tuple[LivingTask, ...]:
         """The tasks that run, found as by `running`, and those that live in the sites, sorted by name."""
         running = self.running(by_components)
-        kept = {record.task: record for record in self.kept()}
-        found = [LivingTask.of(status, status.task in kept) for status in running]
+        records = {record.task: record for record in self._records()}  # one that has ended may still be coming to rest
+        found = [LivingTask.of(status, status.task in records) for status in running]
         known = {status.task for status in running}
-        found += [LivingTask.kept(record) for task, record in kept.items() if task not in known]
+        found += [LivingTask.kept(one) for task, one in records.items() if not (one.ended or task in known)]
         return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
 
     def claim(self, wanted: str, numbered: bool = False) -> ClaimedName:
@@ -181,7 +184,7 @@ class LivingTasks:
         questions = [(self._keys.configurator_call("*", "status"), b""), (self._keys.kept_tasks(), b"")]
         running, kept = self._bus.ask_each(questions)
         taken = {status.name for status in _statuses(running, self._keys)[0]}
-        taken |= {task_name(record.task) for record in _records(kept)}
+        taken |= {task_name(record.task) for record in _newest(kept) if not record.ended}
         further = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2)) if numbered else ()
         for name in chain([wanted], further):
             claimed = None if name in taken else claim(self._keys.ecology, name, self._endpoints)
@@ -233,7 +236,7 @@ class LivingTasks:
         then the composite fails. Raises NetworkError if there is none of that name, or if several insides alone have
         it, or if one does not answer or does not end in time, or if a component was turned off and does not obey; of
         all tasks those are taken down first that answer. One that does not answer, suspended perhaps, is an error also
-        where what it held has come to rest: it may go on.
+        where what it held has come to rest: it may go on, unless the sites keep its task, and so the end of that.
         """
         found, kept = self.running(by_components=True), self.kept(name)
         holding = [one for one in self._holding if one.is_named(name)]
@@ -245,7 +248,11 @@ class LivingTasks:
             _check_there(name, silent, [*running, *holding, *suspended])
         self._take_down(running, kept)
         _raise_for(
-            [*self._disobedience(running), *self._unheard(silent, holding), *(one.suspension() for one in suspended)]
+            [
+                *self._disobedience(running),
+                *self._unheard(silent, holding, kept),
+                *(one.suspension() for one in suspended),
+            ]
         )
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
@@ -255,8 +262,12 @@ class LivingTasks:
         silent = {one for one in self.silent if name in (None, one)}
         return silent.difference(one.configurator for one in self._holding)
 
-    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder]) -> Iterator[str]:
-        """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest."""
+    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder], kept: Iterable[TaskRecord]) -> Iterator[str]:
+        """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest.
+
+        One that goes on learns from the sites that its task, if they have kept that, has ended.
+        """
+        ended = {record.task for record in kept}
         if silent:  # one that is suspended is no longer seen to live after a while
             living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
             yield from map(_said_of_silent, sorted(living & silent))
@@ -264,9 +275,10 @@ class LivingTasks:
             for gone in sorted(silent.difference(living, (one.configurator for one in holding))):
                 yield f"the configurator {gone!r} did not answer and is not seen any more; if suspended, it will go on"
         for one in holding:
-            act_on = self._released.still_acting((component, one.task) for component in one.components)
-            at_rest = "they have come to rest, and if it was suspended, it takes them again when it goes on"
-            yield f"{one}; {'they act on' if act_on else at_rest}"
+            if self._released.still_acting((component, one.task) for component in one.components):
+                yield f"{one}; they act on"
+            elif one.task not in ended:
+                yield f"{one}; they have come to rest, and if it was suspended, it takes them again when it goes on"
 
     def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
         """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
@@ -342,15 +354,15 @@ def _meant(name: str | None, running: Sequence[Status], others: Sequence[object]
     return found
 
 
-def _records(replies: Replies) -> list[TaskRecord]:
-    """The tasks that sites say they keep and that have not ended, each by its newest record."""
+def _newest(replies: Replies) -> list[TaskRecord]:
+    """The newest record of each task that sites have kept."""
     newest: dict[str, TaskRecord] = {}
     for sample in replies.samples:
         with suppress(PeerError):
             record = decode(sample.payload, TaskRecord)
             if record.supersedes(newest.get(record.task)):
                 newest[record.task] = record
-    return [record for record in newest.values() if not record.ended]
+    return list(newest.values())
 
 
 def _said_of_silent(configurator: str) -> str:

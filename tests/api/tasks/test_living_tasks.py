@@ -125,6 +125,12 @@ def test_of_several_records_of_a_task_the_newest_counts_and_its_end_is_final(tas
     assert tasks.asked.all() == (LivingTask.kept(replace(PATROL, revision=2, priority=7)),)
 
 
+def test_a_task_of_the_sites_that_has_ended_is_listed_as_one_until_it_is_at_rest(tasks: Tasks) -> None:
+    tasks.configurator("c1", PATROL.task, phase="dismantling")
+    tasks.site(replace(PATROL, revision=2, ended=True))
+    assert [(task.phase, task.lives_in) for task in tasks.asked.all()] == [("dismantling", "sites")]
+
+
 def test_who_lives_and_does_not_answer_is_named_and_who_speaks_for_another_is_left_out(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1", answers=False)
     tasks.configurator("c2", "tidy~2", speaks_of="c3")
@@ -281,6 +287,15 @@ def test_a_configurator_that_lives_and_does_not_answer_is_named_with_the_task_th
     ):
         tasks.asked.stop(name)
     assert tasks.asked.silent == ("c2",)
+
+
+def test_a_task_whose_end_the_sites_keep_is_taken_down_once_all_rests_though_its_configurator_is_silent(
+    tasks: Tasks,
+) -> None:
+    tasks.site(PATROL)
+    tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 3, AT_REST)
+    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
 
 
 def test_a_configurator_that_has_not_answered_is_an_error_though_all_rests_and_it_is_not_seen_any_more(
