@@ -12,6 +12,9 @@ writes into its file that it relays no more; when it goes on it reads that, and 
 waiting for the one that hangs to answer them, so they let the new one have `REACHED` seconds: else each would take the
 place of the one before, and nothing would relay for longer than a moment.
 
+What sites write into the runtime folder may be lost, as when that is emptied, or a disk is full: a site whose file is not
+there writes it again, and relays as well where it cannot be written.
+
 A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
 and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
 its own hub who lives, again and again, and opens another one when it does not answer. The others ask theirs, more
@@ -24,7 +27,8 @@ from __future__ import annotations
 import logging
 import os
 import random
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from selfconf import rendezvous, this_machine
@@ -81,6 +85,8 @@ class Joining:
         self._file: Path | None = None
         self.log = ""
         """The log of the site, for others on this machine."""
+        self._trouble = ""
+        """What has kept this site from writing into the runtime folder the last time; empty if nothing has."""
         self._awaited = relays
         """Those that relayed when this site last had a hub, or that it has been trying to reach since."""
         self._hung_at: float | None = None
@@ -126,6 +132,31 @@ class Joining:
         relays = bool(self.bus.endpoint)
         mine = LocalSite(self._ecology, self._name, self.endpoint, os.getpid(), relays=relays, log=self.log)
         self._file = this_machine.announce(mine)
+
+    def _announce_anew(self) -> None:
+        """Write it down once more, as it has changed or is lost; where that cannot be, it is tried again later."""
+        try:
+            self.announce()
+            self._trouble = ""
+        except NetworkError as error:
+            self._complain(error)
+
+    def _complain(self, trouble: NetworkError) -> None:
+        """Say once what keeps this site from telling the others of this machine where it is."""
+        if str(trouble) != self._trouble:
+            self._trouble = str(trouble)
+            log.error("programs of this machine may not find this site: %s", trouble)
+
+    @contextmanager
+    def _turn(self) -> Iterator[bool]:
+        """A turn of this site, if it can be had at once; the value says whether it is."""
+        with ExitStack() as stack:
+            try:
+                mine = stack.enter_context(this_machine.turn(seconds=0.0))
+            except NetworkError as error:
+                self._complain(error)
+                mine = False
+            yield mine
 
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate, as long as this site relays, and whenever it does.
@@ -179,7 +210,7 @@ class Joining:
         self._awaited, self._hung_at = self._relays(), None
         if self._file is not None and not self.relays and self._awaited and self._reached_at not in self._awaited:
             self._reached_at = self._awaited[0]
-            self.announce()
+            self._announce_anew()
 
     def _lost(self) -> None:
         """There is no hub, from now on unless it was so before."""
@@ -190,6 +221,8 @@ class Joining:
         self.bus.later(STILL_MINE * (1 if self.bus.endpoint else STILL_HEARD), self._look_from_time_to_time)
         if self._file is None:
             return
+        if self._trouble or not self._file.exists():
+            self._announce_anew()
         if self.bus.endpoint and not this_machine.relays(self._file):
             self._look()
         elif not self._asking and (self.bus.endpoint or self.bus.link):
@@ -225,7 +258,7 @@ class Joining:
         """Open another hub in the place of one that has broken: where that was, if it lets go of its port."""
         before = self.bus.endpoint
         log.error("the hub at %s does not answer; opening another one", before)
-        with this_machine.turn(seconds=0.0) as mine:
+        with self._turn() as mine:
             if mine:
                 self.bus.relay_no_more()
                 self._relay_at(list(dict.fromkeys((before, *self._usual))), self._relays())
@@ -245,7 +278,7 @@ class Joining:
 
     def _looked_in_turn(self) -> bool:
         """Give or take the place of the one that relays, if it is this site's turn; whether it was."""
-        with this_machine.turn(seconds=0.0) as mine:
+        with self._turn() as mine:
             if mine and self.bus.endpoint:
                 self._give_place()
             elif mine and not self.bus.link:
@@ -258,7 +291,7 @@ class Joining:
         if mine and not mine[0].relays:
             self.bus.relay_no_more()
             self._reached_at = next(iter(self._relays()), mine[0].endpoint)
-            self.announce()
+            self._announce_anew()
 
     def _take_place(self) -> None:
         """Relay, if no site does, or if the one that does hangs."""
@@ -277,7 +310,8 @@ class Joining:
                 continue
             for other in this_machine.local_sites(self._ecology):
                 if other.relays and other.endpoint in self._usual:
-                    this_machine.announce_for(other, relays=False)
+                    with suppress(NetworkError):  # then two relay once that one goes on
+                        this_machine.announce_for(other, relays=False)
             self.bus.relay(hub, [*(relay for relay in relays if relay not in self._usual), *self._elsewhere])
-            self.announce()
+            self._announce_anew()
             return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import signal
 import socket
 import time
@@ -94,6 +95,50 @@ def test_when_the_one_that_relays_is_gone_another_does_so_on_the_same_port(machi
     assert machine.until(lambda: bool(machine.relaying()) and machine.united())
     assert len(machine.relaying()) == 1
     assert [site.endpoint for site in machine.sites.values()] == [before, before]
+
+
+def test_sites_are_found_again_when_the_runtime_folder_was_removed(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    for name in "ab":
+        machine.join(name)
+    before = this_machine.local_sites("machine")
+    shutil.rmtree(this_machine.runtime_folder())
+    assert machine.until(lambda: this_machine.local_sites("machine") == before)
+
+
+def test_a_place_is_taken_once_the_runtime_folder_can_be_used_again(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    for name in "abc":
+        machine.join(name)
+    folder = this_machine.runtime_folder()
+    shutil.rmtree(folder)
+    folder.write_text("no folder")
+    assert machine.until(lambda: len(caplog.records) == 3)
+    machine.leave("a")
+    assert machine.until(lambda: not any(site.bus.link for site in machine.sites.values()))
+    folder.unlink()
+    assert machine.until(lambda: bool(machine.relaying()) and machine.united())
+    assert machine.until(lambda: [site.site for site in this_machine.local_sites("machine")] == ["b", "c"])
+    assert {record.getMessage().partition(f"cannot write in {folder}")[0] for record in caplog.records} == {
+        "programs of this machine may not find this site: "
+    }
+
+
+def test_a_place_is_taken_though_nothing_can_be_written(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in "ab":
+        machine.join(name)
+
+    def full(*_: object, **__: object) -> None:
+        raise NetworkError("cannot write: no space left")
+
+    monkeypatch.setattr(this_machine, "announce", full)
+    monkeypatch.setattr(this_machine, "announce_for", full)
+    machine.leave("a")
+    assert machine.until(lambda: machine.relaying() == ["b"] and machine.united())
 
 
 def test_a_site_that_is_told_where_to_listen_or_what_to_connect_to_relays_beside_the_other(machine: Machine) -> None:
