@@ -12,8 +12,8 @@ writes into its file that it relays no more; when it goes on it reads that, and 
 waiting for the one that hangs to answer them, so they let the new one have `REACHED` seconds: else each would take the
 place of the one before, and nothing would relay for longer than a moment.
 
-What sites write into the runtime folder may be lost, as when that is emptied, or a disk is full: a site whose file is not
-there writes it again, and relays as well where it cannot be written.
+What sites write into the runtime folder may be lost, as when that is emptied, or a disk is full: a site whose file is
+not there writes it again, and relays as well where it cannot be written.
 
 A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
 and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
