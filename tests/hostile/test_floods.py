@@ -16,7 +16,7 @@ from selfconf.protocol.activation import MOST_HOLDING
 from selfconf.protocol.codec import LARGEST, MOST_ADVERTISED, encode
 from selfconf.protocol.json_values import MOST_WIRES
 from selfconf.protocol.messages import Apply, Cause, Fail, Page, Reserve, Stamp, Wire
-from selfconf.sdk.inputs.input_subscription import LATE
+from selfconf.sdk.inputs.signal_order import LATE
 from selfconf.sdk.payloads import LARGEST_JSON
 from selfconf.sdk.runtime.runtime import MOST_PENDING
 from tests.hostile.bounded import bounded

@@ -37,7 +37,7 @@ from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.validation import checking, file_check
 from selfconf.rdf.validation.checking import SourceText, validate_texts
 from selfconf.sdk import operations, payloads
-from selfconf.sdk.inputs import input_subscription
+from selfconf.sdk.inputs import signal_order
 from selfconf.sdk.runtime import runtime
 from tests.hostile_words import HONEST, KINDS, stranger
 from tests.hostile_words import TEMPLATE as TEMPLATE_FOR_STRANGERS
@@ -292,7 +292,7 @@ LIMITS = (
     f"outputs that a call lets a component follow | {json_values.MOST_WIRES:,} |",
     f"calls that wait for the code of a component | {runtime.MOST_PENDING} |",
     f"a signal of JSON | {payloads.LARGEST_JSON >> 20} MiB",
-    f"a signal whose number is {input_subscription.LATE:,} below",
+    f"a signal whose number is {signal_order.LATE:,} below",
     f"tasks that a site keeps | {task_folder.MOST_RECORDS:,} |",
     f"tasks that share a component, and tasks that wait for it | {activation.MOST_HOLDING} each",
 )

@@ -29,6 +29,7 @@ from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.protocol.stamps import StampReader
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
+from selfconf.sdk.inputs.signal_order import NONE, SignalNumber, SignalOrder
 from selfconf.sdk.inputs.signal_queue import SignalQueue
 from selfconf.sdk.inputs.silence_watch import SilenceWatch
 from selfconf.sdk.outputs import SIGNALS_FIRST
@@ -43,9 +44,6 @@ UNSEEN = 1.0
 BY_ITSELF = 0.02
 """Seconds for which an output that stood by is not asked for its last signal: one that is just being started issues its
 first by itself, and who asks meanwhile takes its time."""
-LATE = 10_000
-"""By how many signals one that is late can be behind the newest. One that is further behind is not late: the number of
-the newest was none of its source's, and may not mute it."""
 PASSED_OVER = "passed over a signal on %s: %s"
 LAST_SIGNAL = 1.0
 """Seconds that an output may take to say its last signal; a later one comes by itself."""
@@ -94,16 +92,7 @@ class InputSubscription:
         self.muted = True
         self.lost = False
         """Whether the output can issue nothing any more, as far as is known."""
-        self._life, self._sequence = "", 0
-        """The newest signal that was delivered, by the life of its source and its number in it."""
-        self._over = "", 0
-        """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
-        that is no sign that it issues, and ends no blindness."""
-        self._said_again = "", 0
-        """What the output has answered since it was lost, if anything: that counts also if it was delivered before."""
-        self._doubted: tuple[str, int] | None = None
-        """The last signal of a source that has let go of a task, until it has said whether it acts for another one, and
-        while nothing newer has come."""
+        self._order = SignalOrder()
         self._queue = queue
         self._stamps = StampReader()
         self._heard_at = -JUST_COME
@@ -140,7 +129,7 @@ class InputSubscription:
 
         None that it may have issued for a task of which it has let go.
         """
-        return bool(self._queue) and self._doubted is None and self._bus.now() - self._heard_at < JUST_COME
+        return bool(self._queue) and self._order.doubted is None and self._bus.now() - self._heard_at < JUST_COME
 
     def unmute(self) -> None:
         """Deliver what is received, from the newest signal on if that has only just come, else from the last one on."""
@@ -152,21 +141,21 @@ class InputSubscription:
         if self._asked and not heard:
             self._bus.later(BY_ITSELF, partial(self._ask_if_quiet, self._bus.now()))
         self._bus.later(UNSEEN, partial(self._look_for_life, self._bus.now()))
-        self._silence.expect(first=not self._sequence)
+        self._silence.expect(first=self._order.newest is NONE)
         if self._queue:
             self._code.signal(self._read)
 
     def say_again(self) -> None:
         """Deliver the last signal once more: the component's code has been started again."""
         if not (self.muted or self.lost):
-            self._life, self._sequence = "", 0
+            self._order.newest = NONE
             self._ask()
 
     def mute(self) -> None:
         """Pass over what is received."""
         self.muted = True
         self._queue.keep(0)
-        self._life, self._sequence = "", 0  # what the input follows it again for may be what it has had before
+        self._order.newest = NONE  # what the input follows it again for may be what it has had before
         self._silence.end()
 
     def end(self) -> None:
@@ -180,13 +169,11 @@ class InputSubscription:
     # What arrives: on whatever thread it does.
 
     def _received(self, sample: Sample) -> None:
-        over, doubted = self._over, self._doubted
-        if over[0] or doubted is not None:
-            stamp = self._stamp_of(sample)
-            if stamp is not None and _is_up_to(over, stamp):
+        stamp = self._stamp_of(sample) if self._order.is_in_question else None
+        if stamp is not None:
+            if self._order.is_over(stamp):
                 return
-            if doubted is not None and stamp is not None and self._is_newer(doubted, stamp):
-                self._doubted = None
+            self._order.settle(stamp, self._shows)
         self._heard_at = self._bus.now()
         if self.muted:
             self._queue.keep(0)
@@ -200,11 +187,6 @@ class InputSubscription:
             return self._stamps.read(sample.attachment)[1]
         except PeerError:
             return None
-
-    def _is_newer(self, last: tuple[str, int], stamp: Stamp) -> bool:
-        """Whether a signal was issued after the last one for a task: by the same life, or by another that lives."""
-        life, _ = last
-        return not _is_up_to(last, stamp) if stamp.life == life else self._shows(stamp.life)
 
     # What the component's code gets, on its thread.
 
@@ -226,21 +208,16 @@ class InputSubscription:
         self._understood_at = self._heard_at
         if stamp.component != self._wire.component:
             return
-        if self.muted or (self.lost and not lost) or self._is_old(stamp):  # muted or lost while it was read
+        if (
+            self.muted or (self.lost and not lost) or self._order.is_old(stamp, self.lost)
+        ):  # muted or lost while it was read
             return
         if lost and not self._shows(stamp.life):  # it was on its way when that life ended, or its source is cut off
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
-        self._life, self._sequence, self.lost = stamp.life, stamp.sequence, False
+        self._order.newest, self.lost = SignalNumber(stamp.life, stamp.sequence), False
         self._events.deliver(
             self._port, Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
         )
-
-    def _is_old(self, stamp: Stamp) -> bool:
-        """Whether a signal is late, doubled, or a latched one that was issued again for another input."""
-        if self.lost and _is_up_to(self._over, stamp):
-            return True
-        again = self.lost and (stamp.life, stamp.sequence) == self._said_again
-        return not again and stamp.life == self._life and 0 <= self._sequence - stamp.sequence < LATE
 
     # What is noticed of the output, on the bus's thread.
 
@@ -289,7 +266,7 @@ class InputSubscription:
         for sample in () if self._ended else replies.samples:
             stamp = self._stamp_of(sample)
             if stamp is not None:
-                self._said_again = stamp.life, stamp.sequence
+                self._order.said_again = SignalNumber(stamp.life, stamp.sequence)
             if not self._queue:
                 self._received(sample)
 
@@ -338,7 +315,7 @@ class InputSubscription:
         """
         waiting = self._queue.newest()  # the code may be busy, as in `started`
         stamp = self._stamp_of(waiting) if waiting is not None else None
-        if self._ended or self.lost or self._shows(self._life if stamp is None else stamp.life):
+        if self._ended or self.lost or self._shows(self._order.newest.life if stamp is None else stamp.life):
             return
         if self._heard_at > heard:
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
@@ -355,7 +332,7 @@ class InputSubscription:
         if fail.cause is Cause.LET_GO:
             self._look_whether_it_acts(fail)
         else:
-            self._over = fail.life, fail.sequence
+            self._order.over = SignalNumber(fail.life, fail.sequence)
             self._lose(self._heard_at)
 
     def _look_whether_it_acts(self, fail: Fail) -> None:
@@ -363,18 +340,17 @@ class InputSubscription:
 
         Until then no signal of before counts as one that has just come, and what comes later answers the question.
         """
-        last = fail.life, fail.sequence
-        self._doubted = last
+        last = self._order.doubted = SignalNumber(fail.life, fail.sequence)
 
         def answered(replies: Replies) -> None:
-            if self._ended or self._doubted != last:
+            if self._ended or self._order.doubted != last:
                 return
             if not replies.complete:
                 self._look_whether_it_acts(fail)
                 return
-            self._doubted = None
+            self._order.doubted = None
             if not replies.samples:
-                self._over = last
+                self._order.over = last
                 if self.muted:
                     self._queue.keep(0)
                 self._be_lost()  # also where a signal has come meanwhile: it was on its way when the task was let go of
@@ -390,17 +366,11 @@ class InputSubscription:
 
     def _be_lost(self) -> None:
         if not self.lost and not self.muted:
-            self.lost, self._said_again = True, ("", 0)
+            self.lost, self._order.said_again = True, NONE
             self._report_lost(self._port)
 
     def _be_silent(self, seconds: float) -> None:
         """The output has not kept its promise."""
         self._events.silent(self._wire, seconds)
         self._lose(self._heard_at)
-        self._silence.expect(first=not self._sequence)
-
-
-def _is_up_to(last: tuple[str, int], stamp: Stamp) -> bool:
-    """Whether a signal is that one of a life, by its number, or was issued before it."""
-    life, sequence = last
-    return stamp.life == life and 0 <= sequence - stamp.sequence < LATE
+        self._silence.expect(first=self._order.newest is NONE)

@@ -1,0 +1,73 @@
+"""Which signals of one output are news to an input, by the lives of the component that issues them and their numbers.
+
+Signals come late, twice, or after the word that their source has failed or has let go of its task, as what is more
+urgent overtakes them; and the last signal, for which an input asks, may have been delivered before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from selfconf.protocol.messages import Stamp
+
+LATE = 10_000
+"""By how many signals one that is late can be behind the newest. One that is further behind is not late: the number of
+the newest was none of its source's, and may not mute it."""
+
+
+class SignalNumber(NamedTuple):
+    """One signal of an output: the life of its component, and its number there, from 1 on."""
+
+    life: str
+    sequence: int
+
+    def covers(self, stamp: Stamp) -> bool:
+        """Whether a signal is this one, or was issued before it by the same life."""
+        return stamp.life == self.life and 0 <= self.sequence - stamp.sequence < LATE
+
+
+NONE = SignalNumber("", 0)
+"""No signal."""
+
+
+class SignalOrder:
+    """What an input knows of the order of an output's signals; several threads read it, and write a number at once."""
+
+    def __init__(self) -> None:
+        self.newest = NONE
+        """The newest signal that was delivered."""
+        self.over = NONE
+        """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
+        that is no sign that it issues, and ends no blindness."""
+        self.said_again = NONE
+        """What the output has answered since it was lost, if anything: that counts also if it was delivered before."""
+        self.doubted: SignalNumber | None = None
+        """The last signal of a source that has let go of a task, until it has said whether it acts for another one, and
+        while nothing newer has come."""
+
+    @property
+    def is_in_question(self) -> bool:
+        """Whether a signal that comes may be over, or may settle a doubt."""
+        return self.over is not NONE or self.doubted is not None
+
+    def is_over(self, stamp: Stamp) -> bool:
+        """Whether a signal was issued before its source failed, or let go of its task."""
+        return self.over.covers(stamp)
+
+    def settle(self, stamp: Stamp, lives: Callable[[str], bool]) -> None:
+        """Doubt the source no more if a signal is newer: of the life in doubt, or of another that `lives`."""
+        doubted = self.doubted
+        if doubted is not None:
+            newer = not doubted.covers(stamp) if stamp.life == doubted.life else lives(stamp.life)
+            if newer:
+                self.doubted = None
+
+    def is_old(self, stamp: Stamp, lost: bool) -> bool:
+        """Whether a signal is late, doubled, or a latched one that was issued again for another input.
+
+        Of an output that is `lost` also what is over is old, and what it has said again is not.
+        """
+        if lost and (self.is_over(stamp) or (stamp.life, stamp.sequence) == self.said_again):
+            return self.is_over(stamp)
+        return self.newest.covers(stamp)
