@@ -7,7 +7,8 @@
 * `hear_refusals` reads in Zenoh's log what the hub of this process refuses, and keeps it as a `RefusalLog`.
 """
 
-from selfconf.bus.zenoh.bus import ZenohBus, client, router
+from selfconf.bus.zenoh.bus import ZenohBus
+from selfconf.bus.zenoh.opening import client, router
 from selfconf.bus.zenoh.refusals import RefusalLog, hear_refusals
 from selfconf.bus.zenoh.relay import Hub, cut_connections
 from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, Security, open_session, with_port

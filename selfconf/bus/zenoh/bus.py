@@ -1,7 +1,7 @@
 """The bus over Zenoh.
 
 A site opens a *relay* (`relay`): a router that listens on one endpoint and is connected to others. Everything
-else on its host, the site's own bus included, is a *client* of a relay. How sessions are set up stands in
+else on its host, the site's own bus included, is a *client* of a relay (`opening`). How sessions are set up stands in
 `session`, the topology and the keys in `docs/protocol.md`.
 
 * Callbacks of Zenoh only put into the loop's queues (`callback`): work in one would hold up every other message,
@@ -18,8 +18,6 @@ from __future__ import annotations
 
 import atexit
 import logging
-import socket
-import time
 import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -29,7 +27,6 @@ import zenoh
 import zenoh.ext
 from zenoh.handlers import Callback
 
-from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.port import LARGEST_REPLIES, Replies, Sample, Urgency
 from selfconf.bus.zenoh.channels import each, may_be_many, open_channel, read_together
@@ -37,9 +34,7 @@ from selfconf.bus.zenoh.reader_threads import ReaderThreads
 from selfconf.bus.zenoh.receivers import DirectReceiver, Receiver, ZenohRequest, callback, sample_of
 from selfconf.bus.zenoh.relay import Hub, Relay
 from selfconf.bus.zenoh.roll_call import RollCalls
-from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
-from selfconf.errors import NetworkError
-from selfconf.protocol.endpoints import endpoint_host, endpoint_port
+from selfconf.bus.zenoh.session import Security
 
 log = logging.getLogger(__name__)
 
@@ -62,10 +57,6 @@ _QUALITY: dict[Urgency, dict[str, Any]] = {
         "express": True,
     },
 }
-
-
-LISTENS = 0.5
-"""Seconds that the host of an endpoint may take to take a connection."""
 _LAST_WORDS = 1.0
 """Seconds that a thread that reads a channel may take to end when its session has been closed."""
 _OPEN: weakref.WeakSet[ZenohBus] = weakref.WeakSet()
@@ -76,74 +67,6 @@ def _close_all() -> None:
     """Close what was left open."""
     for bus in list(_OPEN):
         bus.close()
-
-
-def router(
-    listen: str = ANYWHERE_ON_LOOPBACK,
-    connect: Sequence[str] = (),
-    otherwise: Sequence[str] = (),
-    security: Security | None = None,
-) -> ZenohBus:
-    """Open a relay that listens on `listen` and connects to others, and a bus that is its client.
-
-    Port 0 means any free one; `endpoint` is the one that was taken. The bus becomes a client of those that are named
-    `otherwise` if it relays no more. Raises NetworkError if the endpoint is taken.
-    """
-    hub = Hub(listen, security)
-    own = None if security is None else Security(security.credentials)
-    try:
-        connected = open_session("client", connect=[hub.from_here, *otherwise], connect_seconds=5.0, security=own)
-        bus = ZenohBus(connected)
-        bus.relay(hub, connect)
-    except NetworkError:
-        hub.close()
-        raise
-    return bus
-
-
-def client(
-    connect: Sequence[str],
-    seconds: float = 4.0,
-    shared_memory: bool = False,
-    credentials: Credentials | None = None,
-) -> ZenohBus:
-    """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers.
-
-    Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one. Where nothing
-    listens it is tried again for that long, as a site may be about to; what listens and stays silent is no site. With
-    `shared_memory` large payloads go through that, unless so many clients have it already that the hub refuses.
-    """
-    began = time.monotonic()
-    security = None if credentials is None else Security(credentials)
-    for shared in (True, False) if shared_memory else (False,):
-        try:
-            return ZenohBus(open_session("client", connect=connect, shared_memory=shared, security=security))
-        except NetworkError:
-            if credentials is not None:
-                _raise_if_refused(connect, credentials)
-            elif time.monotonic() - began > HANDSHAKE_MS / 1000:
-                where = ", ".join(filter(_listens, connect)) or ", ".join(connect)
-                raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
-    return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security))
-
-
-def _listens(endpoint: str) -> bool:
-    """Whether a connection to an endpoint such as `tcp/127.0.0.1:7447` is taken, whatever comes after that."""
-    port = endpoint_port(endpoint)
-    try:
-        socket.create_connection((endpoint_host(endpoint), port or 0), LISTENS).close()
-    except (OSError, ValueError, OverflowError):
-        return False
-    return True
-
-
-def _raise_if_refused(connect: Sequence[str], credentials: Credentials) -> None:
-    """Raise NetworkError if this end and an endpoint do not believe each other; a hub may also be opened anew."""
-    from selfconf.bus.handshake import why_refused  # loads TLS, of which programs without keys have no need
-
-    why = next((found for endpoint in connect if (found := why_refused(endpoint, credentials))), "")
-    if why:
-        raise NetworkError(why) from None
 
 
 class _Publisher:

@@ -1,0 +1,102 @@
+"""A bus is opened at an endpoint that answers; one that is taken, empty, silent or none is a sentence."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from typing import Any
+
+import pytest
+from zenoh.handlers import Callback
+
+from selfconf.bus.zenoh import ZenohBus, client, router
+from selfconf.bus.zenoh import session as session_setup
+from selfconf.errors import NetworkError
+
+
+def free_endpoint() -> str:
+    """An endpoint on which nothing listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def test_a_client_without_an_answer_says_where_it_has_asked() -> None:
+    endpoint = free_endpoint()
+    with pytest.raises(NetworkError, match=f"no site answers at {endpoint}"):
+        client([endpoint], seconds=0.2)
+
+
+@pytest.mark.slow
+def test_what_listens_and_stays_silent_is_no_site() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        began, endpoint = time.monotonic(), f"tcp/127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(NetworkError, match=f"what listens at {endpoint} stays silent"):
+            client([free_endpoint(), endpoint])
+        assert time.monotonic() - began < 5.0
+
+
+def test_a_router_on_an_endpoint_that_is_taken_says_which(zenoh_router: ZenohBus) -> None:
+    with pytest.raises(NetworkError, match=f"cannot listen on {zenoh_router.endpoint}"):
+        router(zenoh_router.endpoint)
+
+
+def shared(source: Any, sink: Any, size: int) -> bool:
+    """Whether a payload of that size comes through shared memory, which is set up with the first ones."""
+    came: list[bool] = []
+    held = sink.declare_subscriber(
+        "test/shared", Callback(lambda s: came.append(bool(s.payload.as_shm())), indirect=False)
+    )
+    publisher = source.declare_publisher("test/shared")
+    deadline = time.monotonic() + 10.0
+    while not any(came) and len(came) < 20 and time.monotonic() < deadline:
+        publisher.put(bytes(size))
+        threading.Event().wait(0.02)
+    held.undeclare()
+    assert came
+    return any(came)
+
+
+@pytest.mark.slow
+def test_large_payloads_of_clients_that_want_it_go_through_shared_memory(
+    zenoh_router: ZenohBus, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wants = [client([zenoh_router.endpoint], shared_memory=True) for _ in range(2)]
+    plain = client([zenoh_router.endpoint])
+    monkeypatch.setattr(session_setup, "ENOUGH_SHARED", 1 << 62)
+    in_a_small_container = client([zenoh_router.endpoint], shared_memory=True)
+    source, sink = (bus._session for bus in wants)
+    assert shared(source, sink, 2 * session_setup.SHARED_FROM)
+    assert not shared(source, sink, session_setup.SHARED_FROM // 2)
+    assert not shared(source, plain._session, 2 * session_setup.SHARED_FROM)
+    assert not shared(in_a_small_container._session, sink, 2 * session_setup.SHARED_FROM)
+    for bus in (*wants, plain, in_a_small_container):
+        bus.close()
+
+
+def test_a_client_for_which_the_hub_has_no_shared_memory_left_goes_without(zenoh_router: ZenohBus) -> None:
+    many = [client([zenoh_router.endpoint], shared_memory=True) for _ in range(360)]
+    assert all(bus.link for bus in many)
+    for bus in many:
+        bus.close()
+
+
+def test_an_endpoint_that_is_none_is_a_sentence() -> None:
+    for endpoint in ("127.0.0.1:7447", "tcp/127.0.0.1", "carrier-pigeon/home"):
+        with pytest.raises(NetworkError):
+            client([endpoint], seconds=0.2)
+        with pytest.raises(NetworkError):
+            router(endpoint)
+
+
+def test_a_router_listens_on_loopback_alone_and_tells_where(zenoh_router: ZenohBus) -> None:
+    assert zenoh_router.endpoint.startswith("tcp/127.0.0.1:")
+    assert not zenoh_router.endpoint.endswith(":0")
+    assert zenoh_router.link
+
+
+def test_a_client_takes_the_endpoint_that_answers(zenoh_router: ZenohBus) -> None:
+    bus = client([free_endpoint(), zenoh_router.endpoint])
+    assert bus.link
+    bus.close()
