@@ -752,6 +752,14 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L25", "What is said of a part of a component stands at that part.",
+        "A term has one place where it is read; at another it says nothing, though it is spelt right.",
+        f'{_TUNER} ; sc:command "python tuner.py" ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        f'{_TUNER} ; sc:grounding [ sc:command "python tuner.py" ] ;\n'
+        '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

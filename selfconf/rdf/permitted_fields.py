@@ -282,7 +282,11 @@ SETTINGS: Mapping[IRI, SingleValue] = {
     SC.restarts: SingleValue("restarts", lambda lexical, _: int(lexical)),
 }
 """The fields of a component that say one thing each. The careful reader and the fast loader both read them by this."""
-LINKS = frozenset(field.predicate for subject in COMPONENT.walk() for field in subject.fields if field.into.fields)
+LINKED: Mapping[IRI, Subject] = {
+    field.predicate: field.into for subject in COMPONENT.walk() for field in subject.fields if field.into.fields
+}
+"""What leads from a component to what else its profile is made of, with what that is."""
+LINKS = frozenset(LINKED)
 """What leads from a component to what else its profile is made of."""
 SHAPE_LINKS = PERMITTED_IN_SHAPES - {TYPE} | {SC.accepts}
 """What leads from an input to what the shape that it accepts is made of."""
@@ -298,6 +302,27 @@ SAID_BY: Mapping[IRI, tuple[IRI, ...]] = {
 """What a component and its ports do not say, with the classes of what does."""
 OF_PORTS_ALONE = frozenset((SC.name, SC.signalType))
 """What only ports and parameters say; of a component it says nothing, and is no mistake."""
+_PARTS = tuple(subject for subject in LINKED.values() if subject.type is not None)
+_TOLD_OTHERWISE = OF_COMPONENT.union(OF_PORTS_ALONE, SAID_BY, (TYPE, SC.parameterType))
+OF_PARTS: Mapping[IRI, tuple[IRI, ...]] = {
+    predicate: tuple(
+        dict.fromkeys(
+            part.type
+            for part in _PARTS
+            if part.type is not None and predicate in part.predicates and part[predicate].most != 0
+        )
+    )
+    for part in _PARTS
+    for predicate in part.predicates - _TOLD_OTHERWISE
+}
+"""What parts of a component say of themselves, with the classes of those that do; their names and types apart."""
+
+
+def foreign_terms(subject: Subject) -> frozenset[IRI]:
+    """What a subject does not say, and another part of an advertisement does: here nothing reads it."""
+    return frozenset(OF_PARTS) - subject.predicates
+
+
 STRUCTURE = COMPONENT.predicates.union(OF_PORTS_ALONE, SAID_BY)
 """The predicates that are no properties of a component: those that its profile has fields for, and those that only its
 ports, or roles, templates and their like have."""

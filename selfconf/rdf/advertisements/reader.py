@@ -117,6 +117,8 @@ class _Reader:
         statements = self.document.statements[self.component]
         types = self._types()
         self._look_for_misplaced(COMPONENT, self.component)
+        for link in (SC.tolerates, SC.deadline, SC.grounding):
+            self._look_for_misplaced_behind(self.component, COMPONENT[link])
         inputs = [self._input(name, node) for name, node in self._named(COMPONENT[SC.hasInput])]
         outputs = [self._output(name, node) for name, node in self._named(COMPONENT[SC.hasOutput])]
         inputs += [self._needed(name, node) for name, node in self._named(COMPONENT[SC.needsOperation])]
@@ -185,6 +187,11 @@ class _Reader:
                 owner = _OWNERS.get(field.predicate, counterpart)
                 self._problem(f"only {owner} has a {_word(field.predicate)}{but}")
 
+    def _look_for_misplaced_behind(self, node: Term, link: Field) -> None:
+        """Note what a quantity or a grounding says that only a component says, or no part of an advertisement."""
+        for value in self.document.values(node, link.predicate):
+            self._look_for_misplaced(link.into, value, but=f", and this one stands in {_word(link.predicate)}")
+
     def _parameter_type(self, name: str, node: Term) -> IRI | None:
         type_ = self._required(node, PARAMETER_TYPE)
         if isinstance(type_, IRI):
@@ -216,6 +223,7 @@ class _Reader:
 
     def _output(self, name: str, node: Term) -> Output:
         rate = self._quantity(node, OUTPUT[SC.rate], f"the sc:rate of output {name!r}")
+        self._look_for_misplaced_behind(node, OUTPUT[SC.rate])
         hertz = None if rate is None else float(number(rate) or 0)
         frame = self._field_of_port(node, name, OUTPUT[SC.frame])
         return Output(name, self._signals(node, name), hertz, self._unit(node, name), frame)

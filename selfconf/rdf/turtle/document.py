@@ -16,6 +16,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.turtle.advice import with_advice
 from selfconf.rdf.turtle.refused_text import TAKES_RDF_1_2, check_turtle_1_1
 from selfconf.rdf.vocabulary import FIRST, NIL, REST, TYPE
 
@@ -173,4 +174,4 @@ def not_turtle(error: SyntaxError | MemoryError, source: str, text: str | bytes)
     message = tail if found and head.startswith("Parser error") else str(error.msg)
     if message == _NO_BASE:
         message = "this IRI is relative, and the text is in no file that it could start from; begin with @base <...> ."
-    return TurtleError(f"not Turtle: {message}", file=source, line=error.lineno, column=error.offset)
+    return TurtleError(f"not Turtle: {with_advice(message)}", file=source, line=error.lineno, column=error.offset)

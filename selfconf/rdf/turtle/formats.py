@@ -20,6 +20,7 @@ import pyoxigraph as ox
 from selfconf.errors import TurtleError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
+from selfconf.rdf.turtle.advice import with_advice
 from selfconf.rdf.turtle.document import Document, document_of
 from selfconf.rdf.turtle.refused_text import check_turtle_1_1, check_utf_8
 from selfconf.rdf.turtle.serialization import to_turtle
@@ -112,6 +113,7 @@ def read_ontology(
             message = "its @context is on the web, and is not fetched; write it into the file"
         line = error.lineno or (lines.number if found is RDF_XML else None)
         message = " ".join(message.split())  # it may quote some lines of the file
+        message = with_advice(message) if found is _TURTLE else message
         raise TurtleError(f"not {found.name}: {message}", file=source, line=line, column=error.offset) from None
     except MemoryError:
         raise TurtleError("a literal in it is larger than can be read", file=source) from None

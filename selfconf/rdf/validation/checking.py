@@ -23,7 +23,7 @@ from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
 from selfconf.model.immutable import immutable
 from selfconf.rdf import turtle
 from selfconf.rdf.validation.prefilter import Prefiltered, prefilter
-from selfconf.rdf.validation.syntax import hint, telling
+from selfconf.rdf.validation.syntax import telling
 from selfconf.rdf.validation.term_index import TermIndex, index_of
 from selfconf.rdf.validation.text_places import TextPlaces
 from selfconf.rdf.validation.undeclared_signals import undeclared_signals
@@ -223,7 +223,7 @@ def _syntax(source: SourceText, screened: Prefiltered) -> Iterator[Diagnostic]:
     text = TextPlaces(source.name, source.octets)
     for problem in telling(screened.problems):
         message = f"This is not Turtle: {problem.message.rstrip('.')}."
-        yield text.on(problem.line, problem.column, "SC-S01", message, hint(problem.message), problem.width)
+        yield text.on(problem.line, problem.column, "SC-S01", message, turtle.advice(problem.message), problem.width)
     if screened.too_large:
         message = "A string or an IRI here has over 16 MiB, which is more than can be read."
         yield text.at(text.largest_token(), "SC-S05", message)

@@ -19,7 +19,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.unit_dimension import meant_unit
 from selfconf.model.wording import is_one_line
-from selfconf.rdf.permitted_fields import COMPONENT, OF_COMPONENT, SAID_BY, Field, Subject
+from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_COMPONENT, SAID_BY, Field, Subject, foreign_terms
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE
 
 MOST_PROBLEMS = 100
@@ -36,6 +36,8 @@ _FIELDS = frozenset((ROB.field, ROB.fieldName, ROB.datatype, ROB.repeated, ROB.o
 """What is said of kinds of signals and their fields."""
 _PART_TERMS = frozenset().union(*(subject.predicates for subject in _SUBJECTS)) - OF_COMPONENT - {TYPE, *SAID_BY}
 _PARTS = frozenset(subject.type for subject in _SUBJECTS if subject.type is not None) - {SC.Component}
+_MISPLACED = {link: foreign_terms(subject) for link, subject in LINKED.items()}
+_MISPLACED_AT_COMPONENT = foreign_terms(COMPONENT)
 _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
 _SCHEMA = frozenset((OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDFS.Class, RDF.Property))
 _PLACING = frozenset((RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty))
@@ -269,7 +271,8 @@ class _Advertisements:
     def clear(self, component: str) -> bool:
         """Whether a component certainly conforms."""
         said = self.statements[component]
-        return component[:2] != "_:" and self._conforms(said, COMPONENT) and self._typed(said)
+        in_place = _MISPLACED_AT_COMPONENT.isdisjoint(said)
+        return component[:2] != "_:" and in_place and self._conforms(said, COMPONENT) and self._typed(said)
 
     def _typed(self, said: Properties) -> bool:
         """Whether each port has a signal type, without which there is a warning."""
@@ -297,7 +300,10 @@ class _Advertisements:
         if not asked.into.fields:
             return True
         nodes = [self.statements.get(node, {}) for node in values if isinstance(node, str)]
-        return all(self._conforms(node, asked.into) for node in nodes) and _distinct(nodes, asked.into)
+        astray = _MISPLACED[asked.predicate]
+        return all(astray.isdisjoint(node) and self._conforms(node, asked.into) for node in nodes) and _distinct(
+            nodes, asked.into
+        )
 
 
 def _allowed(asked: Field, value: FileTerm) -> bool:

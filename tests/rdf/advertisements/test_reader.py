@@ -298,9 +298,12 @@ def test_the_ports_of_a_template_and_what_a_port_says_need_no_component() -> Non
         "sc:hasOperation [ sc:name 'i' ; sc:restarts 1 ]",
         "sc:needsOperation [ sc:name 'i' ; sc:grounding [ sc:command 'go' ] ]",
         "sc:hasInput _:i . _:i sc:name 'i' ; sc:deadline [ sc:value 1 ; sc:unit unit:SEC ]",
+        "sc:grounding [ sc:command 'go' ; sc:restarts 1 ]",
+        "sc:tolerates [ sc:value 1 ; sc:unit unit:SEC ; sc:preference 5 ]",
+        "sc:hasOutput [ sc:name 'o' ; sc:rate [ sc:value 1 ; sc:unit unit:HZ ; sc:shareable true ] ]",
     ],
 )
-def test_what_a_port_says_that_only_a_component_says_keeps_its_component_out(said: str) -> None:
+def test_what_a_part_says_that_only_a_component_says_keeps_its_component_out(said: str) -> None:
     text = f"{PREFIXES} :c a sc:Component, :L ; {said} . :a a sc:Component, :L ."
     for good, bad in (
         advertisements.read_document(turtle.parse(text, "a.ttl")),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from selfconf.rdf.turtle import USUAL
 from selfconf.rdf.validation.checking import SourceText, validate_texts
-from selfconf.rdf.validation.syntax import USUAL
 
 HEAD = "".join(f"@prefix {prefix}: <{namespace.base}> .\n" for prefix, namespace in USUAL.items() if prefix != "unit")
 GOOD = """@prefix : <https://example.org/home#> .

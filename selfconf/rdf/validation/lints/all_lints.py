@@ -23,6 +23,7 @@ from selfconf.rdf.validation.lints.templates import (
 from selfconf.rdf.validation.lints.terms import (
     literals_for_iris,
     local_components,
+    misplaced_terms,
     ownerless_ports,
     prefixes,
     repeated_components,
@@ -47,6 +48,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     ownerless_ports,
     untyped_ports,
     typed_operations,
+    misplaced_terms,
     literals_for_iris,
     local_components,
     misnamed_units,

@@ -1,4 +1,4 @@
-"""The lints about words: misspelt terms, confused namespaces, ports that no component has.
+"""The lints about words: misspelt and misplaced terms, confused namespaces, ports that no component has.
 
 SHACL checks what it finds and passes over what it does not know: `sh:minCnt` asks for nothing, and a
 component whose prefix has https where http belongs is no component at all. Only terms of sc: and sh: are errors, since
@@ -16,7 +16,9 @@ from rdflib.namespace import DefinedNamespace
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.model.term import IRI
 from selfconf.rdf import vocabulary
+from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_PARTS, foreign_terms
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.prefilter import TERM_POSITIONS
@@ -168,6 +170,19 @@ def typed_operations(file: LintedFile) -> Iterator[Diagnostic]:
                 yield at(
                     file.positions, file.positions.triples[node, signal, kind].predicate, "SC-L24", message, hint=hint
                 )
+
+
+def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
+    """What is said of a component or a part of one, and is read of other parts alone."""
+    components = file.graph.subjects(RDF.type, URIRef(_SC.Component))
+    foreign: dict[Node, frozenset[IRI]] = dict.fromkeys(components, foreign_terms(COMPONENT))
+    for link, subject in LINKED.items():
+        foreign |= dict.fromkeys(file.graph.objects(None, URIRef(link)), foreign_terms(subject))
+    for (node, predicate, _), offsets in file.positions.triples.items():
+        if str(predicate) in foreign.get(node, ()):
+            owners = " or ".join(f"a {file.short(owner)}" for owner in OF_PARTS[IRI(predicate)])
+            message = f"{file.short(str(predicate))} says nothing here, so this is passed over."
+            yield at(file.positions, offsets.predicate, "SC-L25", message, hint=f"It is said of {owners}.")
 
 
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:

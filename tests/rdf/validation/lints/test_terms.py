@@ -141,3 +141,27 @@ def test_a_signal_type_of_an_operation_is_passed_over_and_that_of_a_port_is_not(
     for link in ("sc:hasOperation", "sc:needsOperation"):
         assert lints(f'{port} {link} [ sc:name "b" ; sc:request rob:Audio ] .') == []
         assert only(f'{port} {link} [ sc:name "b" ; sc:signalType rob:Audio ] .').code == "SC-L24"
+
+
+@pytest.mark.parametrize(
+    ("text", "owners"),
+    [
+        (":a a sc:Component, rob:Tuner ; sc:unit unit:M .", "a sc:Input or a sc:Output"),
+        (":a a sc:Component, rob:Tuner ; sc:command 'python a.py' .", "a sc:Grounding"),
+        (
+            ":a a sc:Component, rob:Tuner ; sc:hasParameter [ sc:name 'p' ; sc:parameterType :P ; sc:depth 3 ] .",
+            "a sc:Input",
+        ),
+        (
+            ":a a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name 'o' ; sc:signalType rob:Text ; sc:request :R ] .",
+            "a sc:Operation",
+        ),
+        (
+            ":a a sc:Component, rob:Tuner ; sc:grounding [ sc:command 'python a.py' ; sc:frame 'map' ] .",
+            "a sc:Input or a sc:Output",
+        ),
+    ],
+)
+def test_what_is_said_of_another_part_of_an_advertisement_is_passed_over_and_told(text: str, owners: str) -> None:
+    found = only(text)
+    assert (found.code, found.severity, found.hint) == ("SC-L25", Severity.WARNING, f"It is said of {owners}.")

@@ -1,0 +1,41 @@
+"""What to try when a text is not Turtle is said by all that read it, in the same words."""
+
+from __future__ import annotations
+
+import pytest
+
+from selfconf.errors import TurtleError
+from selfconf.rdf import turtle
+from selfconf.rdf.validation.checking import SourceText, validate_texts
+
+SLIPS = [
+    ("<urn:a> a <urn:my home> .", "In an IRI a blank is written %20."),
+    ("<urn:a> a rob:Tuner .", "Write @prefix rob: <https://w3id.org/selfconf/robotics#> . at the head of the file."),
+    ("<urn:a> <urn:p> 'x' <urn:q> 'y' .", "Perhaps a semicolon is missing before this."),
+    ("<urn:a> a <urn:b>", "Perhaps the dot after the last statement is missing."),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), SLIPS)
+def test_a_text_that_is_not_turtle_is_refused_with_what_to_try(text: str, said: str) -> None:
+    for read in (lambda: turtle.parse(text, "a.ttl"), lambda: turtle.read_ontology(text.encode(), "a.ttl")):
+        with pytest.raises(TurtleError) as caught:
+            read()
+        assert str(caught.value).endswith(f". {said}")
+
+
+@pytest.mark.parametrize(("text", "said"), SLIPS)
+def test_validation_says_the_same(text: str, said: str) -> None:
+    first, *_ = validate_texts([SourceText("a.ttl", text.encode())], [], []).diagnostics
+    assert first.hint == said
+
+
+def test_an_undeclared_prefix_is_found_in_the_message_of_the_parser() -> None:
+    assert turtle.undeclared_prefix("The prefix rob: has not been declared") == "rob"
+    assert turtle.undeclared_prefix("Invalid IRI code point ' '") is None
+
+
+def test_of_what_nothing_is_known_nothing_is_said() -> None:
+    assert turtle.advice("something else") is None
+    with pytest.raises(TurtleError, match=r"not Turtle: Invalid IRI code point '<'$"):
+        turtle.parse("<urn:a> a <urn:b<> .", "a.ttl")
