@@ -25,7 +25,6 @@ a component, or for its futures, and at most as many of its own calls for their 
 from __future__ import annotations
 
 import itertools
-import logging
 import math
 import time
 from collections import deque
@@ -48,8 +47,6 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import CallStatus, Refused, Response, Signal
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.payloads import UnsayableError, as_bytes, as_json, read_payload
-
-log = logging.getLogger(__name__)
 
 MOST_PAYLOAD = 1 << 20
 """The most bytes that a request may have, and an answer."""

@@ -17,7 +17,6 @@ else on its host, the site's own bus included, is a *client* of a relay (`openin
 from __future__ import annotations
 
 import atexit
-import logging
 import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -35,8 +34,6 @@ from selfconf.bus.zenoh.receivers import DirectReceiver, Receiver, ZenohRequest,
 from selfconf.bus.zenoh.relay import Hub, Relay
 from selfconf.bus.zenoh.roll_call import RollCalls
 from selfconf.bus.zenoh.session import Security
-
-log = logging.getLogger(__name__)
 
 LAST_TOLD = 0.5
 """Seconds after which the last sample is announced as that, where samples are kept: the last may be lost, too."""

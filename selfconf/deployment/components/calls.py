@@ -5,7 +5,6 @@ How one call is made, and what becomes of it, is in `calling`.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -51,8 +50,6 @@ from selfconf.protocol.messages import (
     Reserve,
     Verdict,
 )
-
-log = logging.getLogger(__name__)
 
 SITE_ENDS = 2.5
 """Seconds for which a site is waited for that ends the process of a component that has not obeyed its release: it kills
