@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 from benchmarks.machine import described, quantile, table
 from benchmarks.quiet import until_quiet
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.tokens import PUBLISHER, SUBSCRIPTION, RosEndpoint, RosNodeId, RosToken
 from selfconf.bus.port import Sample, Urgency
@@ -88,9 +88,9 @@ class Arrivals:
 
 def measured(load: Load, seconds: float) -> Relayed:
     """Publish a load for so many seconds, and count what arrives."""
-    kind = ros_messages.usual_type(load.kind)
+    kind = ros2.usual_type(load.kind)
     assert kind is not None
-    payload = ros_messages.message(load.fields, kind)
+    payload = ros2.message(load.fields, kind)
     ends = RosEndpoint(1, PUBLISHER, "/source", kind), RosEndpoint(1, SUBSCRIPTION, "/sink", kind)
     with ExitStack() as stack:
         hub = router()

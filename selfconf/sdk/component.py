@@ -8,7 +8,7 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.errors import ProgrammerError
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
@@ -94,7 +94,7 @@ class Component:
 
         Raises ValueError for what is not what its media type says: it is passed over, and the log says so.
         """
-        return ros_messages.received(value, media)
+        return ros2.received(value, media)
 
     def started(self) -> None:
         """The component has been activated. Raise Refused if it cannot act.

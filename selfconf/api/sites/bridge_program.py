@@ -65,10 +65,10 @@ def serve_nodes(
     `definitions` are folders with definitions of interfaces, in addition to the types that are known; without them
     those are that the environment names.
     """
-    from selfconf import ros_messages
+    from selfconf import ros2
     from selfconf.bridging.ros2 import RosWorld
     from selfconf.bus.zenoh import client
 
-    for left_out in ros_messages.learn(definitions or ros_messages.named_folders()):
+    for left_out in ros2.learn(definitions or ros2.named_folders()):
         complain(str(left_out))
     serve_bridge(RosWorld(lambda: client([endpoint]), domain), site, complain)

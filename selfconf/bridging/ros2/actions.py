@@ -17,15 +17,13 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any, NamedTuple
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.ros2.domain import RosDomain
 from selfconf.bridging.ros2.services import SERVICE_SECONDS, response_fields, response_payload
 from selfconf.bridging.ros2.tokens import PUBLISHER, SERVER, RosEndpoint
 from selfconf.bus.port import Replies
 from selfconf.model.setting_names import setting
-from selfconf.ros_definitions import FEEDBACK_MESSAGE, GET_RESULT, SEND_GOAL
-from selfconf.ros_messages import MessageError
-from selfconf.ros_services import CANCEL_GOAL
+from selfconf.ros2 import CANCEL_GOAL, FEEDBACK_MESSAGE, GET_RESULT, SEND_GOAL, MessageError
 from selfconf.sdk import Refused, Signal
 
 ACTION_SECONDS = 3600.0
@@ -104,10 +102,10 @@ class ActionGoal:
     def send(self, request: Signal) -> None:
         """Send what is asked for as a goal."""
         action = self._action
-        parts = ros_messages.service_parts(action.send_goal.type)
+        parts = ros2.service_parts(action.send_goal.type)
         if self._answer.done():
             return
-        if parts is None or ros_messages.service_parts(action.get_result.type) is None:
+        if parts is None or ros2.service_parts(action.get_result.type) is None:
             self._refuse(f"the fields of {action.type} are not known; give its definition, by {setting('definitions')}")
             return
         if isinstance(request.value, bytes):
@@ -115,7 +113,7 @@ class ActionGoal:
             return
         fields = {"goal_id": self._named, "goal": {} if request.value is None else request.value}
         try:
-            payload = ros_messages.message(fields, parts.request)
+            payload = ros2.message(fields, parts.request)
         except MessageError as error:
             self._refuse(f"what {request.source.short} asks {error}")
             return
@@ -137,9 +135,9 @@ class ActionGoal:
             self.cancel()
             return
         endpoint = self._action.get_result
-        parts = ros_messages.service_parts(endpoint.type)
+        parts = ros2.service_parts(endpoint.type)
         assert parts is not None, "no goal is sent whose result could not be read"
-        payload = ros_messages.message({"goal_id": self._named}, parts.request)
+        payload = ros2.message({"goal_id": self._named}, parts.request)
         self._domain.ask(endpoint, payload, ACTION_SECONDS, self._ended)
 
     def _ended(self, replies: Replies) -> None:
@@ -162,10 +160,10 @@ class ActionGoal:
             return
         self._may_run = False
         # By the name alone: its definition is older than hashes, and some implementations hash it in their way.
-        kind = ros_messages.usual_type(CANCEL_GOAL)
-        parts = None if kind is None else ros_messages.service_parts(kind)
+        kind = ros2.usual_type(CANCEL_GOAL)
+        parts = None if kind is None else ros2.service_parts(kind)
         assert parts is not None, "the service that cancels goals is known"
-        payload = ros_messages.message({"goal_info": {"goal_id": self._named}}, parts.request)
+        payload = ros2.message({"goal_info": {"goal_id": self._named}}, parts.request)
         self._domain.ask(self._action.cancel_goal, payload, SERVICE_SECONDS, lambda replies: None)
 
     def _refuse(self, reason: str) -> None:

@@ -12,11 +12,11 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.ros2.domain import RosDomain
 from selfconf.bridging.ros2.tokens import RosEndpoint
 from selfconf.bus.port import Replies, Sample, Undo
-from selfconf.ros_messages import MessageError
+from selfconf.ros2 import MessageError
 
 CHANGE, STATE, EVENT = "change_state", "get_state", "transition_event"
 """The names of the services and of the topic, below that of the node."""
@@ -148,8 +148,8 @@ class NodeLifecycle:
     ) -> None:
         """Ask one of the services; what is answered after this turn is for `late`, None if that cannot be read."""
         # By the name alone: these definitions are older than hashes, and some implementations hash them in their way.
-        kind = ros_messages.usual_type(endpoint.type.name)
-        parts = None if kind is None else ros_messages.service_parts(kind)
+        kind = ros2.usual_type(endpoint.type.name)
+        parts = None if kind is None else ros2.service_parts(kind)
         assert parts is not None, "the services of lifecycle nodes are known"
         turn, answered = self._turn, parts.response
 
@@ -157,7 +157,7 @@ class NodeLifecycle:
             answer: Mapping[str, Any] | None = None
             problem = ""
             try:
-                answer = ros_messages.message_fields(replies.samples[0].payload, answered)
+                answer = ros2.message_fields(replies.samples[0].payload, answered)
             except IndexError:
                 problem = f"the service {endpoint.topic} of a lifecycle node does not answer"
             except MessageError as error:
@@ -169,13 +169,13 @@ class NodeLifecycle:
             else:
                 heard(answer)
 
-        payload = ros_messages.message(fields, parts.request)
+        payload = ros2.message(fields, parts.request)
         self._domain.ask(endpoint, payload, TRANSITION_SECONDS, done)
 
     def _transition(self, event: RosEndpoint, sample: Sample) -> None:
         """The node has told of a transition."""
         try:
-            goal = ros_messages.message_fields(sample.payload, event.type)["goal_state"]
+            goal = ros2.message_fields(sample.payload, event.type)["goal_state"]
         except (MessageError, AttributeError):  # the latter for a definition of the message that is not known
             return
         if self._active and goal["id"] != ACTIVE:

@@ -16,7 +16,7 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any, NamedTuple
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.ros2.actions import call_action
 from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.described_nodes import NodePorts, translated_name
@@ -27,7 +27,7 @@ from selfconf.bridging.ros2.signal_translations import translation_of
 from selfconf.bridging.ros2.tokens import PUBLISHER, RosEndpoint, RosToken
 from selfconf.bus.port import Publisher, Replies, Sample, Undo, Urgency
 from selfconf.errors import PeerError
-from selfconf.ros_messages import MessageType
+from selfconf.ros2 import MessageType
 from selfconf.sdk import Component, Signal
 
 MOST_MESSAGES = 5000
@@ -84,7 +84,7 @@ class NodeComponent(Component):
         endpoint = self._ports.inputs[port]
         try:
             payload = self._payload(endpoint, signal)
-        except ros_messages.MessageError as error:
+        except ros2.MessageError as error:
             self._domain.tell(f"{endpoint.topic}: what {signal.source.short} issues {error}")
             return
         if payload is not None:
@@ -152,12 +152,12 @@ class NodeComponent(Component):
         """A signal as a message; None if the message has come over this topic. Raises MessageError."""
         if not isinstance(signal.value, bytes):
             return written(signal, endpoint.type)
-        said = ros_messages.read_media(signal.media)
+        said = ros2.read_media(signal.media)
         if said is None:
-            raise ros_messages.MessageError("is neither a message nor an object")
+            raise ros2.MessageError("is neither a message nor an object")
         if said.type != endpoint.type:
             other = "another definition of it" if said.type.name == endpoint.type.name else said.type.name
-            raise ros_messages.MessageError(f"is no {endpoint.type.name} by its hash, but {other}; it is not relayed")
+            raise ros2.MessageError(f"is no {endpoint.type.name} by its hash, but {other}; it is not relayed")
         return None if said.topic == place_of(self._domain.number, endpoint) else signal.value
 
     def _relay_to(self, endpoint: RosEndpoint) -> RelayedTopic:
@@ -197,7 +197,7 @@ class RelayedOutput:
         self.key = endpoint.key(domain.number)
         self._media = endpoint.type.media(place_of(domain.number, endpoint))
         self._sources = domain.sources(self.key)
-        self._checked = ros_messages.is_known(endpoint.type)
+        self._checked = ros2.is_known(endpoint.type)
         self._translation = translation_of(endpoint.type.name)
         self._second, self._in_second = 0, 0
 
@@ -232,10 +232,10 @@ class RelayedOutput:
         if self._checked:
             try:
                 if self._translation is None:
-                    ros_messages.check_message(payload, self._endpoint.type)
+                    ros2.check_message(payload, self._endpoint.type)
                 else:
-                    signal = self._translation.read(ros_messages.message_fields(payload, self._endpoint.type))
-            except ros_messages.MessageError as error:
+                    signal = self._translation.read(ros2.message_fields(payload, self._endpoint.type))
+            except ros2.MessageError as error:
                 self._component.fail(f"what {self._token.full_name} publishes on {self._endpoint.topic} {error}")
                 return
         self._component.emit(self._name, payload, moment, self._media)
@@ -257,9 +257,9 @@ class RelayedOutput:
 
 def written(signal: Signal, kind: MessageType) -> bytes:
     """An object as a message: it has the fields of that, or of a signal that is translated. Raises MessageError."""
-    if not ros_messages.is_known(kind):
-        raise ros_messages.MessageError(f"is an object, and the fields of {kind.name} are not known")
+    if not ros2.is_known(kind):
+        raise ros2.MessageError(f"is an object, and the fields of {kind.name} are not known")
     translation, fields = translation_of(kind.name), signal.value
     if translation is not None and translation.write is not None and translation.is_signal(fields):
         fields = translation.write(fields, signal.time)
-    return ros_messages.message(fields, kind)
+    return ros2.message(fields, kind)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.described_nodes import OF_EVERY_NODE, described_node, is_bridged, node_iri, ports_of
 from selfconf.bridging.ros2.domain import RosDomain, bridge_token
@@ -72,7 +72,7 @@ class RosWorld:
 
     def open(self, bridge: Bridge) -> None:
         """Begin to follow the tokens of the domain. Raises NetworkError."""
-        ros_messages.load()  # here it holds up nothing
+        ros2.load()  # here it holds up nothing
         self._bridge, self._bus = bridge, self._connect()
         self._domain = RosDomain(self._bus, self._number, bridge.complain)
         begun = threading.Event()

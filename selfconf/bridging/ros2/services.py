@@ -17,13 +17,13 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.domain import RosDomain, bridge_token
 from selfconf.bridging.ros2.tokens import SERVER, RosEndpoint
 from selfconf.bus.port import Replies, Request, Undo
 from selfconf.errors import PeerError, ProgrammerError
-from selfconf.ros_messages import MessageError, MessageType
+from selfconf.ros2 import MessageError, MessageType
 from selfconf.sdk import Component, Refused, Response, Signal
 
 SERVICE_SECONDS = 60.0
@@ -59,15 +59,15 @@ def call_service(domain: RosDomain, endpoint: RosEndpoint, request: Signal) -> F
 
 def _request(kind: MessageType, request: Signal) -> bytes:
     """A request as CDR. Raises Refused."""
-    parts = ros_messages.service_parts(kind)
+    parts = ros2.service_parts(kind)
     if not isinstance(request.value, bytes):
         if parts is None:
             raise Refused(f"the fields of {kind.name} are not known, so that no object can be a request")
         try:
-            return ros_messages.message({} if request.value is None else request.value, parts.request)
+            return ros2.message({} if request.value is None else request.value, parts.request)
         except MessageError as error:
             raise Refused(f"what {request.source.short} asks {error}") from None
-    said = ros_messages.read_media(request.media)
+    said = ros2.read_media(request.media)
     if said is None or said.type != (kind if parts is None else parts.request):
         raise Refused(f"what {request.source.short} asks is no request of {kind.name} by its hash")
     return request.value
@@ -76,7 +76,7 @@ def _request(kind: MessageType, request: Signal) -> bytes:
 def _response(endpoint: RosEndpoint, replies: Replies, as_bytes: bool) -> Any:
     """What a server has answered. Raises Refused."""
     payload = response_payload(endpoint, replies, SERVICE_SECONDS)
-    if ros_messages.service_parts(endpoint.type) is None:
+    if ros2.service_parts(endpoint.type) is None:
         return payload
     fields = response_fields(endpoint, payload)
     return payload if as_bytes else fields
@@ -94,10 +94,10 @@ def response_payload(endpoint: RosEndpoint, replies: Replies, seconds: float) ->
 
 def response_fields(endpoint: RosEndpoint, payload: bytes) -> dict[str, Any]:
     """The fields of a response of a service that is known, arrays as lists. Raises Refused if it is none."""
-    parts = ros_messages.service_parts(endpoint.type)
+    parts = ros2.service_parts(endpoint.type)
     assert parts is not None, "a response is read only where its definition is known"
     try:
-        fields = ros_messages.message_fields(payload, parts.response)
+        fields = ros2.message_fields(payload, parts.response)
     except MessageError as error:
         raise Refused(f"what the service {endpoint.topic} answers {error}") from None
     return {name: _listed(value) for name, value in fields.items()}
@@ -152,7 +152,7 @@ class ServedService:
         except PeerError as error:
             self._refuse(request, str(error))
             return
-        parts = ros_messages.service_parts(self._endpoint.type)
+        parts = ros2.service_parts(self._endpoint.type)
         media = (self._endpoint.type if parts is None else parts.request).media()
 
         def answered(answer: Response) -> None:  # on the thread of the components' code
@@ -185,11 +185,11 @@ class ServedService:
             raise MessageError(answer.detail)
         if isinstance(answer.value, bytes):
             return answer.value
-        parts = ros_messages.service_parts(self._endpoint.type)
+        parts = ros2.service_parts(self._endpoint.type)
         if parts is None:
             raise MessageError(f"the fields of {self._endpoint.type.name} are not known")
         try:
-            return ros_messages.message({} if answer.value is None else answer.value, parts.response)
+            return ros2.message({} if answer.value is None else answer.value, parts.response)
         except MessageError as error:
             raise MessageError(f"what is answered {error}") from None
 

@@ -13,7 +13,7 @@ import re
 
 from selfconf.errors import PeerError
 from selfconf.model.immutable import immutable
-from selfconf.ros_messages import HASH, NAME, MessageType
+from selfconf.ros2 import HASH, NAME, MessageType
 
 ROOT = "@ros2_lv"
 NODE, PUBLISHER, SUBSCRIPTION, SERVER, CLIENT = "NN", "MP", "MS", "SS", "SC"

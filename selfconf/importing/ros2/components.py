@@ -24,7 +24,7 @@ from selfconf.importing.ros2.interfaces import (
 from selfconf.importing.sources import SourceDocument
 from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.ros_definitions import FEEDBACK_MESSAGE, GOAL, REQUEST, RESPONSE, RESULT
+from selfconf.ros2 import FEEDBACK_MESSAGE, GOAL, REQUEST, RESPONSE, RESULT
 
 Wired = Callable[[NodeInterface], bool]
 

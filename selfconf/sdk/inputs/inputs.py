@@ -22,7 +22,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bus.port import Bus
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import CALL_MARK, Profile
@@ -131,7 +131,7 @@ class Inputs:
         code: CodeThread,
         profile: Profile,
         events: InputEvents,
-        read: Callable[[Any, str], Any] = ros_messages.received,
+        read: Callable[[Any, str], Any] = ros2.received,
     ) -> None:
         """`read` makes of a value and its media type what the component receives; it may raise ValueError."""
         self._bus, self._keys, self._code, self._events, self._read_value = bus, keys, code, events, read

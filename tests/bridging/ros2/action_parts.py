@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.ros2.tokens import RosEndpoint
-from selfconf.ros_messages import MessageType
+from selfconf.ros2 import MessageType
 
 ACTION = "example_interfaces/action/Fibonacci"
 PARTS = {
@@ -28,5 +28,5 @@ def parts_of(action: str, kind: str = ACTION) -> list[RosEndpoint]:
 
 def known_parts_of(action: str, kind: str = ACTION) -> list[RosEndpoint]:
     """The endpoints of the server of an action of a type, with the hashes that its parts have."""
-    kinds = {each.entity: ros_messages.usual_type(each.type.name) for each in parts_of(action, kind)}
+    kinds = {each.entity: ros2.usual_type(each.type.name) for each in parts_of(action, kind)}
     return [replace(each, type=kinds[each.entity] or each.type) for each in parts_of(action, kind)]

@@ -17,8 +17,8 @@ from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Apply, CallAnswer, Reserve, Wire
 from selfconf.sdk import Component, Signal
+from tests.ros2.test_messages import STRING_HASH
 from tests.sdk.living import LivingStage, until
-from tests.test_ros_messages import STRING_HASH
 
 DOMAIN = 42
 STRING_KEY = f"std_msgs::msg::dds_::String_/{STRING_HASH}"

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bridging.ros2.actions import ACTION_SECONDS, actions_of, call_action
 from selfconf.bridging.ros2.domain import RosDomain
 from selfconf.bridging.ros2.services import SERVICE_SECONDS
@@ -20,7 +20,7 @@ from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Apply, Reserve, Wire
-from selfconf.ros_messages import MessageType
+from selfconf.ros2 import MessageType
 from selfconf.sdk import CallStatus, Component, Response, Signal
 from tests.bridging.ros2.action_parts import ACTION, known_parts_of, parts_of
 from tests.bridging.ros2.nodes import DOMAIN, bridging_domain, lines_of, node
@@ -63,18 +63,18 @@ class SimulatedServer:
 
     def accept(self) -> None:
         """Accept the goal that was sent."""
-        parts = ros_messages.service_parts(self._action.send_goal.type)
+        parts = ros2.service_parts(self._action.send_goal.type)
         assert parts is not None
         (request,) = self.sent
-        request.reply(request.key, ros_messages.message({"accepted": True}, parts.response))
+        request.reply(request.key, ros2.message({"accepted": True}, parts.response))
         request.finish()
 
     def end(self, fields: Mapping[str, Any]) -> None:
         """Answer what was asked for as the result."""
-        parts = ros_messages.service_parts(self._action.get_result.type)
+        parts = ros2.service_parts(self._action.get_result.type)
         assert parts is not None
         (request,) = self.results
-        request.reply(request.key, ros_messages.message(fields, parts.response))
+        request.reply(request.key, ros2.message(fields, parts.response))
         request.finish()
 
     def until(self, happened: Callable[[], object], seconds: float = 5.0) -> bool:
@@ -100,7 +100,7 @@ def test_an_action_is_called_whose_definition_was_given(tmp_path: Path) -> None:
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text(text)
     try:
-        assert ros_messages.learn([tmp_path]) == []
+        assert ros2.learn([tmp_path]) == []
         server = SimulatedServer(known_parts_of("/drive", "lab_msgs/action/Drive"))
         answer = server.called({"pose": {"header": {"frame_id": "map"}}, "tree": {"name": "spin"}})
         assert server.until(lambda: server.sent)
@@ -112,7 +112,7 @@ def test_an_action_is_called_whose_definition_was_given(tmp_path: Path) -> None:
         assert server.until(answer.done)
         assert answer.result() == {"error": 7}
     finally:
-        ros_messages.learn([])
+        ros2.learn([])
 
 
 def test_a_goal_that_nobody_waits_for_when_it_is_accepted_is_cancelled() -> None:

@@ -11,10 +11,10 @@ from selfconf.bridging.ros2.tokens import RosEndpoint, RosNodeId, RosQuality, Ro
 from selfconf.importing import ImportedDocument, described_text
 from selfconf.rdf.advertisements import read_advertisements
 from selfconf.rdf.vocabulary import ROB
-from selfconf.ros_messages import MessageType
+from selfconf.ros2 import MessageType
 from tests.bridging.ros2.action_parts import ACTION, parts_of
 from tests.bridging.ros2.nodes import ADD_HASH
-from tests.test_ros_messages import STRING_HASH
+from tests.ros2.test_messages import STRING_HASH
 
 ADD = "https://w3id.org/selfconf/ros2/example_interfaces/srv/AddTwoInts"
 

@@ -6,7 +6,7 @@ from selfconf.bridging.ros2 import domain as shared
 from selfconf.bridging.ros2.domain import RosDomain, bridge_token
 from selfconf.bridging.ros2.tokens import SERVER, RosEndpoint
 from selfconf.bus.memory import Network
-from selfconf.ros_messages import MessageType
+from selfconf.ros2 import MessageType
 from tests.bridging.ros2.nodes import ADD_HASH
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.bus.port import Urgency
 from selfconf.protocol.messages import Apply, Release, Reserve
 from tests.bridging.ros2.nodes import DOMAIN, BridgedDomain, StandIn, bridging_domain, node
@@ -22,7 +22,7 @@ NEXT = {(1, 1): 2, (2, 3): 3, (3, 4): 2}
 
 def key_of(name: str) -> str:
     """The end of the keys of a type."""
-    kind = ros_messages.usual_type(name)
+    kind = ros2.usual_type(name)
     assert kind is not None
     package, segment, local = name.split("/")
     return f"{package}::{segment}::dds_::{local}_/{kind.hash}"
@@ -57,9 +57,9 @@ class Managed:
 
     def tell_that_it_left(self) -> None:
         """Tell that it has left the active state by itself; whoever asks meanwhile is told what it was told to be."""
-        kind = ros_messages.usual_type("lifecycle_msgs/msg/TransitionEvent")
+        kind = ros2.usual_type("lifecycle_msgs/msg/TransitionEvent")
         assert kind is not None
-        told = ros_messages.message({"goal_state": {"id": 1, "label": LABELS[1]}}, kind)
+        told = ros2.message({"goal_state": {"id": 1, "label": LABELS[1]}}, kind)
         self._events.put(told, struct.pack("<qqB16s", 1, 10**9, 16, b"m" * 16))
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from selfconf import ros_messages
+from selfconf import ros2
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Apply, Release, Reserve, Wire
 from selfconf.sdk import CallStatus, Component, Response, Signal
@@ -161,7 +161,7 @@ def test_services_of_native_nodes_answer_and_their_clients_are_answered(
         assert component.ask("add", {"a": 40, "b": 2}).value == {"sum": 42}
         assert "result" in component.ask("parameters", {}).value
         assert "the fields of rosbag2_interfaces/srv/SetRate are not" in component.ask("rate", {"rate": 2.0}).detail
-        assert ros_messages.learn([tmp_path / "given"]) == []
+        assert ros2.learn([tmp_path / "given"]) == []
         assert component.ask("rate", {"rate": 2.0}).value == {"success": True}
         assert component.ask("rate", {"rate": 0.0}).value == {"success": False}
         assert until(lambda: found.lives("client"), STARTS), found.complaints

@@ -15,8 +15,8 @@ from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
 from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node, reader, text
+from tests.ros2.test_messages import STRING_HASH
 from tests.sdk.living import LivingStage, until
-from tests.test_ros_messages import STRING_HASH
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 OTHER_HASH = "RIHS01_" + "0" * 64

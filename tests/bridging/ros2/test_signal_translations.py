@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from rdflib import Graph, URIRef
 
-from selfconf import files, library, ros_messages
+from selfconf import files, library, ros2
 from selfconf.bridging.ros2.signal_translations import SIGNAL_TRANSLATIONS, translation_of
 from selfconf.importing import ROS2, InterfaceKind
 from selfconf.importing.ros2.interfaces import type_iri
@@ -28,15 +28,15 @@ SIGNALS: dict[str, dict[str, Any]] = {
 
 def read(name: str, **fields: Any) -> dict[str, Any]:
     """A message of a type as a signal, by way of its bytes."""
-    kind, translation = ros_messages.usual_type(name), translation_of(name)
+    kind, translation = ros2.usual_type(name), translation_of(name)
     assert kind is not None
     assert translation is not None
-    return translation.read(ros_messages.message_fields(ros_messages.message(fields, kind), kind))
+    return translation.read(ros2.message_fields(ros2.message(fields, kind), kind))
 
 
 @pytest.mark.parametrize("each", SIGNAL_TRANSLATIONS, ids=lambda each: each.message)
 def test_a_message_is_a_signal_of_its_kind_and_comes_back_from_it(each: Any) -> None:
-    kind = ros_messages.usual_type(each.message)
+    kind = ros2.usual_type(each.message)
     assert kind is not None
     (fields,) = files.signal_fields(library.ontologies(), frozenset([each.signal])).values()
     assert each.fields == tuple(one.name for one in fields.fields if one.required)
@@ -44,8 +44,8 @@ def test_a_message_is_a_signal_of_its_kind_and_comes_back_from_it(each: Any) -> 
     if each.write is not None:
         signal = SIGNALS[each.signal]
         assert each.is_signal(signal)
-        payload = ros_messages.message(each.write(signal, 1700000000.5), kind)
-        found = each.read(ros_messages.message_fields(payload, kind))
+        payload = ros2.message(each.write(signal, 1700000000.5), kind)
+        found = each.read(ros2.message_fields(payload, kind))
         lost = {"frame": ""} if each.message.endswith("Pose2D") else {}
         assert found == pytest.approx({**signal, **lost})
 

@@ -6,8 +6,8 @@ import pytest
 
 from selfconf.bridging.ros2.tokens import RosEndpoint, RosNodeId, RosQuality, RosToken
 from selfconf.errors import PeerError
-from selfconf.ros_messages import MessageType
-from tests.test_ros_messages import STRING_HASH
+from selfconf.ros2 import MessageType
+from tests.ros2.test_messages import STRING_HASH
 
 SESSION = "7d08a94e8fbbdcc55aff222861c243a4"
 NODE_KEY = f"@ros2_lv/7/{SESSION}/0/0/NN/%/%front%left/lidar"

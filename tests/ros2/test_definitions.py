@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from selfconf import ros_definitions, ros_messages
 from selfconf.errors import AuthorError
-from selfconf.ros_definitions import InterfaceDefinition, complete_types, defined_types, read_definitions
-from selfconf.ros_messages import MessageType
+from selfconf.ros2 import definitions, messages
+from selfconf.ros2.definitions import InterfaceDefinition, complete_types, defined_types, read_definitions
+from selfconf.ros2.messages import MessageType
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 DRIVE = """\
@@ -31,7 +31,7 @@ builtin_interfaces/Duration[<=3] times
 def forgotten() -> Iterator[None]:
     """What a test has learned is forgotten after it."""
     yield
-    ros_messages.learn([])
+    messages.learn([])
 
 
 def defined(folder: Path, **texts: str) -> Path:
@@ -46,7 +46,7 @@ def defined(folder: Path, **texts: str) -> Path:
 
 def usual(name: str) -> MessageType:
     """A type that is known."""
-    found = ros_messages.usual_type(name)
+    found = messages.usual_type(name)
     assert found is not None
     return found
 
@@ -54,19 +54,19 @@ def usual(name: str) -> MessageType:
 @pytest.mark.usefixtures("forgotten")
 def test_an_action_is_called_by_what_its_definition_says(tmp_path: Path) -> None:
     folder = defined(tmp_path, Mood__msg="char letter\nbool good True\n", Drive__action=DRIVE)
-    assert ros_messages.learn([folder]) == []
-    parts = ros_messages.service_parts(usual("lab_msgs/action/Drive_SendGoal"))
+    assert messages.learn([folder]) == []
+    parts = messages.service_parts(usual("lab_msgs/action/Drive_SendGoal"))
     assert parts is not None
     goal = {"pose": {"header": {"frame_id": "map"}}, "mood": {"letter": 65}, "notes": ["slowly"]}
-    said = ros_messages.message_fields(ros_messages.message({"goal": goal}, parts.request), parts.request)
+    said = messages.message_fields(messages.message({"goal": goal}, parts.request), parts.request)
     assert said["goal"]["notes"] == ["slowly"]
     assert said["goal"]["mood"] == {"letter": 65, "good": False}
     assert said["goal"]["pose"]["header"]["frame_id"] == "map"
     feedback = usual("lab_msgs/action/Drive_Feedback")
-    payload = ros_messages.message({"from": 2.5, "times": [{"sec": 3}]}, feedback)  # a word of Python as a name
-    assert ros_messages.message_fields(payload, feedback) == {"from": 2.5, "times": [{"sec": 3, "nanosec": 0}]}
-    ros_messages.learn([])
-    assert ros_messages.usual_type("lab_msgs/action/Drive_SendGoal") is None
+    payload = messages.message({"from": 2.5, "times": [{"sec": 3}]}, feedback)  # a word of Python as a name
+    assert messages.message_fields(payload, feedback) == {"from": 2.5, "times": [{"sec": 3, "nanosec": 0}]}
+    messages.learn([])
+    assert messages.usual_type("lab_msgs/action/Drive_SendGoal") is None
 
 
 @pytest.mark.usefixtures("forgotten")
@@ -76,9 +76,9 @@ def test_what_is_defined_has_the_hash_that_others_compute(tmp_path: Path) -> Non
     text = "\r\n".join(("int32 order", "---", "int32[] sequence", "---", "int32[] sequence", ""))
     (folder / "Fibonacci.action").write_text(text)
     before = usual("example_interfaces/action/Fibonacci_SendGoal")
-    ros_messages.learn([tmp_path])
+    messages.learn([tmp_path])
     # The last store is one of those with what was learned.
-    assert ros_messages._stores()[-1].hash_rihs01(before.name) == before.hash
+    assert messages._stores()[-1].hash_rihs01(before.name) == before.hash
 
 
 @pytest.mark.usefixtures("forgotten")
@@ -87,18 +87,18 @@ def test_a_definition_goes_before_that_of_a_distribution_and_leaves_it_known(tmp
     folder.mkdir(parents=True)
     (folder / "String.msg").write_text("string data\nstring language\n")
     usual_one = usual("std_msgs/msg/String")
-    ros_messages.learn([tmp_path])
-    other = MessageType("std_msgs/msg/String", ros_messages._stores()[-1].hash_rihs01("std_msgs/msg/String"))
+    messages.learn([tmp_path])
+    other = MessageType("std_msgs/msg/String", messages._stores()[-1].hash_rihs01("std_msgs/msg/String"))
     assert other != usual_one
-    assert ros_messages.message_fields(ros_messages.message({"language": "en"}, other), other)["language"] == "en"
-    assert list(ros_messages.message_fields(ros_messages.message({}, usual_one), usual_one)) == ["data"]
+    assert messages.message_fields(messages.message({"language": "en"}, other), other)["language"] == "en"
+    assert list(messages.message_fields(messages.message({}, usual_one), usual_one)) == ["data"]
 
 
 @pytest.mark.usefixtures("forgotten")
 def test_the_environment_names_definitions_for_every_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SELFCONF_ROS_DEFINITIONS", f"{defined(tmp_path, Mood__msg='bool good')}")
-    ros_messages.learn([])  # as at the start of a program, which has learned nothing
-    assert ros_messages.is_known(usual("lab_msgs/msg/Mood"))
+    messages.learn([])  # as at the start of a program, which has learned nothing
+    assert messages.is_known(usual("lab_msgs/msg/Mood"))
 
 
 @pytest.mark.parametrize(
@@ -132,10 +132,10 @@ def test_the_environment_names_definitions_for_every_program(tmp_path: Path, mon
 @pytest.mark.usefixtures("forgotten")
 def test_what_cannot_be_read_is_left_out_with_its_place(tmp_path: Path, name: str, text: str, words: str) -> None:
     folder = defined(tmp_path, Other__msg="bool good", **{name: text})
-    (left_out,) = ros_messages.learn([folder])
+    (left_out,) = messages.learn([folder])
     assert words in str(left_out)
     assert str(left_out).startswith(str(folder))
-    assert ros_messages.usual_type("lab_msgs/msg/Other") is not None
+    assert messages.usual_type("lab_msgs/msg/Other") is not None
 
 
 def test_folders_without_definitions_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,7 +144,7 @@ def test_folders_without_definitions_are_refused(tmp_path: Path, monkeypatch: py
     (tmp_path / "Mood.msg").write_text("bool good")  # in no folder of its kind
     with pytest.raises(AuthorError, match="there is no definition of ROS 2 below"):
         read_definitions([tmp_path], [])
-    monkeypatch.setattr(ros_definitions, "MOST_FILES", 1)
+    monkeypatch.setattr(definitions, "MOST_FILES", 1)
     with pytest.raises(AuthorError, match="there are more than 1 definitions"):
         read_definitions([defined(tmp_path, A__msg="", B__msg="")], [])
 
@@ -152,7 +152,7 @@ def test_folders_without_definitions_are_refused(tmp_path: Path, monkeypatch: py
 def test_a_file_that_is_no_text_or_too_long_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = defined(tmp_path, A__msg="", B__msg="bool good", C__msg="# " + "x" * 50)
     (folder / "share" / "lab_msgs" / "msg" / "A.msg").write_bytes(b"\xff")
-    monkeypatch.setattr(ros_definitions, "MOST_OCTETS", 40)
+    monkeypatch.setattr(definitions, "MOST_OCTETS", 40)
     left_out: list[AuthorError] = []
     assert [each.name for each in read_definitions([folder], left_out)] == ["lab_msgs/msg/B"]
     assert ["cannot be read" in str(left_out[0]), "longer than 40 octets" in str(left_out[1])] == [True, True]

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from selfconf import ros_messages
-from selfconf.ros_messages import MessageError, MessageMedia, MessageType, read_media
+from selfconf.ros2 import messages
+from selfconf.ros2.messages import MessageError, MessageMedia, MessageType, read_media
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
@@ -19,20 +19,20 @@ HELLO = b"\x00\x01\x00\x00" + struct.pack("<I", 6) + b"hello\x00"
 
 
 def usual(name: str) -> MessageType:
-    found = ros_messages.usual_type(name)
+    found = messages.usual_type(name)
     assert found is not None
     return found
 
 
 def test_a_message_is_read_and_written_as_ros_does() -> None:
-    ros_messages.load()
+    messages.load()
     assert usual("std_msgs/msg/String") == STRING
-    assert ros_messages.message_fields(HELLO, STRING) == {"data": "hello"}
-    assert ros_messages.message({"data": "hello"}, STRING) == HELLO
+    assert messages.message_fields(HELLO, STRING) == {"data": "hello"}
+    assert messages.message({"data": "hello"}, STRING) == HELLO
 
 
 def test_a_type_is_made_once_for_all_distributions() -> None:
-    first, *others = ros_messages._stores()  # made anew they would take as long for each distribution
+    first, *others = messages._stores()  # made anew they would take as long for each distribution
     for name in ("std_srvs/srv/Trigger_Request", "std_srvs/srv/Trigger_Response"):
         assert all(store.types[name] is first.types[name] for store in others)
         assert all(store.hash_rihs01(name) == first.hash_rihs01(name) for store in others)
@@ -40,15 +40,13 @@ def test_a_type_is_made_once_for_all_distributions() -> None:
 
 def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
     scan = usual("sensor_msgs/msg/LaserScan")
-    fields = ros_messages.message_fields(
-        ros_messages.message({"ranges": [1, 2.5], "header": {"frame_id": "x"}}, scan), scan
-    )
+    fields = messages.message_fields(messages.message({"ranges": [1, 2.5], "header": {"frame_id": "x"}}, scan), scan)
     assert fields["header"] == {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "x"}
     assert fields["ranges"].tolist() == [1.0, 2.5]
     assert fields["angle_min"] == 0.0
     transforms = usual("tf2_msgs/msg/TFMessage")
-    payload = ros_messages.message({"transforms": [{"child_frame_id": "a"}, {}]}, transforms)
-    assert [one["child_frame_id"] for one in ros_messages.message_fields(payload, transforms)["transforms"]] == [
+    payload = messages.message({"transforms": [{"child_frame_id": "a"}, {}]}, transforms)
+    assert [one["child_frame_id"] for one in messages.message_fields(payload, transforms)["transforms"]] == [
         "a",
         "",
     ]
@@ -67,14 +65,14 @@ def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
 )
 def test_an_object_that_is_no_message_is_said_to_be_none(fields: Any, kind: str, words: str) -> None:
     with pytest.raises(MessageError, match=words):
-        ros_messages.message(fields, usual(kind))
+        messages.message(fields, usual(kind))
 
 
 def test_a_type_is_known_by_its_hash() -> None:
-    assert ros_messages.is_known(STRING)
-    assert not ros_messages.is_known(STRING._replace(hash="RIHS01_" + "0" * 64))
-    assert not ros_messages.is_known(MessageType("lab_msgs/msg/Mood", STRING_HASH))
-    assert ros_messages.usual_type("lab_msgs/msg/Mood") is None
+    assert messages.is_known(STRING)
+    assert not messages.is_known(STRING._replace(hash="RIHS01_" + "0" * 64))
+    assert not messages.is_known(MessageType("lab_msgs/msg/Mood", STRING_HASH))
+    assert messages.usual_type("lab_msgs/msg/Mood") is None
 
 
 def test_a_media_type_says_the_type_and_where_it_was_published() -> None:
@@ -85,11 +83,11 @@ def test_a_media_type_says_the_type_and_where_it_was_published() -> None:
 
 
 def test_a_signal_is_received_as_its_fields_if_its_type_is_known() -> None:
-    assert ros_messages.received(HELLO, STRING.media("7/chatter")) == {"data": "hello"}
+    assert messages.received(HELLO, STRING.media("7/chatter")) == {"data": "hello"}
     unknown = STRING._replace(hash="RIHS01_" + "0" * 64)
-    assert ros_messages.received(HELLO, unknown.media()) == HELLO
-    assert ros_messages.received(HELLO, "image/png") == HELLO
-    assert ros_messages.received({"on": True}, "") == {"on": True}
+    assert messages.received(HELLO, unknown.media()) == HELLO
+    assert messages.received(HELLO, "image/png") == HELLO
+    assert messages.received({"on": True}, "") == {"on": True}
 
 
 def test_broken_bytes_are_refused_and_nothing_else_happens() -> None:
@@ -102,13 +100,13 @@ def test_broken_bytes_are_refused_and_nothing_else_happens() -> None:
         "sensor_msgs/msg/Image",
     ):
         kind = usual(name)
-        whole = ros_messages.message({}, kind)
+        whole = messages.message({}, kind)
         for _ in range(500):
             octets = bytearray(whole + chance.randbytes(chance.randrange(40)))
             for _ in range(chance.randrange(1, 4)):
                 octets[chance.randrange(len(octets))] = chance.randrange(256)
             try:
-                ros_messages.check_message(bytes(octets[: chance.randrange(len(octets) + 1)]), kind)
+                messages.check_message(bytes(octets[: chance.randrange(len(octets) + 1)]), kind)
             except MessageError:
                 broken += 1
     assert broken > 1000

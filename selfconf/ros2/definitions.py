@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from selfconf.errors import AuthorError
-from selfconf.ros_services import EVENT_INFO
+from selfconf.ros2.services import EVENT_INFO
 
 REQUEST, RESPONSE, EVENT = "_Request", "_Response", "_Event"
 """What the names of the parts of a service end in."""

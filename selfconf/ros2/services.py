@@ -4,7 +4,7 @@ Each is defined as its interface definition (`.srv`, `.action`) says: the parts,
 services are those of `std_srvs`, of the examples, of every node's parameters, of lifecycle nodes, of maps and of
 cameras, and the one by which goals of actions are cancelled, as jazzy, kilted and lyrical have them. A service is the
 one that is meant if its hash is (REP 2011), so that a definition which changes is not taken for another. Those of other
-services and actions are relayed, but read only where the user gives their definitions (`ros_definitions`).
+services and actions are relayed, but read only where the user gives their definitions (`definitions`).
 """
 
 from __future__ import annotations

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf import ros_messages
-from selfconf.ros_definitions import FEEDBACK_MESSAGE, GET_RESULT, SEND_GOAL
-from selfconf.ros_messages import MessageType, ServiceParts
-from selfconf.ros_services import KNOWN_ACTIONS, SERVICES
+from selfconf.ros2 import messages
+from selfconf.ros2.definitions import FEEDBACK_MESSAGE, GET_RESULT, SEND_GOAL
+from selfconf.ros2.messages import MessageType, ServiceParts
+from selfconf.ros2.services import KNOWN_ACTIONS, SERVICES
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 # Of AddTwoInts as the design of rmw_zenoh says it, of actions as the type descriptions of jazzy and lyrical have them,
@@ -33,60 +33,60 @@ HASHES = {
 
 def found(name: str) -> ServiceParts:
     """The parts of a service that is known."""
-    kind = ros_messages.usual_type(name)
+    kind = messages.usual_type(name)
     assert kind is not None
-    known = ros_messages.service_parts(kind)
+    known = messages.service_parts(kind)
     assert known is not None
     return known
 
 
 @pytest.mark.parametrize("name", HASHES)
 def test_a_service_has_the_hash_that_others_compute(name: str) -> None:
-    assert ros_messages.usual_type(name) == MessageType(name, f"RIHS01_{HASHES[name]}")
+    assert messages.usual_type(name) == MessageType(name, f"RIHS01_{HASHES[name]}")
 
 
 @pytest.mark.parametrize("name", SERVICES)
 def test_the_parts_of_a_service_are_written_and_read(name: str) -> None:
     for kind, text in zip(found(name), SERVICES[name].split("---"), strict=True):
-        fields = ros_messages.message_fields(ros_messages.message({}, kind), kind)
+        fields = messages.message_fields(messages.message({}, kind), kind)
         assert list(fields) == [line.split()[1] for line in text.split("\n") if line]
 
 
 @pytest.mark.parametrize("name", KNOWN_ACTIONS)
 def test_the_feedback_of_an_action_is_written_and_read(name: str) -> None:
-    kind = ros_messages.usual_type(name + FEEDBACK_MESSAGE)
+    kind = messages.usual_type(name + FEEDBACK_MESSAGE)
     assert kind is not None
-    assert list(ros_messages.message_fields(ros_messages.message({}, kind), kind)) == ["goal_id", "feedback"]
+    assert list(messages.message_fields(messages.message({}, kind), kind)) == ["goal_id", "feedback"]
 
 
 def test_the_feedback_of_an_action_has_the_hash_that_others_compute() -> None:
     name, number = "example_interfaces/action/Fibonacci_FeedbackMessage", "c1de71afd52e49a89c53d8262366884185bc0a02f78c"
-    assert ros_messages.usual_type(name) == MessageType(name, f"RIHS01_{number}e051c4e46b0a7fe59bb2")
+    assert messages.usual_type(name) == MessageType(name, f"RIHS01_{number}e051c4e46b0a7fe59bb2")
 
 
 @pytest.mark.parametrize("name", KNOWN_ACTIONS)
 def test_the_services_of_an_action_are_known(name: str) -> None:
-    assert next(iter(ros_messages.message_fields(*sent(name + SEND_GOAL)))) == "goal_id"
-    assert list(ros_messages.message_fields(*sent(name + GET_RESULT))) == ["goal_id"]
+    assert next(iter(messages.message_fields(*sent(name + SEND_GOAL)))) == "goal_id"
+    assert list(messages.message_fields(*sent(name + GET_RESULT))) == ["goal_id"]
 
 
 def sent(name: str) -> tuple[bytes, MessageType]:
     """A request of a service, and its type."""
     kind = found(name).request
-    return ros_messages.message({}, kind), kind
+    return messages.message({}, kind), kind
 
 
 def test_a_character_has_the_hash_that_others_compute() -> None:
     """As hiroz 0.2.1 has it: an octet."""
     number = "3ad2d04dd29ba19d04b16659afa3ccaedd691914b02a64e82e252f2fa6a586a9"
     kind = MessageType("std_msgs/msg/Char", f"RIHS01_{number}")
-    assert ros_messages.usual_type(kind.name) == kind
-    assert ros_messages.message_fields(ros_messages.message({"data": 65}, kind), kind) == {"data": 65}
+    assert messages.usual_type(kind.name) == kind
+    assert messages.message_fields(messages.message({"data": 65}, kind), kind) == {"data": 65}
 
 
 def test_a_request_without_fields_has_an_octet() -> None:
-    assert ros_messages.message({}, found("std_srvs/srv/Trigger").request) == b"\x00\x01\x00\x00\x00"
+    assert messages.message({}, found("std_srvs/srv/Trigger").request) == b"\x00\x01\x00\x00\x00"
 
 
 def test_a_service_of_another_hash_is_not_known() -> None:
-    assert ros_messages.service_parts(MessageType("std_srvs/srv/Trigger", "RIHS01_" + "0" * 64)) is None
+    assert messages.service_parts(MessageType("std_srvs/srv/Trigger", "RIHS01_" + "0" * 64)) is None

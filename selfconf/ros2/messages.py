@@ -3,9 +3,9 @@
 A signal that is a message travels as CDR (XCDR1, as ROS 2 writes it) with the media type `application/cdr`, which says
 of which type it is, so that it goes from node to node as it is, and is read only where something else receives it.
 Which types there are is known by `rosbags`, the extra `ros2`, for the distributions jazzy, kilted and lyrical; a type
-is the one that is meant if its hash is (REP 2011). So it is with services, of which `ros_services` knows some: what
+is the one that is meant if its hash is (REP 2011). So it is with services, of which `services` knows some: what
 travels is a request or a response, and the hash is that of the service, which says that of both. An action is two
-services and a message. Other types, services and actions are known by their definitions (`ros_definitions`), in folders
+services and a message. Other types, services and actions are known by their definitions (`definitions`), in folders
 that a program is given (`learn`) or that SELFCONF_ROS_DEFINITIONS names, separated by colons: so that every component
 that is started beside the program reads them too.
 """
@@ -22,9 +22,9 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from selfconf import ros_services
 from selfconf.errors import AuthorError
-from selfconf.ros_definitions import (
+from selfconf.ros2 import services
+from selfconf.ros2.definitions import (
     REQUEST,
     RESPONSE,
     InterfaceDefinition,
@@ -212,7 +212,7 @@ def _stores() -> tuple[Any, ...]:
 @cache
 def _known_types() -> TypesByName:
     """The types that are known besides those of a distribution, by their definitions."""
-    known = (InterfaceDefinition(*each) for each in ros_services.KNOWN_DEFINITIONS.items())
+    known = (InterfaceDefinition(*each) for each in services.KNOWN_DEFINITIONS.items())
     return {name: fields for each in known for name, fields in defined_types(each).items()}
 
 

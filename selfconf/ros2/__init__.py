@@ -1,0 +1,58 @@
+"""Messages, services and actions of ROS 2 as they travel, without ROS 2: for the bridge, the importer and the SDK.
+
+A `MessageType` is a type by its name and hash. `message` writes fields as CDR, `message_fields` reads them, and
+`check_message` looks whether that can be done; `received` reads a signal whose media type says that it is a message
+(`read_media`). `usual_type` is the type of a name, `service_parts` what a service sends, and `is_known` whether the
+fields are known: of more types once `learn` has read the definitions in folders, such as the `named_folders`. A
+`MessageError` says what cannot be written or read.
+"""
+
+from selfconf.ros2.definitions import FEEDBACK_MESSAGE, GET_RESULT, GOAL, REQUEST, RESPONSE, RESULT, SEND_GOAL
+from selfconf.ros2.messages import (
+    HASH,
+    NAME,
+    MessageError,
+    MessageMedia,
+    MessageType,
+    ServiceParts,
+    check_message,
+    is_known,
+    learn,
+    load,
+    message,
+    message_fields,
+    named_folders,
+    read_media,
+    received,
+    service_parts,
+    usual_type,
+)
+from selfconf.ros2.services import CANCEL_GOAL
+
+__all__ = [
+    "CANCEL_GOAL",
+    "FEEDBACK_MESSAGE",
+    "GET_RESULT",
+    "GOAL",
+    "HASH",
+    "NAME",
+    "REQUEST",
+    "RESPONSE",
+    "RESULT",
+    "SEND_GOAL",
+    "MessageError",
+    "MessageMedia",
+    "MessageType",
+    "ServiceParts",
+    "check_message",
+    "is_known",
+    "learn",
+    "load",
+    "message",
+    "message_fields",
+    "named_folders",
+    "read_media",
+    "received",
+    "service_parts",
+    "usual_type",
+]
