@@ -262,7 +262,7 @@ class TaskRunner:
             standby = self.request.standby(configuration, lost)
 
             def send() -> None:
-                if self.state.epoch == epoch and self.state.phase is Phase.RUNNING:
+                if self.state.epoch == epoch and self.state.phase is Phase.RUNNING and not self._liveness.unsure:
                     self._calls.stand_by(configuration, standby)
                     sources = {wire.component for some in standby.values() for wires in some.values() for wire in wires}
                     self._liveness.select(sources, lambda: None)
@@ -341,7 +341,10 @@ class TaskRunner:
             case AwaitRelease():
                 self._calls.await_release(effect)
             case ApplyTo():
-                self._calls.apply(effect)
+                if (
+                    effect.rests or not self._liveness.unsure
+                ):  # what feeds it may act no more: all is applied to anew soon
+                    self._calls.apply(effect)
             case ReleaseFrom():
                 leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, *DEPLOYING) else 0.0
                 self.bus.later(leisure, partial(self._calls.release, effect))

@@ -84,6 +84,8 @@ class Liveness:
         self._link = self.bus.link
         self.cut_off = False
         """Whether this node was found to be cut off, and has not been connected again for long enough since."""
+        self.unsure = False
+        """Whether it was cut off or suspended, and does not know yet what has become of its components meanwhile."""
         self._ask_again: Undo = lambda: None
         self._reopenings: list[float] = []
         """When a site has last said that its hub is about to be opened anew."""
@@ -297,6 +299,7 @@ class Liveness:
     def suspended(self) -> None:
         """This program stood still for a while, as if it had been cut off: so it was, or nearly."""
         if self.ecology.followed:
+            self.unsure = True
             self._await_link()
 
     def _await_link(self) -> None:
@@ -306,13 +309,14 @@ class Liveness:
             if self.bus.link:
                 self.bus.later(SETTLING, connected)
             else:
+                self.unsure = True
                 self.bus.later(CUT_OFF, look)
 
         def connected() -> None:
             if not self.bus.link:
                 look()
                 return
-            self._link, self.cut_off = self.bus.link, False
+            self._link, self.cut_off, self.unsure = self.bus.link, False, False
             self._reconnected()
 
         if not self.cut_off:

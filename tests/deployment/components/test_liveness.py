@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bus.memory import MemoryBus
+from selfconf.bus.memory.network import LEASE
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.events import Appeared, Event
 from selfconf.configurator.state import Phase, Policy
@@ -106,6 +107,25 @@ def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_
     assert lab.components["control"].said[-2:] == [("goal", "(AT BEDROOM)"), ("started",)]
     assert not lab.acts("lost")
     assert len(lab.acts("connected")) == 1
+
+
+@pytest.mark.parametrize("repairs", [False, True])
+def test_a_configurator_that_was_suspended_starts_nothing_before_what_feeds_it(lab: Lab, repairs: bool) -> None:
+    """Meanwhile all components have let go of its task, which it does not know as it goes on."""
+    agent = lab.agent()
+    lab.running(agent)
+    node = agent.bus
+    assert isinstance(node, MemoryBus)
+    if repairs:
+        lab.components["tracker"].fail("lost")
+        assert lab.until(lambda: agent.state.phase is Phase.DEPLOYING)
+    lab.network.pause(node)
+    lab.let_pass(LEASE + GRACE + 0.5)
+    assert lab.active() == set()
+    lab.network.resume(node)
+    sources, sinks = TASK - {"control", "drive"}, {"control", "drive"}
+    assert not lab.until(lambda: bool(lab.active() & sinks) and not lab.active() >= sources, SETTLING + 1.0)
+    assert lab.active() == TASK | {"odometry" if repairs else "tracker"}
 
 
 def test_a_configurator_that_was_suspended_yields_to_the_one_that_has_taken_over(lab: Lab) -> None:
