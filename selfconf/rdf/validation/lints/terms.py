@@ -180,7 +180,7 @@ def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
         foreign |= dict.fromkeys(file.graph.objects(None, URIRef(link)), foreign_terms(subject))
     for (node, predicate, _), offsets in file.positions.triples.items():
         if str(predicate) in foreign.get(node, ()):
-            owners = " or ".join(f"a {file.short(owner)}" for owner in OF_PARTS[IRI(predicate)])
+            owners = " or ".join(f"a {file.short(owner)}" for owner in OF_PARTS[IRI(str(predicate))])
             message = f"{file.short(str(predicate))} says nothing here, so this is passed over."
             yield at(file.positions, offsets.predicate, "SC-L25", message, hint=f"It is said of {owners}.")
 
