@@ -84,15 +84,8 @@ class ClauseSolver:
         self.guards: dict[Constraint, int] = encoding.guards
         self.plays: tuple[tuple[int, ...], ...] = encoding.plays
         """For each role, the literals of its options."""
-        self._top = encoding.top
-        add = self._solver.add_clause
-        for statement in encoding.statements:
-            if isinstance(statement, Implied):
-                literal = statement.literal
-                for one in statement.literals:
-                    add([-one, literal])
-            else:
-                add(statement)
+        self._top = 0
+        self.extend(encoding.statements, encoding.top)
         for literals, most, force in encoding.bounds:
             self.at_most(literals, most, force)
         self._solver.set_phases([literals[0] for literals in self.plays if literals])
@@ -111,6 +104,18 @@ class ClauseSolver:
     def add(self, clause: Iterable[int]) -> None:
         """Add a clause."""
         self._solver.add_clause(list(clause))
+
+    def extend(self, statements: Iterable[list[int] | Implied], top: int) -> None:
+        """Add statements of an encoding, whose highest literal is given, before any literal of this object's own."""
+        self._top = top
+        add = self._solver.add_clause
+        for statement in statements:
+            if isinstance(statement, Implied):
+                literal = statement.literal
+                for one in statement.literals:
+                    add([-one, literal])
+            else:
+                add(statement)
 
     def prefer(self, literals: Iterable[int]) -> None:
         """Try these literals first, which changes the time alone."""

@@ -11,6 +11,12 @@ Where several roles may feed a need, the options of each that support it have a 
 plays, one for all needs that the same options support: what clause learning then learns is about the signals that roles
 issue, and not about candidates one by one.
 
+Where a role of one slot always issues one of two signals, and never both, as a wire does with its two bits, the one
+literal is the negation of the other.
+
+*Both ways.* That an option plays only if those that it feeds can do with it is said by clauses of their own
+(`support_clauses`), which are added (`Encoding.support`) when the clauses turn out to be hard without.
+
 *Groups.* Where options exclude each other (`exclusion`), one bound for each group says so, in place of the needs from
 which that follows; and what counting the groups has proved is added. With patience, counting may be left, to be gone on
 with (`Encoding.count`) when the clauses turn out to be hard without.
@@ -29,7 +35,7 @@ constraints in force never make less possible. There are no groups then, as each
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import reduce
 from operator import and_, or_
 from typing import NamedTuple
@@ -37,6 +43,7 @@ from typing import NamedTuple
 from selfconf.search.engines.exclusion import ExclusiveGroups, exclusive_groups
 from selfconf.search.engines.nearby import nearby
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
+from selfconf.search.engines.support_clauses import Links, clauses_of_needs, clauses_of_values
 from selfconf.search.engines.symmetry import interchangeable
 from selfconf.search.reduction import Constraint, Distinct, Fed, Limit, Played, ReducedProblem, Shared
 
@@ -83,6 +90,10 @@ class Encoding:
         self._guarded = guarded
         self._sums: dict[tuple[int, ...], int] = {}
         """The literals that hold iff one of others does, by these."""
+        self._links: Links = {}
+        """By two roles the needs that one has and the other alone supports, with the literals of these options."""
+        self._valued: list[tuple[list[tuple[int, int, int]], list[tuple[int, int]]]] = []
+        """The options that constrain each variable which has literals for its values, and these, each with a mask."""
         self._asked = Counter(reduced.slots)
         self.plays: tuple[tuple[int, ...], ...] = tuple(
             self._literals(role, len(options)) for role, options in enumerate(reduced.options)
@@ -167,19 +178,19 @@ class Encoding:
 
     def _needs(self, stated: frozenset[int]) -> None:
         """Write the needs that are not stated otherwise."""
-        needing: defaultdict[int, list[int]] = defaultdict(list)
-        for options, literals in zip(self.reduced.options, self.plays, strict=True):
-            for option, literal in zip(options, literals, strict=True):
-                for need in option.kind.needs:
-                    if need not in stated:
-                        needing[need].append(literal)
+        needing = self._having(stated)
         supporting = self._supporting(needing) if needing else {}
+        if not self._guarded:
+            alone = self._alone(supporting)
+            self._complements(alone.values())
+            for need, (source, literals) in alone.items():
+                sink = self.reduced.needs.scopes[need].role
+                self._links.setdefault((source, sink), {})[need] = needing[need], literals
         add = self.statements.append
         feeding: dict[tuple[int, ...], int] = {}
         for need, having in sorted(needing.items()):
             force = self._in_force(Fed(need)) if self._guarded else ()
-            by_role = supporting[need]
-            supports = by_role[0] if len(by_role) == 1 else [self._any_of(some) for some in by_role]
+            supports = self._supports(supporting[need])
             if len(having) == 1:
                 add([*force, -having[0], *supports])
                 continue
@@ -195,17 +206,60 @@ class Encoding:
                 add([*force, -fed, *supports])
             add(Implied(fed, having))
 
-    def _supporting(self, needs: Collection[int]) -> dict[int, list[list[int]]]:
-        """Return for some needs the literals of the options that support them, role by role."""
-        found: dict[int, list[list[int]]] = {need: [] for need in needs}
-        few = len(found) < len(self.reduced.needs)
+    def _having(self, stated: frozenset[int]) -> dict[int, list[int]]:
+        """Return for the needs that are not stated otherwise the literals of the options that have them."""
+        needing: defaultdict[int, list[int]] = defaultdict(list)
         for options, literals in zip(self.reduced.options, self.plays, strict=True):
+            for option, literal in zip(options, literals, strict=True):
+                for need in option.kind.needs:
+                    if need not in stated:
+                        needing[need].append(literal)
+        return needing
+
+    def _supports(self, by_role: Mapping[int, list[int]]) -> Sequence[int]:
+        """Return literals of which one holds iff one of some options plays, given by role."""
+        if len(by_role) > 1:
+            return [self._any_of(some) for some in by_role.values()]
+        alone = next(iter(by_role.values()), [])
+        known = self._sums.get(tuple(alone))
+        return alone if known is None else [known]
+
+    def _alone(self, supporting: Mapping[int, Mapping[int, list[int]]]) -> dict[int, tuple[int, list[int]]]:
+        """Return the needs that one role alone supports, of one slot, with this role and what supports them there."""
+        alone = {need: next(iter(by_role.items())) for need, by_role in supporting.items() if len(by_role) == 1}
+        return {need: found for need, found in alone.items() if self._asked[found[0]] == 1}
+
+    def _complements(self, alone: Iterable[tuple[int, list[int]]]) -> None:
+        """Let two sets of options of a role, of which one always plays, have one literal and its negation."""
+        of_role: defaultdict[int, dict[tuple[int, ...], None]] = defaultdict(dict)
+        for role, supporting in alone:
+            of_role[role][tuple(supporting)] = None
+        for role, sets in of_role.items():
+            literals = self.plays[role]
+            for some in sets:
+                # The larger one of two comes first, as most sets are small, and have no such other one.
+                if 2 * len(some) < len(literals) or len(some) == 1 or some in self._sums:
+                    continue
+                within = set(some)
+                rest = tuple([literal for literal in literals if literal not in within])
+                if len(rest) == 1:
+                    self._sums[some] = -rest[0]
+                elif rest in sets:
+                    one = self._sums[some] = self.literal()
+                    self._sums[rest] = -one
+                    self.statements += [[-one, *some], [one, *rest]]
+
+    def _supporting(self, needs: Collection[int]) -> dict[int, dict[int, list[int]]]:
+        """Return for some needs the literals of the options that support them, by role."""
+        found: dict[int, dict[int, list[int]]] = {need: {} for need in needs}
+        few = len(found) < len(self.reduced.needs)
+        for role, (options, literals) in enumerate(zip(self.reduced.options, self.plays, strict=True)):
             of_role: defaultdict[int, list[int]] = defaultdict(list)
             for option, literal in zip(options, literals, strict=True):
                 for need in found.keys() & option.kind.supports if few else option.kind.supports:
                     of_role[need].append(literal)
             for need, some in of_role.items():
-                found[need].append(some)
+                found[need][role] = some
         return found
 
     def _any_of(self, literals: list[int]) -> int:
@@ -228,13 +282,18 @@ class Encoding:
         for variable, some in enumerate(self.reduced.constraining()):
             if some and variable not in settled:
                 constrained = [(options[number], mask) for _, number, mask in some]
-                self._one_value(constrained, self._in_force(Shared(variable)))
+                values = self._one_value(constrained, self._in_force(Shared(variable)))
+                if values:
+                    self._valued.append((some, values))
 
-    def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> None:
-        """Let options have a common value of a variable, given their literals and the masks of what they admit."""
+    def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> list[tuple[int, int]]:
+        """Let options have a common value of a variable, given their literals and the masks of what they admit.
+
+        Return the masks of values that have a literal, with that.
+        """
         masks = {mask for _, mask in constrained}
         if reduce(and_, masks):
-            return  # one value suits all of them
+            return []  # one value suits all of them
         values = [(alike, self.literal()) for alike in _told_apart(masks)]
         self._at_most([value for _, value in values], 1)
         said: dict[int, list[list[int]]] = {}
@@ -248,6 +307,7 @@ class Encoding:
                     else [[*force, -value] for some, value in values if not mask & some]
                 )
             self.statements += [[-literal, *rest] for rest in said[mask]]
+        return values
 
     def _ascending(self, first: Sequence[int], second: Sequence[int]) -> None:
         """Let the option of one role come before that of another one; one of each plays."""
@@ -257,6 +317,20 @@ class Encoding:
             reached = self.literal()
             self.statements.append([-reached, earlier] if before is None else [-reached, earlier, before])
             before = reached
+
+    def support(self) -> list[list[int] | Implied]:
+        """Add support clauses, and return all that is added."""
+        before = len(self.statements)
+        for (source, sink), needs in self._links.items():
+            self.statements += [*clauses_of_needs(self.plays[source], self.plays[sink], needs, self._any_of)]
+        options = [literal for literals in self.plays for literal in literals]
+        for some, values in self._valued:
+            admitted: defaultdict[int, dict[int, int]] = defaultdict(dict)
+            for role, number, mask in some:
+                admitted[role][options[number]] = mask
+            for role, masks in admitted.items():
+                self.statements += clauses_of_values(self.plays[role], masks, values)
+        return self.statements[before:]
 
     def count(self) -> list[list[int]]:
         """Add what follows from counting groups and needs that have not been counted yet, and return the clauses."""

@@ -8,7 +8,8 @@ with it.
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
-begins; where roles ask for many, it soon gets the counting as clauses too. After `BRIEF` steps clasp works beside it;
+begins. It soon gets support clauses, from which more propagates (`support_clauses`), and, where roles ask for many, the
+counting as clauses too. After `BRIEF` steps clasp works beside it;
 where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
 would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and takes the place of clasp; if
 no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take turns on the other processor. Where there is one
@@ -31,6 +32,8 @@ from selfconf.search.engines.rival import Rival, processors
 from selfconf.search.engines.turn import Turn
 from selfconf.search.reduction import Option, ReducedProblem
 
+UNSUPPORTED = 100
+"""Conflicts and questions of the first solver before it gets support clauses."""
 BRIEF = 1_000
 """Conflicts and questions of the first solver before it has company, and gets numbers beyond one as clauses."""
 BRIEF_COUNTING = 250
@@ -108,6 +111,9 @@ class _Descent:
         self.plays = encoding.plays
         with ExitStack() as stack:
             first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
+            self.advance(first, UNSUPPORTED)
+            if not self.finished:
+                first.clauses.extend(encoding.support(), encoding.top)
             if any(FEW_TO_COUNT < bound.most <= len(bound.literals) // 2 for bound in encoding.bounds):
                 self.advance(first, BRIEF_COUNTING)
                 if not self.finished:

@@ -27,6 +27,21 @@ ALIKE = problem(
     values={"eye": {"left": 0b00011, "right": 0b11100}, "mind": {"mind": 0b11100}},
     domain=HOURS,
 )
+WIRES = problem(
+    {
+        "wires": [
+            component(f"{one}{two}", outputs=f"o:{one} p:{two}") for one in ("No", "Yes") for two in ("Low", "High")
+        ],
+        "nothing": [component("nothing")],
+        "gate": [
+            component("denies", "i:No"),
+            component("denies-low", "i:No j:Low"),
+            component("affirms", "i:Yes"),
+            component("affirms-high", "i:Yes j:High"),
+        ],
+    },
+    "wires>gate nothing>gate",
+)
 PROBLEMS = {
     "a need": SEEING,
     "two slots of one role": problem({"eye": [*EYES, component("third")]}, counts={"eye": (2, 2)}),
@@ -46,6 +61,7 @@ PROBLEMS = {
         domain=HOURS,
     ),
     "more roles than components": TWINS,
+    "a role that issues one of two signals, and one of two others": WIRES,
     "a need of two candidates": problem(
         {
             "eye": [BOTH, component("deaf")],
@@ -135,6 +151,11 @@ def test_where_order_is_asked_for_interchangeable_roles_are_played_in_it() -> No
 def test_of_two_options_for_one_slot_one_is_the_negation_of_the_other() -> None:
     (first, second), _ = Encoding(reduced(SHARED)).plays
     assert first == -second
+
+
+def test_where_a_role_issues_one_of_two_signals_one_is_the_negation_of_the_other() -> None:
+    encoding = Encoding(reduced(WIRES))
+    assert encoding.top == sum(map(len, encoding.plays)) + len(["No, or not", "Low, or not"])
 
 
 def test_values_that_no_option_tells_apart_have_one_literal() -> None:

@@ -1,0 +1,103 @@
+"""Support clauses are true of every solution, and let propagation see what follows in both directions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmarks.search.further_families import tour
+from benchmarks.search.later_families import coloured_parameters, crossword
+from selfconf.search.budget import Budget
+from selfconf.search.engines import least_solution, support_clauses
+from selfconf.search.engines.clause_learning import ClauseSolver
+from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.least_solution import least_by_clauses, least_of_clauses
+from selfconf.search.problem import Problem
+from selfconf.search.reduction import pruned, reduced
+from tests.search.comparison import least_numbers, numbers
+from tests.search.oracle import World
+from tests.search.worlds import agreement, component, problem, problems, rivalries
+
+WORDS = problem(
+    {
+        "across": [component(f"{letter}.{k}", outputs=f"o:{letter} p:Ending{k}") for letter in "ABC" for k in range(2)],
+        "down": [component(f"from.{letter}", f"i:{letter}") for letter in "ABC"],
+        "last": [component(f"to.{k}", f"i:Ending{k}") for k in range(2)],
+    },
+    "across>down across>last",
+)
+"""Two words for each letter that a third one begins with."""
+
+
+@given(st.one_of(rivalries(), problems()), st.integers(1, 3))
+@agreement()
+def test_with_support_clauses_from_the_beginning_the_answer_is_the_least(problem: Problem, few: int) -> None:
+    pytest.importorskip("pysat")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(support_clauses, "SHARE_FITTING", few)
+        patch.setattr(least_solution, "UNSUPPORTED", 0)
+        assert numbers(least_by_clauses(reduced(problem), Budget(10_000))) == least_numbers(problem)
+
+
+@given(st.one_of(rivalries(), problems()), st.integers(1, 3))
+@agreement()
+def test_what_support_clauses_say_of_options_is_true_of_every_solution(problem: Problem, few: int) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(support_clauses, "SHARE_FITTING", few)
+        encoding = Encoding(reduced(problem))
+        options = {abs(literal) for literals in encoding.plays for literal in literals}
+        added = [one for one in encoding.support() if isinstance(one, list) and options.issuperset(map(abs, one))]
+    for players in World(problem.task, problem.partition, problem.hierarchy).solutions():
+        names = [{c.profile.component for c in some} for some in players]
+        playing = {
+            literal if option.component in names[role] else -literal
+            for role, (some, literals) in enumerate(zip(encoding.reduced.options, encoding.plays, strict=True))
+            for option, literal in zip(some, literals, strict=True)
+        }
+        if all(names[role].issubset(some) for role, some in enumerate(map(set, encoding.reduced.components()))):
+            assert all(playing.intersection(clause) for clause in added)
+
+
+def test_without_an_option_propagation_excludes_what_only_that_one_can_do_with() -> None:
+    solvers = pytest.importorskip("pysat.solvers")
+    encoding = Encoding(reduced(WORDS))
+    across, down, _ = encoding.plays
+
+    def implied() -> list[int]:
+        with solvers.Minicard(bootstrap_with=list(encoding.clauses())) as solver:
+            for bound in encoding.bounds:
+                solver.add_atmost(list(bound.literals), bound.most)
+            return [literal for literal in solver.propagate([-down[0]])[1] if abs(literal) in across]
+
+    assert implied() == []
+    encoding.support()
+    assert sorted(implied()) == sorted([-across[0], -across[1]])
+
+
+@pytest.mark.parametrize(
+    ("made", "share"),
+    [
+        (lambda: crossword(4, 100, 6, 501), 20),
+        (lambda: coloured_parameters(40, 4, 8.0, 501), 4),
+        (lambda: tour(24, 4.0, 501), 4),
+    ],
+    ids=["needs", "values", "needs of roles that share components"],
+)
+def test_with_support_clauses_a_solver_meets_a_fraction_of_the_conflicts(
+    made: Callable[[], Problem], share: int
+) -> None:
+    pytest.importorskip("pysat")
+    given_ = pruned(reduced(made()))
+    conflicts = []
+    for supported in (False, True):
+        encoding = Encoding(given_)
+        if supported:
+            encoding.support()
+        with ClauseSolver(given_, encoding=encoding) as clauses:
+            assert clauses.solve((), Budget()) is True
+            assert isinstance(least_of_clauses(clauses, Budget()), list)
+            conflicts.append(clauses.conflicts)
+    assert conflicts[1] * share < conflicts[0]
