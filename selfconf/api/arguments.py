@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from enum import Enum
+from io import IOBase
 from math import isfinite
 from numbers import Integral, Real
 from pathlib import Path
@@ -27,7 +28,8 @@ def listed_paths(paths: Paths) -> list[str | Path]:
 
     Raises ProgrammerError for what is none, and AuthorError for a text that names none.
     """
-    listed = [paths] if isinstance(paths, str | Path) else list(paths) if isinstance(paths, Iterable) else None
+    several = isinstance(paths, Iterable) and not isinstance(paths, IOBase)  # an open file would be taken for its lines
+    listed = [paths] if isinstance(paths, str | Path) else list(paths) if several else None
     if listed is None or not all(isinstance(path, str | os.PathLike) for path in listed):
         raise ProgrammerError(f"paths are one path or several, as text or as Path, not {paths!r}")
     for path in listed:

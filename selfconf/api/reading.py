@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Iterable, Iterator, Mapping
+from io import IOBase
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
@@ -71,8 +72,8 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
 
 
 def _are_several(source: Source | Iterable[Source]) -> TypeGuard[Iterable[Source]]:
-    """Whether there are several sources; text and a graph, of letters and of triples, are one."""
-    return isinstance(source, Iterable) and not isinstance(source, str | bytes | Mapping | _Graph)
+    """Whether there are several sources; text, an open file and a graph, of letters, lines and triples, are one."""
+    return isinstance(source, Iterable) and not isinstance(source, str | bytes | Mapping | IOBase | _Graph)
 
 
 def is_endpoint(source: object) -> bool:

@@ -183,14 +183,26 @@ def _number(name: str, value: bool | int | float | Decimal) -> Literal:
     return Literal(format(value, "f"), XSD.decimal)  # xsd:decimal knows no exponents
 
 
+def _checked_literal(name: str, value: Literal) -> Literal:
+    """A literal that a program has made. Raises BindingError where its parts are of other classes than those of one."""
+    language = value.language
+    if isinstance(value.lexical, str) and isinstance(value.datatype, IRI) and isinstance(language, str | None):
+        return value
+    raise BindingError(
+        f"a Literal has a text, an IRI as its datatype, and a language or None; {name} is not, by {value!r}"
+    )
+
+
 def _text(name: str, value: Value) -> str | Term:
     """A value as the reader of terms takes it: text, or a term."""
     if getattr(value, "shape", None) == ():  # a number or truth value of NumPy: what Python has for it
         value = value.item()  # type: ignore[union-attr]  # what has a shape has this, too
     if isinstance(value, bool | int | float | Decimal):
         return _number(name, value)
-    if isinstance(value, IRI | Literal):
+    if isinstance(value, IRI):
         return value
+    if isinstance(value, Literal):
+        return _checked_literal(name, value)
     if hasattr(value, "n3"):  # one of rdflib's terms; they are strings too
         from selfconf.rdf.rdflib_terms import from_rdflib
 

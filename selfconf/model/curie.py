@@ -25,6 +25,11 @@ def is_local_name(text: str) -> bool:
     return _local_name(text.isascii()).fullmatch(text) is not None
 
 
+def suggested_local_name(words: str) -> str:
+    """A local name in ASCII that resembles some words; empty where none of their characters can stand in one."""
+    return re.sub(r"[^A-Za-z0-9]+", "-", words).strip("-")
+
+
 def is_prefix(text: str) -> bool:
     """Whether a text is a PN_PREFIX, or nothing."""
     return not text or _prefix(text.isascii()).fullmatch(text) is not None

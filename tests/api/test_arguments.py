@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 from fractions import Fraction
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -108,7 +109,7 @@ def test_a_moment_is_a_number_or_now(moment: Any) -> None:
         checked_moment(moment)
 
 
-@pytest.mark.parametrize("paths", [None, 5, b"examples", [None], ["examples", 5]])
+@pytest.mark.parametrize("paths", [None, 5, b"examples", [None], ["examples", 5], StringIO("examples")])
 def test_what_is_no_path_is_refused_in_a_sentence(paths: Any) -> None:
     with pytest.raises(ProgrammerError, match=r"^paths are one path or several, as text or as Path, not "):
         listed_paths(paths)

@@ -7,6 +7,7 @@ import io
 import os
 import sys
 import weakref
+from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -86,7 +87,9 @@ def test_what_is_left_out_is_named_with_its_reason() -> None:
     assert malformed.component == "x:a"
 
 
-@pytest.mark.parametrize("source", ["no-such-folder", Path("no-such-file.ttl"), "", None, 7, b"@prefix", {"a": 1}])
+@pytest.mark.parametrize(
+    "source", ["no-such-folder", Path("no-such-file.ttl"), "", None, 7, b"@prefix", {"a": 1}, StringIO("a.ttl")]
+)
 def test_what_is_no_source_is_refused_in_a_sentence(source: object) -> None:
     with pytest.raises(AuthorError if isinstance(source, str | Path) else ProgrammerError):
         sc.read(source)  # type: ignore[arg-type]  # that is what is tested

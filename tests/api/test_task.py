@@ -129,6 +129,14 @@ def test_what_cannot_be_bound_is_refused_in_a_sentence(value: Any) -> None:
         sc.template(NAVIGATE).bind(robot=value)
 
 
+@pytest.mark.parametrize("parts", [(3,), (None,), ("5", "integer"), ("a", sc.IRI("urn:x"), 7)])
+def test_a_literal_whose_parts_are_none_of_a_literal_is_refused_in_a_sentence(parts: Any) -> None:
+    with pytest.raises(
+        BindingError, match=r"^a Literal has a text, an IRI as its datatype, and a language or None; goal "
+    ):
+        sc.template(NAVIGATE).bind(goal=sc.Literal(*parts))
+
+
 def test_unknown_double_and_missing_bindings_are_refused(task: sc.TaskSpecification, home: sc.Ecology) -> None:
     with pytest.raises(BindingError, match="no parameter 'pilot'"):
         task.bind(pilot=1)

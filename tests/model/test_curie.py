@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.model.curie import is_local_name, is_prefix
+from selfconf.model.curie import is_local_name, is_prefix, suggested_local_name
 from selfconf.model.term import IRI
 from selfconf.rdf.turtle import parse
 
@@ -33,3 +33,11 @@ def test_a_prefix_may_be_empty_or_of_any_script(prefix: str) -> None:
 @pytest.mark.parametrize("prefix", ["_", "1a", "a.", "-a", "µ"])
 def test_what_no_parser_reads_before_a_colon_is_no_prefix(prefix: str) -> None:
     assert not is_prefix(prefix)
+
+
+@pytest.mark.parametrize(
+    ("words", "name"), [("living room", "living-room"), ("~/a.ttl", "a-ttl"), ("x", "x"), ("!", "")]
+)
+def test_words_that_are_no_local_name_suggest_one(words: str, name: str) -> None:
+    assert suggested_local_name(words) == name
+    assert is_local_name(name) or not name

@@ -11,7 +11,7 @@ from functools import partial
 import pyoxigraph as ox
 
 from selfconf.errors import BindingError
-from selfconf.model.curie import is_local_name, is_prefix
+from selfconf.model.curie import is_local_name, is_prefix, suggested_local_name
 from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -235,7 +235,8 @@ def _check(parameter: Parameter, value: Term, document: Document) -> None:
         said = value.turtle(name) if isinstance(value, Literal) else in_full([value])
         hint = ""
         if isinstance(value, Literal) and "IRI" in problem:
-            hint = f"; write a CURIE such as :{value.lexical}, or an <IRI>"
+            local = value.lexical if is_local_name(value.lexical) else suggested_local_name(value.lexical)
+            hint = f"; write a CURIE such as :{local or 'kitchen'}, or an <IRI>"
         elif (meant := _meant(parameter, value, document)) is not None:
             hint = f"; write {binding(parameter.name, meant.turtle(name))}"
         raise BindingError(

@@ -169,6 +169,8 @@ def test_half_a_character_is_refused_in_a_sentence(value: str | Term) -> None:
         (("speed", "fast"), '"fast" cannot stand', None),
         (("goal", "5"), "5 cannot stand", """; write bind(goal='"5"')"""),
         (("robot", "Astrid"), '"Astrid" cannot stand', "; write a CURIE such as :Astrid, or an <IRI>"),
+        (("robot", "my Astrid"), '"my Astrid" cannot stand', "; write a CURIE such as :my-Astrid, or an <IRI>"),
+        (("robot", "!"), '"!" cannot stand', "; write a CURIE such as :kitchen, or an <IRI>"),
     ],
 )
 def test_a_value_of_another_datatype_is_shown_as_it_is_with_what_would_do(

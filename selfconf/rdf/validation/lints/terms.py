@@ -15,6 +15,7 @@ from rdflib import OWL, RDF, RDFS, SH, XSD, Literal, URIRef
 from rdflib.namespace import DefinedNamespace
 from rdflib.term import Node
 
+from selfconf.model.curie import suggested_local_name
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.model.term import IRI
 from selfconf.rdf import vocabulary
@@ -191,7 +192,7 @@ def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
         ours = str(predicate) in _SC  # what selfconf's own properties want is a matter of the shapes
         if isinstance(value, Literal) and not ours and str(predicate) in file.index.object_properties:
             message = f"The value of {file.short(str(predicate))} is a thing with an IRI, not a literal."
-            hint = f"Write an IRI, such as :{re.sub(r'[^A-Za-z0-9]+', '-', value).strip('-') or 'kitchen'}."
+            hint = f"Write an IRI, such as :{suggested_local_name(value) or 'kitchen'}."
             yield at(file.positions, offsets.object, "SC-L07", message, hint=hint)
 
 
