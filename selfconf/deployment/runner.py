@@ -341,10 +341,7 @@ class TaskRunner:
             case AwaitRelease():
                 self._calls.await_release(effect)
             case ApplyTo():
-                if (
-                    effect.rests or not self._liveness.unsure
-                ):  # what feeds it may act no more: all is applied to anew soon
-                    self._calls.apply(effect)
+                self._apply(effect)
             case ReleaseFrom():
                 leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, *DEPLOYING) else 0.0
                 self.bus.later(leisure, partial(self._calls.release, effect))
@@ -356,6 +353,11 @@ class TaskRunner:
                 self._retries.settle()
             case Finish():
                 self._finish(effect)
+
+    def _apply(self, effect: ApplyTo) -> None:
+        """Apply to a component, unless what feeds it may act no more since a pause: all is applied to anew soon."""
+        if effect.rests or not self._liveness.unsure:
+            self._calls.apply(effect)
 
     def _finish(self, effect: Finish) -> None:
         refusal, lost, owed = effect.refusal, self.losses, self._out_of_control
