@@ -18,7 +18,7 @@ from selfconf.api.ecology import Components, Solutions
 from selfconf.api.living.component_states import ComponentState
 from selfconf.api.living.echo import HeardSignal
 from selfconf.api.partition_table import PartitionTable, RolePartition
-from selfconf.api.tasks.living_tasks import LivingTask
+from selfconf.api.tasks.living_task import LivingTask
 from selfconf.api.tasks.run_outcomes import AnsweredEvent as AnyRunEvent
 from selfconf.api.tasks.run_outcomes import AnsweredRunning as TaskRunning
 from selfconf.api.tasks.run_outcomes import AnsweredSearch as SearchEnded

@@ -29,7 +29,8 @@ from selfconf.api.living.site_access import SiteAccess, site_accesses
 from selfconf.api.living.site_logs import LogSource, logs_of_other_sites
 from selfconf.api.membership import MEMBERS, Membership
 from selfconf.api.synchronous_bus import SynchronousBus
-from selfconf.api.tasks.living_tasks import LivingTask, LivingTasks
+from selfconf.api.tasks.living_task import LivingTask
+from selfconf.api.tasks.living_tasks import LivingTasks
 from selfconf.api.tasks.released_components import STATE_PATIENCE, ReleasedComponents
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies

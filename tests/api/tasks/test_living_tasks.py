@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
-from selfconf.api.tasks.living_tasks import LivingTask, LivingTasks
+from selfconf.api.tasks.living_task import LivingTask
+from selfconf.api.tasks.living_tasks import LivingTasks
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Request
 from selfconf.errors import NetworkError
