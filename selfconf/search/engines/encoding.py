@@ -40,7 +40,8 @@ from functools import reduce
 from operator import and_, or_
 from typing import NamedTuple
 
-from selfconf.search.engines.exclusion import ExclusiveGroups, exclusive_groups
+from selfconf.search.engines.exclusion import exclusive_groups
+from selfconf.search.engines.group_counting import ExclusiveGroups
 from selfconf.search.engines.nearby import nearby
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.support_clauses import Links, clauses_of_needs, clauses_of_values

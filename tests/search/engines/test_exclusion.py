@@ -7,16 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.search.families import distinct, iri, profile
-from benchmarks.search.further_families import colouring, counted, frequencies, latin, pigeonholes, queens, tour
+from benchmarks.search.further_families import colouring, counted
 from selfconf.model.partition import ANY_VALUE, Candidate, Variable
 from selfconf.search.budget import Budget
-from selfconf.search.engines import exclusion
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
-from selfconf.search.strategies import solution
+from selfconf.search.reduction import ReducedProblem, pruned, reduced
 from tests.search.comparison import least_numbers, numbers
 from tests.search.oracle import World
 from tests.search.worlds import agreement, problems, rivalries
@@ -45,40 +43,6 @@ def test_groups_and_what_counting_proves_hold_in_every_solution(problem: Problem
 def test_clause_learning_with_groups_finds_the_least_solution(problem: Problem) -> None:
     pytest.importorskip("pysat")
     assert numbers(least_by_clauses(reduced(problem), Budget(10_000))) == least_numbers(problem)
-
-
-@pytest.mark.parametrize(("pigeons", "holes"), [(9, 8), (30, 29)])
-@pytest.mark.parametrize("aided", [True, False])
-def test_pigeonholes_through_ports_are_refused_by_counting(
-    pigeons: int, holes: int, aided: bool, request: pytest.FixtureRequest
-) -> None:
-    if not aided:
-        request.getfixturevalue("no_solvers")
-    assert solution(LazyReduction(pigeonholes(pigeons, holes)), Budget(20_000)) is None
-
-
-@pytest.mark.parametrize(
-    "problem", [latin(7, 0.6, 1), queens(9, 1, 2), tour(12, 4.0, 2)], ids=["Latin square", "queens", "tour"]
-)
-def test_what_has_as_many_groups_as_slots_has_each_of_them_played(problem: Problem) -> None:
-    assert exclusive_groups(pruned(reduced(problem))).played
-
-
-def test_counting_does_not_begin_from_a_group_that_was_put_together_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    begun: list[int] = []
-    met: set[int] = set()
-    cover = exclusion._Counting._cover
-
-    def watched(counting: exclusion._Counting, start: int, shares: dict[int, int]) -> bool:
-        assert start not in met
-        begun.append(start)
-        found = cover(counting, start, shares)
-        met.update(shares)
-        return found
-
-    monkeypatch.setattr(exclusion._Counting, "_cover", watched)
-    exclusive_groups(pruned(reduced(latin(12, 0.42, 1))))
-    assert len(begun) > 1
 
 
 def test_as_many_components_as_slots_are_all_played_where_nothing_else_excludes() -> None:
@@ -130,28 +94,3 @@ def test_roles_that_may_agree_on_a_value_do_not_exclude_each_other() -> None:
     site = (Variable(iri("site"), (iri("north"), iri("south"))),)
     parts = [[Candidate(profile(f"{name}{k}"), (1 << k,)) for k in range(2)] for name in "ab"]
     assert not exclusive_groups(pruned(reduced(counted(parts, [1, 1], (), site)))).settled
-
-
-def test_counting_that_is_left_for_want_of_results_is_gone_on_with(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem = pruned(reduced(frequencies(30, 8, 0.4, 3)))
-    begun: list[int] = []
-    cover = exclusion._Counting._cover
-
-    def watched(counting: exclusion._Counting, start: int, shares: dict[int, int]) -> bool:
-        begun.append(start)
-        return cover(counting, start, shares)
-
-    monkeypatch.setattr(exclusion._Counting, "_cover", watched)
-    whole = exclusive_groups(problem)
-    every = list(begun)
-    begun.clear()
-    left = exclusive_groups(problem, patience=2)
-    assert begun == every[:2]
-    assert left.all_counted() == whole
-    assert begun == every
-    assert whole.all_counted() is whole
-
-
-def test_patience_does_not_end_where_counting_has_results() -> None:
-    problem = pruned(reduced(latin(12, 0.42, 5)))
-    assert exclusive_groups(problem, patience=3) == exclusive_groups(problem)
