@@ -4,7 +4,8 @@
 an `Authority`, which also issues, renews and revokes certificates. A `HostAuthority` issues to the components of a
 host. `Principal` is what a certificate names, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
 `Doorkeeper` keeps the rules of the `GuardedHub` of a site (`SiteIdentity`), from `first_rules` on; `introduce` shows a
-program's certificate to the sites, and `CertificateWatch` shows it again when it is renewed, and says that it expires.
+program's certificate to the sites, and `CertificateWatch` shows it again when it is renewed, and says that it expires;
+`is_in_time` says whether it has.
 `believe` notes which site owns a component that two sites advertise. It needs the extra `keys`.
 """
 
@@ -12,7 +13,7 @@ from selfconf.access.authority import DAYS, Authority, open_keys
 from selfconf.access.beliefs import believe, believed
 from selfconf.access.certificates import Certificate
 from selfconf.access.doorkeeper import Doorkeeper, GuardedHub, SiteIdentity, first_rules
-from selfconf.access.expiry import CertificateWatch
+from selfconf.access.expiry import CertificateWatch, is_in_time
 from selfconf.access.host_authority import HostAuthority
 from selfconf.access.introduction import introduce
 from selfconf.access.keys_folder import KeysFolder
@@ -36,6 +37,7 @@ __all__ = [
     "believed",
     "first_rules",
     "introduce",
+    "is_in_time",
     "open_keys",
     "rules_of",
 ]

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from datetime import datetime, timezone
 
 from selfconf.access.authority import open_keys
+from selfconf.access.certificate_files import REVOKED
 from selfconf.access.certificates import Certificate
 from selfconf.access.introduction import ANSWER
 from selfconf.access.principal import Principal
@@ -31,6 +32,15 @@ LAST_PART = 4
 """A certificate is spoken of in the last quarter of its time, if it has not been renewed by then."""
 
 
+def is_in_time(credentials: Credentials) -> bool:
+    """Whether the certificate of a program is good now, by the clock of this host; one that cannot be read is not."""
+    try:
+        certificate = Certificate.read(credentials.certificate.read_bytes())
+    except (OSError, PeerError):
+        return False
+    return certificate.begins <= datetime.now(timezone.utc) <= certificate.ends
+
+
 class CertificateWatch:
     """Keeps an eye on the certificate of a program, from its making until its bus is closed."""
 
@@ -47,6 +57,7 @@ class CertificateWatch:
         self._complain, self._now = complain, now
         self._certificate = Certificate.read(credentials.certificate.read_bytes())
         self._changed_at, self._link = self._modified(), bus.link
+        self._revoked, self._list_changed_at = False, 0
         self._said = ""
         bus.later(CERTIFICATE_CHECK, self._look)
 
@@ -63,6 +74,7 @@ class CertificateWatch:
             if (changed, link) != (self._changed_at, self._link) and link:  # by another link, another site may hear it
                 self._changed_at, self._link = changed, link
                 self._show()
+            self._look_at_list()
         except (OSError, PeerError, SelfconfError) as error:
             self._tell(f"{self._whose} cannot be renewed: {error}")
             return
@@ -76,6 +88,14 @@ class CertificateWatch:
                 own = Principal.of(self._credentials.name)
                 folder.credentials((own.kind,), own.name)
 
+    def _look_at_list(self) -> None:
+        """See whether the list of what was revoked names the certificate, when one of the two has changed."""
+        path = self._credentials.folder / REVOKED
+        changed = max(path.stat().st_mtime_ns if path.is_file() else 0, self._changed_at)
+        if changed != self._list_changed_at:
+            self._list_changed_at = changed
+            self._revoked = self._certificate.serial in open_keys(self._credentials.folder).revoked()
+
     def _show(self) -> None:
         shown = Introduction(self._certificate.pem.decode())
         self._bus.ask(self._key, encode(shown), ANSWER, lambda replies: None)
@@ -88,6 +108,8 @@ class CertificateWatch:
         renew = (
             "its site renews it, while it has a certificate" if its_site else f"renew it: selfconf keys renew {folder}"
         )
+        if self._revoked:
+            return f"{self._whose} was revoked: it is not trusted any more; have another name issued to you"
         if ends < now:
             return f"{self._whose} has expired at {utc_text(ends)}: it is not trusted any more; {renew}"
         if ends - now < (ends - self._certificate.issued) / LAST_PART:

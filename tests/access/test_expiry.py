@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import signal
 from collections.abc import Iterator
+from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import pytest
 
-from selfconf.access import Authority, CertificateWatch, KeysFolder, Principal, PrincipalKind
+from selfconf.access import Authority, CertificateWatch, KeysFolder, Principal, PrincipalKind, is_in_time
 from selfconf.access.certificates import Certificate
+from selfconf.api.sites.joining import REACHED
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
 from selfconf.protocol.codec import decode
@@ -20,6 +23,7 @@ from tests.cli.processes import Home, Program, component_of, dormant
 from tests.harness.effort import of_keys
 
 ALICE = Principal(PrincipalKind.CONFIGURATOR, "alice")
+BOB = Principal(PrincipalKind.CONFIGURATOR, "bob")
 SECOND = 1 / 86_400
 """A second in days."""
 
@@ -66,6 +70,30 @@ def test_a_certificate_is_spoken_of_before_it_expires_and_shown_again_when_it_is
     assert watched.shown == [renewed.pem.decode()]
     watched.pass_days(1.0)
     assert len(watched.said) == 3, "each is said once"
+
+
+def test_a_certificate_that_is_revoked_is_told_of_once(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "keys")
+    authority.issue(ALICE, tmp_path / "alice")
+    watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
+    watched.pass_days(0.0)
+    assert watched.said == []
+    authority.revoke(ALICE)
+    watched.pass_days(0.0)
+    watched.pass_days(0.1)
+    (said,) = watched.said
+    assert said.startswith("the certificate of conf.alice was revoked: it is not trusted any more")
+
+
+def test_a_certificate_is_in_time_from_its_beginning_to_its_end(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "keys")
+    authority.issue(ALICE, tmp_path / "alice", days=1.0)
+    authority.issue(BOB, tmp_path / "bob", days=SECOND / 1000)
+    alice, bob = (KeysFolder(tmp_path / name) for name in ("alice", "bob"))
+    shown = alice.credentials((PrincipalKind.CONFIGURATOR,))
+    assert is_in_time(shown)
+    assert not is_in_time(replace(shown, certificate=bob.path / "certificate.pem"))
+    assert not is_in_time(replace(shown, certificate=tmp_path / "none.pem"))
 
 
 def test_a_certificate_that_cannot_be_read_any_more_is_told_of_once(tmp_path: Path) -> None:
@@ -147,3 +175,21 @@ def test_a_task_goes_on_over_the_expiry_of_every_certificate_in_it(home: Home) -
     assert say("has expired at ", site, task)
     assert "renew it: selfconf keys renew" in site.complaints
     assert task.end(signal.SIGKILL)
+
+
+@of_keys
+@pytest.mark.process
+def test_a_site_whose_certificate_has_expired_takes_the_place_of_no_hub(home: Home) -> None:
+    """The hub does not let it in, as if it hung; others would not connect to one of its own."""
+    assert home.authority is not None
+    for name in ("kitchen", "attic"):
+        home.authority.issue(Principal(PrincipalKind.SITE, name), home.folder / name)
+    home.site("kitchen", "ads/tracker.ttl", options=("--keys", str(home.folder / "kitchen")))
+    attic = home.site("attic", "ads/drive.ttl", options=("--keys", str(home.folder / "attic")))
+    home.authority.renew(home.folder / "attic", days=5 * SECOND)
+    assert home.until(lambda: "has expired at " in attic.complaints)
+    files = [home.runtime / f"{home.ecology}@{name}.json" for name in ("kitchen", "attic")]
+    relaying = [True, False]
+    assert not home.until(lambda: [json.loads(one.read_text())["relays"] for one in files] != relaying, 2 * REACHED)
+    home.authority.renew(home.folder / "attic")
+    assert home.until(lambda: "is good until " in attic.complaints)

@@ -256,6 +256,8 @@ class Joining:
 
     def _replace_hub(self) -> None:
         """Open another hub in the place of one that has broken: where that was, if it lets go of its port."""
+        if not self._is_believed():
+            return
         before = self.bus.endpoint
         log.error("the hub at %s does not answer; opening another one", before)
         with self._turn() as mine:
@@ -298,8 +300,16 @@ class Joining:
         relays, now = self._relays(), self.bus.now()
         if relays != self._awaited:
             self._awaited, self._hung_at = relays, now + REACHED
-        if not relays or (self._hung_at is not None and now > self._hung_at):
+        if (not relays or (self._hung_at is not None and now > self._hung_at)) and self._is_believed():
             self._relay_at(self._usual, relays)
+
+    def _is_believed(self) -> bool:
+        """Whether others would connect to a hub of this site, and it to theirs: not with an expired certificate."""
+        if self._security is None:
+            return True
+        from selfconf.access import is_in_time  # what it needs is an extra
+
+        return is_in_time(self._security.credentials)
 
     def _relay_at(self, endpoints: Sequence[str], relays: Sequence[str]) -> None:
         """Relay at the first of some endpoints that is free, beside others that relay and keep their places."""
