@@ -12,6 +12,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import BindingError
 from selfconf.model.curie import is_local_name, is_prefix, suggested_local_name
+from selfconf.model.literal_values import number_of
 from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -39,6 +40,7 @@ _PLAIN = {
 Digits are spelt out, as `\\d` has those of all scripts.
 """
 _NUMBERS = frozenset((XSD.integer, XSD.decimal, XSD.double, XSD.float))
+"""The datatypes of a number as Turtle, Python and NumPy write it, of which nothing more is meant."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|true|false")
 
 
@@ -96,9 +98,9 @@ def bind(given: TaskDocument, assignments: Iterable[tuple[str, str | Term]]) -> 
 
 def _as_asked(value: Term, datatype: Term | None) -> Term:
     """A number in the datatype of numbers that is asked for, if it can be written in that; any other value as it is."""
-    if not isinstance(value, Literal) or not isinstance(datatype, IRI) or not {value.datatype, datatype} <= _NUMBERS:
+    if not isinstance(value, Literal) or value.datatype not in _NUMBERS or not isinstance(datatype, IRI):
         return value
-    return _written_as(value, datatype) if _PLAIN[datatype].fullmatch(value.lexical) else value
+    return value if number_of(value.lexical, datatype) is None else _written_as(value, datatype)
 
 
 def _written_as(value: Literal, datatype: IRI) -> Literal:

@@ -113,6 +113,9 @@ def test_a_value_that_does_not_fit_is_refused(bound: tuple[tuple[str, str], ...]
         ("double", "0.5", Literal("0.5", XSD.double)),
         ("float", "0.5", Literal("0.5", XSD.float)),
         ("decimal", Literal("0.5", XSD.double), Literal("0.5", XSD.decimal)),
+        ("nonNegativeInteger", "2", Literal("2", XSD.nonNegativeInteger)),
+        ("byte", "127", Literal("127", XSD.byte)),
+        ("int", Literal("7", XSD.integer), Literal("7", XSD.int)),
     ],
 )
 def test_a_number_takes_the_datatype_that_its_parameter_asks_for(asked: str, value: str | Term, taken: Term) -> None:
@@ -121,11 +124,21 @@ def test_a_number_takes_the_datatype_that_its_parameter_asks_for(asked: str, val
     assert bindings.complete(bindings.bind(task, [("goal", "x"), ("speed", value)])).task.by_name()["speed"] == taken
 
 
-@pytest.mark.parametrize("value", ["0.5", "1e3", "7.0"])
-def test_a_number_that_its_parameter_has_no_place_for_is_refused(value: str) -> None:
-    text = TEMPLATE.replace("sh:defaultValue 0.5 ; ", "").replace("decimal", "integer")
+@pytest.mark.parametrize(
+    ("asked", "value"),
+    [
+        ("integer", "0.5"),
+        ("integer", "1e3"),
+        ("integer", "7.0"),
+        ("byte", "128"),
+        ("unsignedInt", "-1"),
+        ("int", "7.0"),
+    ],
+)
+def test_a_number_that_its_parameter_has_no_place_for_is_refused(asked: str, value: str) -> None:
+    text = TEMPLATE.replace("sh:defaultValue 0.5 ; ", "").replace("decimal", asked)
     task = templates.read_task(turtle.parse(PREFIXES + text, "t.ttl"))
-    with pytest.raises(BindingError, match="not an integer"):
+    with pytest.raises(BindingError, match=f"not an? {asked}"):
         bindings.complete(bindings.bind(task, [("goal", "x"), ("speed", value)]))
 
 
