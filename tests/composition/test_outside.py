@@ -51,6 +51,19 @@ def test_an_inside_that_does_not_give_what_the_template_promises_is_refused() ->
     assert (reason.role, reason.input, reason.sources) == (WHOLE, "pose", (TRACKER_ROLE,))
 
 
+def test_what_is_outside_feeds_no_input_that_accepts_a_shape() -> None:
+    """Whether it conforms is not known: another component may feed the composite each time."""
+    accepting = "sc:signalType :Hint ; sc:accepts [ sh:property [ sh:path sc:rate ; sh:maxCount 1 ] ]"
+    found = answered(TRACKER.replace("sc:signalType :Hint", accepting))
+    assert isinstance(found, Refusal)
+    (reason,) = found.reasons
+    assert isinstance(reason, InputUnfed)
+    assert (reason.component, reason.input, reason.sources) == (iri("t"), "help", (WHOLE,))
+    optional = answered(TRACKER.replace("sc:signalType :Hint", f"{accepting} ; sc:optional true"))
+    assert isinstance(optional, Configuration)
+    assert set(optional.connections) == {Connection(iri("t"), "where", WHOLE, "pose")}
+
+
 def test_what_is_outside_is_a_role_of_its_own_that_is_left_out_in_the_end() -> None:
     task = tasks.InsideReader(parse(TEXT, "t.ttl")).read(WHOLE).task
     whole = with_outside(task, WHOLE)
