@@ -175,6 +175,8 @@ class _Reader:
         """Note what only a port of the other direction says, or only a component, or no part of an advertisement."""
         types = self.document.values(node, TYPE)
         for predicate, _ in self.document.about(node):
+            if predicate in subject.predicates:  # as sc:binding, which besides tasks a grounding has
+                continue
             if predicate in OF_COMPONENT and SC.Component not in types:
                 self._problem(f"only a component has a {_word(predicate)}{but}")
             owners = SAID_BY.get(predicate)

@@ -315,6 +315,17 @@ def test_what_a_part_says_that_only_a_component_says_keeps_its_component_out(sai
         assert problem.startswith("only a component has a sc:")
 
 
+def test_a_grounding_may_bind_parameters_as_a_task_does() -> None:
+    grounding = "[ sc:template :t ; sc:binding [ sc:parameter :p ; sc:value 1 ] ]"
+    text = f"{PREFIXES} :c a sc:Component, :L ; sc:grounding {grounding} ."
+    for good, bad in (
+        advertisements.read_document(turtle.parse(text, "a.ttl")),
+        loader.read_advertisements(text.encode(), "a.ttl"),
+    ):
+        assert [one.profile.inside for one in good] == [iri("t")]
+        assert bad == []
+
+
 def test_what_a_grounding_with_a_name_says_is_read() -> None:
     text = ':a a sc:Component, :L ; sc:grounding :g . :g sc:command "go" . :b a sc:Component, :L ; sc:grounding :g .'
     assert [a.profile.command for a in read(text)[0]] == ["go", "go"]
