@@ -130,7 +130,10 @@ def decode(payload: bytes, expected: type[M]) -> M:
     values: dict[str, Any] = {}
     for name, reader, required in _FIELDS[expected]:
         if name in body:
-            values[name] = reader(body[name])
+            try:
+                values[name] = reader(body[name])
+            except PeerError as error:
+                raise PeerError(f"the member {name!r} of a message of kind {KINDS[expected]!r}: {error}") from None
         elif required:
             raise PeerError(f"a message of kind {KINDS[expected]!r} lacks {name!r}")
     return expected(**values)

@@ -13,6 +13,7 @@ from selfconf.errors import PeerError
 from selfconf.protocol.codec import LARGEST, decode, encode
 from selfconf.protocol.messages import (
     Apply,
+    Free,
     Message,
     Release,
     Reserve,
@@ -100,6 +101,12 @@ def test_a_newer_peer_may_say_more(message: Message, member: str, value: object)
     body = json.loads(encode(message))
     if member not in body:
         assert decode(json.dumps({**body, member: value}).encode(), type(message)) == message
+
+
+def test_a_member_of_the_wrong_type_is_named() -> None:
+    text = b'{"kind": "free", "component": "urn:x", "life": 7}'
+    with pytest.raises(PeerError, match=r"^the member 'life' of a message of kind 'free': "):
+        decode(text, Free)
 
 
 def test_a_message_that_is_too_large_is_refused_unread() -> None:

@@ -205,6 +205,11 @@ def test_a_life_whose_end_was_never_heard_of_has_ended_when_only_another_answers
         pytest.param(b"yes sir", "not a message: ", id="no JSON"),
         pytest.param(b'{"kind": "yes"}', "not a message of kind 'answer'", id="another message"),
         pytest.param(b'{"kind": "answer", "verdict": "done", "component": "urn:x"}', "lacks 'life'", id="incomplete"),
+        pytest.param(
+            b'{"kind": "answer", "verdict": "done", "component": "urn:x", "life": "a", "epoch": 7.0}',
+            "the member 'epoch' ",
+            id="another type",
+        ),
     ],
 )
 def test_a_component_that_speaks_another_protocol_is_replaced_and_it_is_said_why(
