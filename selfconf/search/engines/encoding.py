@@ -44,7 +44,7 @@ from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.group_counting import ExclusiveGroups
 from selfconf.search.engines.nearby import nearby
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
-from selfconf.search.engines.support_clauses import Links, clauses_of_needs, clauses_of_values
+from selfconf.search.engines.support_clauses import clauses_of_needs, clauses_of_values
 from selfconf.search.engines.symmetry import interchangeable
 from selfconf.search.reduction import Constraint, Distinct, Fed, Limit, Played, ReducedProblem, Shared
 
@@ -91,8 +91,10 @@ class Encoding:
         self._guarded = guarded
         self._sums: dict[tuple[int, ...], int] = {}
         """The literals that hold iff one of others does, by these."""
-        self._links: Links = {}
-        """By two roles the needs that one has and the other alone supports, with the literals of these options."""
+        self._needing: Mapping[int, list[int]] = {}
+        """The literals of the options that have each need, of those needs that are written."""
+        self._supporting: Mapping[int, Mapping[int, list[int]]] = {}
+        """The literals of the options that support each of these, by role."""
         self._valued: list[tuple[list[tuple[int, int, int]], list[tuple[int, int]]]] = []
         """The options that constrain each variable which has literals for its values, and these, each with a mask."""
         self._asked = Counter(reduced.slots)
@@ -180,13 +182,10 @@ class Encoding:
     def _needs(self, stated: frozenset[int]) -> None:
         """Write the needs that are not stated otherwise."""
         needing = self._having(stated)
-        supporting = self._supporting(needing) if needing else {}
+        supporting = self._supports_of(needing) if needing else {}
         if not self._guarded:
-            alone = self._alone(supporting)
-            self._complements(alone.values())
-            for need, (source, literals) in alone.items():
-                sink = self.reduced.needs.scopes[need].role
-                self._links.setdefault((source, sink), {})[need] = needing[need], literals
+            self._needing, self._supporting = needing, supporting
+            self._complements()
         add = self.statements.append
         feeding: dict[tuple[int, ...], int] = {}
         for need, having in sorted(needing.items()):
@@ -222,35 +221,42 @@ class Encoding:
         if len(by_role) > 1:
             return [self._any_of(some) for some in by_role.values()]
         alone = next(iter(by_role.values()), [])
-        known = self._sums.get(tuple(alone))
+        known = self._sums.get(tuple(alone)) if self._sums else None
         return alone if known is None else [known]
 
-    def _alone(self, supporting: Mapping[int, Mapping[int, list[int]]]) -> dict[int, tuple[int, list[int]]]:
-        """Return the needs that one role alone supports, of one slot, with this role and what supports them there."""
-        alone = {need: next(iter(by_role.items())) for need, by_role in supporting.items() if len(by_role) == 1}
-        return {need: found for need, found in alone.items() if self._asked[found[0]] == 1}
+    def _alone(self) -> Iterator[tuple[int, int, list[int]]]:
+        """Yield the needs that one role alone supports, of one slot, with that role and what supports them there."""
+        for need, by_role in self._supporting.items():
+            if len(by_role) == 1:
+                ((role, literals),) = by_role.items()
+                if self._asked[role] == 1:
+                    yield need, role, literals
 
-    def _complements(self, alone: Iterable[tuple[int, list[int]]]) -> None:
+    def _complements(self) -> None:
         """Let two sets of options of a role, of which one always plays, have one literal and its negation."""
-        of_role: defaultdict[int, dict[tuple[int, ...], None]] = defaultdict(dict)
-        for role, supporting in alone:
-            of_role[role][tuple(supporting)] = None
+        of_role: defaultdict[int, list[list[int]]] = defaultdict(list)
+        for _, role, supporting in self._alone():
+            of_role[role].append(supporting)
         for role, sets in of_role.items():
             literals = self.plays[role]
-            for some in sets:
-                # The larger one of two comes first, as most sets are small, and have no such other one.
-                if 2 * len(some) < len(literals) or len(some) == 1 or some in self._sums:
+            # Of two such sets one has half of the options at least; mostly there is none.
+            large = [some for some in sets if 2 * len(some) >= len(literals) and len(some) > 1]
+            if not large:
+                continue
+            known = set(map(tuple, sets))
+            for some in map(tuple, large):
+                if some in self._sums:
                     continue
                 within = set(some)
                 rest = tuple([literal for literal in literals if literal not in within])
                 if len(rest) == 1:
                     self._sums[some] = -rest[0]
-                elif rest in sets:
+                elif rest in known:
                     one = self._sums[some] = self.literal()
                     self._sums[rest] = -one
                     self.statements += [[-one, *some], [one, *rest]]
 
-    def _supporting(self, needs: Collection[int]) -> dict[int, dict[int, list[int]]]:
+    def _supports_of(self, needs: Collection[int]) -> dict[int, dict[int, list[int]]]:
         """Return for some needs the literals of the options that support them, by role."""
         found: dict[int, dict[int, list[int]]] = {need: {} for need in needs}
         few = len(found) < len(self.reduced.needs)
@@ -322,7 +328,11 @@ class Encoding:
     def support(self) -> list[list[int] | Implied]:
         """Add support clauses, and return all that is added."""
         before = len(self.statements)
-        for (source, sink), needs in self._links.items():
+        links: dict[tuple[int, int], dict[int, tuple[list[int], list[int]]]] = {}
+        for need, source, literals in self._alone():
+            sink = self.reduced.needs.scopes[need].role
+            links.setdefault((source, sink), {})[need] = self._needing[need], literals
+        for (source, sink), needs in links.items():
             self.statements += [*clauses_of_needs(self.plays[source], self.plays[sink], needs, self._any_of)]
         options = [literal for literals in self.plays for literal in literals]
         for some, values in self._valued:

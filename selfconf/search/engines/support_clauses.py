@@ -19,9 +19,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 SHARE_FITTING = 3
 """A support clause has at most one in this number of the options of a role."""
 
-Links = dict[tuple[int, int], dict[int, tuple[list[int], list[int]]]]
-"""By the roles that support and have them, needs with the literals of the options that have and that support them."""
-
 
 def clauses_of_needs(
     source: Sequence[int],
@@ -31,7 +28,8 @@ def clauses_of_needs(
 ) -> Iterator[list[int]]:
     """Yield the support clauses of the needs of one role that another role alone supports.
 
-    Given are the literals of the options of both roles, and what returns a literal that holds iff one of some does.
+    Given are the literals of the options of both roles, those that have and those that support each need, and what
+    returns a literal that holds iff one of some does.
     """
     if len(needs) < SHARE_FITTING:
         return
