@@ -267,8 +267,14 @@ class InputSubscription:
             stamp = self._stamp_of(sample)
             if stamp is not None:
                 self._order.said_again = SignalNumber(stamp.life, stamp.sequence)
-            if not self._queue:
+            if not self._queue or (self.muted and stamp is not None and not self._has_come(stamp)):
                 self._received(sample)
+
+    def _has_come(self, stamp: Stamp) -> bool:
+        """Whether a signal, or one that was issued after it, is the newest that waits."""
+        waiting = self._queue.newest()
+        newest = self._stamp_of(waiting) if waiting is not None else None
+        return newest is not None and SignalNumber(newest.life, newest.sequence).covers(stamp)
 
     def _life_changed(self, key: str, alive: bool) -> None:
         if alive:
@@ -338,7 +344,8 @@ class InputSubscription:
     def _look_whether_it_acts(self, fail: Fail) -> None:
         """The component has let go of a task: it may act for another one, and then it answers with its last signal.
 
-        Until then no signal of before counts as one that has just come, and what comes later answers the question.
+        Until then no signal of before counts as one that has just come, and what comes later answers the question. The
+        answer takes the place of what waits and was issued before it: that may have been for the task of before.
         """
         last = self._order.doubted = SignalNumber(fail.life, fail.sequence)
 
@@ -349,6 +356,8 @@ class InputSubscription:
                 self._look_whether_it_acts(fail)
                 return
             self._order.doubted = None
+            if self.muted:
+                self._latched(replies)
             if not replies.samples:
                 self._order.over = last
                 if self.muted:

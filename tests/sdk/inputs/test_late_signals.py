@@ -144,6 +144,20 @@ def test_what_stands_by_and_acts_on_for_another_task_still_has_its_last_signal()
     assert late.stage.recorder.said[-1] == ("position", 3)
 
 
+@pytest.mark.parametrize(("answered", "delivered"), [(4, 4), (2, 3)])
+def test_of_what_stands_by_and_acts_for_another_task_its_newest_signal_counts(answered: int, delivered: int) -> None:
+    """Its answer is one that it has issued since it began to act for that task; what waits may be of before."""
+    late = Late()
+    standby = {"position": (Wire(TRACKER, "pose"),)}
+    late.stage.call(apply(2, US, {"position": (Wire(CAP, "velocity"),)}, standby=standby))
+    late.let_go(3)
+    late.issue(3)
+    late.answer(answered)
+    late.stage.call(follow(3))
+    late.stage.let_pass(0.01)
+    assert late.stage.recorder.said[-1] == ("position", delivered)
+
+
 def test_a_signal_from_after_its_source_let_go_of_a_task_is_news() -> None:
     late = Late()
     late.let_go(3)
