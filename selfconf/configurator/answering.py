@@ -30,9 +30,9 @@ MOST_AHEAD = 100 * 366 * 86_400_000
 
 def heed_answer(state: State, event: Answered) -> Reaction:
     """A component has answered a call, or has not in time; an answer to a call of an older epoch is not waited for."""
-    known = state
+    known = deploying.as_claimed(state, event)
     if event.call is Call.RELEASE and event.verdict in OBEYED and event.epoch >= state.owed.get(event.component, 0):
-        known = replace(state, owed={c: since for c, since in state.owed.items() if c != event.component})
+        known = replace(known, owed={c: since for c, since in state.owed.items() if c != event.component})
         if state.phase is Phase.REFUSED and event.component in state.queued & state.owed.keys():
             # It is not asked to remember this task before it has obeyed: a release, which may be doubled, ends that.
             return phases.queue(replace(known, epoch=state.epoch + 1))
@@ -41,6 +41,9 @@ def heed_answer(state: State, event: Answered) -> Reaction:
     rest = replace(known, pending=state.pending - {(event.component, event.call)})
     if state.phase is Phase.DISMANTLING:
         return phases.released(rest)
+    if event.call is Call.RESERVE and state.held[event.component].is_adopted:
+        # What a component says otherwise of its claim, it says again to the apply.
+        return phases.stand_down(rest) if _is_held_elsewhere(state, event) else deploying.proceed(rest)
     return deploying.confirmed(rest, event) if event.verdict is Verdict.DONE else _declined(rest, event)
 
 
@@ -78,7 +81,7 @@ def _can_catch_up(event: Answered) -> bool:
 
 def _busy(state: State, event: Answered) -> Reaction:
     """Another task holds a component: wait for it, or do without it; nothing of this task follows it meanwhile."""
-    if event.holder is not None and event.holder.task == state.task and not state.alone:
+    if _is_held_elsewhere(state, event):
         return phases.stand_down(state)
     if event.shared and event.call is Call.APPLY:
         if deploying.may_agree(state, event.component, event.holder):
@@ -95,6 +98,11 @@ def _busy(state: State, event: Answered) -> Reaction:
         apart = replace(apart, news=True, asked_about=apart.asked_about | {event.component})
     busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True)
     return then(effects, losing.lose(apart, event.component, busy))
+
+
+def _is_held_elsewhere(state: State, event: Answered) -> bool:
+    """Whether another configurator of the same task holds a component, and goes on with the task."""
+    return event.holder is not None and event.holder.task == state.task and not state.alone
 
 
 def _reserve_anew(state: State, component: IRI) -> Reaction:

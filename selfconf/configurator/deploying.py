@@ -13,6 +13,9 @@ that is held by another task counts as taken, unless that task is of lower prior
 
 A repair that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
 reservation, and everything else acts already.
+
+What a task that is adopted holds acts under a configurator that is gone, and would let go of it while others are woken.
+So it is claimed meanwhile: reserved as it is.
 """
 
 from __future__ import annotations
@@ -36,6 +39,7 @@ from selfconf.configurator.starting_order import Plan, plan_of, resting_order
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
+from selfconf.protocol.messages import Verdict
 
 Reaction = tuple[State, tuple[Effect, ...]]
 """The next state, and what is to be done."""
@@ -57,20 +61,14 @@ def then(effects: Iterable[Effect], following: Reaction) -> Reaction:
 
 def deploy(state: State) -> Reaction:
     """Watch every component of the target, and wake those that are not held yet."""
-    target = state.target
-    assert target is not None
-    epoch = state.epoch + 1
-    plan = plan_of(target)
-    wires = plan.inputs
-    held = dict(state.held)
-    for component, inputs in wires.items():
-        before = held.get(component, Held({}, asked=component in state.owed))
-        wanted = inputs, plan.values[component], plan.callers[component]
-        same = before.confirmed and (before.inputs, before.values, before.callers) == wanted
-        held[component] = before if same else replace(before, confirmed=False)
+    assert state.target is not None
+    plan, epoch = plan_of(state.target), state.epoch + 1
+    wires, held = plan.inputs, _to_be_confirmed(state, plan)
     asleep = sorted(component for component in wires if not held[component].reserved)
+    claimed = _unclaimed(state) if asleep else []
     effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
     effects += [WakeUp(component, epoch) for component in asleep]
+    effects += [ReserveOf(one, epoch, held[one].inputs, held[one].values) for one in claimed]
     effects += [Unwatch(component) for component in sorted(state.watched - wires.keys() - held.keys())]
     deployed = replace(
         state,
@@ -78,11 +76,27 @@ def deploy(state: State) -> Reaction:
         plan=plan,
         epoch=epoch,
         held=held,
-        pending=frozenset((component, Call.WAKE) for component in asleep),
+        pending=frozenset((*((one, Call.WAKE) for one in asleep), *((one, Call.RESERVE) for one in claimed))),
         owed={component: since for component, since in state.owed.items() if component not in wires},
         watched=state.watched & held.keys() | wires.keys(),
     )
     return then(effects, proceed(deployed))
+
+
+def _unclaimed(state: State) -> list[IRI]:
+    """What was adopted and has heard nothing of this configurator: nothing was deployed since."""
+    return sorted(one for one, mine in state.held.items() if mine.is_adopted) if state.plan is None else []
+
+
+def _to_be_confirmed(state: State, plan: Plan) -> dict[IRI, Held]:
+    """What is held, and is to be: confirmed is what has confirmed that it does already what it is to do."""
+    held = dict(state.held)
+    for component, inputs in plan.inputs.items():
+        before = held.get(component, Held({}, asked=component in state.owed))
+        wanted = inputs, plan.values[component], plan.callers[component]
+        same = before.confirmed and (before.inputs, before.values, before.callers) == wanted
+        held[component] = before if same else replace(before, confirmed=False)
+    return held
 
 
 def proceed(state: State) -> Reaction:
@@ -159,6 +173,17 @@ def _may_begin(state: State, component: IRI, plan: Plan) -> bool:
     elif component in order.actuators and any(not held[c].confirmed for c in order.before if c not in order.actuators):
         return False
     return all(held[source].confirmed for source in order.before[component])
+
+
+def as_claimed(state: State, answer: Answered) -> State:
+    """Note what a component that was adopted answers to its claim: one that is held and does not act starts in turn."""
+    held = state.held.get(answer.component)
+    if held is None or not held.is_adopted or answer.call is not Call.RESERVE:
+        return state
+    if answer.verdict is not Verdict.DONE or answer.acts:
+        return state
+    at_rest = replace(held, life=answer.life, active=False, acts=False)
+    return replace(state, held={**state.held, answer.component: at_rest})
 
 
 def confirmed(state: State, answer: Answered) -> Reaction:

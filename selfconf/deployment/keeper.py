@@ -3,7 +3,8 @@
 Which one is the same for all who see the same sites: the site whose name gives the highest hash with the task's
 identity (rendezvous hashing, Thaler and Ravishankar 1998). When it goes, the next one goes on with what runs: no
 component is stopped or started, each only hears whose life to watch from now on. When a site comes that is to have a
-task, the one that has it lets go first; until then the components do not listen to the other.
+task, the one that has it lets go first, but not in the middle of a deployment: the other would go on with what ran
+before, as it knows of nothing else. Until then the components do not listen to the other.
 
 A site that was frozen, or cut off, finds by a newer record that another one has gone on with its task meanwhile. It
 leaves that as it runs, and goes on with it in turn: what it knows itself is outdated, and the components would come to
@@ -22,6 +23,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
+from selfconf.configurator import Phase
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
 from selfconf.deployment.holders import Holding
 from selfconf.deployment.task_folder import TaskFolder
@@ -40,6 +42,9 @@ log = logging.getLogger(__name__)
 
 KEEPER_LOOK = 1.0
 """Seconds between two looks at which tasks this site is to run."""
+KEEPER_AGAIN = 0.3
+"""Seconds after which a task that has been left to another configurator is looked at again: that may be about to leave
+it to this site, and components let go of a task that no site runs after a second."""
 OTHERS = 2.0
 """Seconds that the other sites may take to say what they keep."""
 ADOPTED = 3.0
@@ -208,10 +213,16 @@ class Keeper:
             runner = self.runners.get(task)
             if runner is not None and record.ended:
                 runner.stop()
-            elif runner is not None and not (mine and record.revision == self._revisions[task]):
+            elif runner is not None and self._is_to_leave(runner, record, mine):
                 runner.hand_over()
             if task not in self.runners and mine and not record.ended and not self._has_respite(task):
                 self._run(record)
+
+    def _is_to_leave(self, runner: TaskRunner, record: TaskRecord, mine: bool) -> bool:
+        """Whether a task is another site's by now: by a newer record, or as that has come; then once it is settled."""
+        if record.revision != self._revisions[record.task]:
+            return True
+        return not mine and runner.state.phase in (Phase.RUNNING, Phase.REFUSED)
 
     def _without_configurator(self, known: Set[str]) -> list[Holding]:
         """What each task holds that is to be run, by its record, while it may be without a configurator.
@@ -244,6 +255,7 @@ class Keeper:
         def ended(_: object) -> None:
             runner = self.runners.pop(record.task, None)
             self._revisions.pop(record.task, None)
+            self.bus.later(KEEPER_AGAIN, self._assign)
             if runner is not None and runner.trouble is not None:
                 log.error("%s: %s; trying again in %.0f s", record.task, runner.trouble, RESPITE)
                 self._respites[record.task] = self.bus.now() + RESPITE

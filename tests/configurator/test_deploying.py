@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from selfconf.configurator.effects import (
     ApplyTo,
     Compose,
@@ -34,6 +36,8 @@ from tests.configurator.builders import (
     CONTROL,
     DRIVE,
     GOAL,
+    ODOMETRY,
+    OTHERS,
     TASK,
     TRACKER,
     History,
@@ -175,6 +179,30 @@ def test_a_task_that_is_adopted_goes_on_and_every_component_hears_for_whom() -> 
     assert {effect.epoch for effect in effects if isinstance(effect, ApplyTo)} == {500}
     assert history.all_answer() == [Running(navigation())]
     assert history.hear(Adopted(900, navigation())) == []
+
+
+@pytest.mark.parametrize("acts", [True, False])
+def test_what_is_adopted_hears_of_that_while_what_takes_the_place_of_another_is_woken(acts: bool) -> None:
+    history = History(TASK)
+    history.hear(Adopted(500, navigation()), Failed(TRACKER, "1", Cause.CRASH), Discovered())
+    assert reserved(history.composed(navigation(ODOMETRY))) == [CONTROL, DRIVE]
+    history.answer(ODOMETRY, Call.WAKE)
+    history.answer(DRIVE, Call.RESERVE, acts=acts)
+    last = history.answer(CONTROL, Call.RESERVE, acts=True)
+    if not acts:
+        assert reserved(last) == [ODOMETRY]
+        last = history.answer(ODOMETRY, Call.RESERVE)
+    assert sorted(applied(last)) == [CONTROL, DRIVE, ODOMETRY] if acts else [CONTROL, ODOMETRY]
+    assert history.all_answer() == [Running(navigation(ODOMETRY))]
+
+
+def test_a_task_that_another_configurator_goes_on_with_is_left_to_that_one_though_something_is_being_woken() -> None:
+    history = History(TASK)
+    history.hear(Adopted(500, navigation()), Failed(TRACKER, "1", Cause.CRASH), Discovered())
+    history.composed(navigation(ODOMETRY))
+    other = replace(OTHERS, task=TASK.task)
+    assert Finish() in history.answer(DRIVE, Call.RESERVE, Verdict.BUSY, holder=other)
+    assert history.state.phase is Phase.STOPPED
 
 
 def test_a_task_that_is_handed_over_is_left_as_it_runs() -> None:

@@ -163,7 +163,8 @@ class Ledger:
             }[state.phase]
         else:
             assert not state.pending
-        assert len([call for _, call in state.pending if call is Call.RESERVE]) <= 1
+        reserved = [one for one, call in state.pending if call is Call.RESERVE and not state.held[one].is_adopted]
+        assert len(reserved) <= 1
         assert {component for component, _ in state.pending} <= state.held.keys() | state.owed.keys()
         for held in state.held.values():
             assert held.reserved >= held.acts or state.phase is Phase.DISMANTLING
@@ -197,6 +198,10 @@ class Ledger:
                 assert state.target is not None
                 assert component in self.watched
                 assert (epoch, state.phase) == (state.epoch, Phase.RESERVING)
+                if state.held[component].is_adopted:  # as it is
+                    assert before.plan is None
+                    assert (inputs, values) == (before.held[component].inputs, before.held[component].values)
+                    return
                 waking = any(call is Call.WAKE for _, call in state.pending)
                 assert not waking or component in before.offered | state.free
                 assert inputs == wiring(state.target)[component]

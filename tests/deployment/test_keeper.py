@@ -21,6 +21,8 @@ from selfconf.deployment.keeper import keeper_of
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
+from selfconf.sdk.runtime.supervision import GRACE
+from tests.deployment.simulated import home, living_room
 from tests.deployment.tasks import DRIVEN, SPARE, TASK
 from tests.faults.ecologies import COMPOSED
 from tests.lab import Lab, iri, request_for
@@ -141,6 +143,42 @@ def test_a_site_that_was_away_goes_on_again_without_stopping_anything(
     assert {name: list(recorder.said) for name, recorder in keepers.lab.components.items()} == said
     assert keepers.running() == [keeper]
     assert keepers.lab.active() == TASK | {"odometry" if repaired else "tracker"}
+
+
+@pytest.mark.parametrize("how", ["ended", "frozen"])
+def test_nothing_else_stops_while_the_next_site_wakes_what_takes_the_place_of_another(tmp_path: Path, how: str) -> None:
+    """That takes longer than the grace of the components; and the first site may be back before it is done."""
+    lab = home(tmp_path)
+    cellar = lab.site("cellar", "odometry").bus
+    lab.component("odometry")
+    keepers = Keepers(lab, tmp_path / "disks")
+    keepers.hand_over(RECORD)
+    assert lab.until(lambda: bool(keepers.running()))
+    (keeper,) = keepers.running()
+    woken: list[MemoryBus] = []
+
+    def wake(node: MemoryBus) -> None:
+        if not woken:
+            node.later(GRACE + 1.0, lambda: lab.component("tracker"))
+        woken.append(node)
+
+    living_room(lab, "1", wake)
+    lab.let_pass(1.0)
+    said = {name: list(lab.components[name].said) for name in ("sonar", "encoder")}
+    node = keepers.buses[keeper]
+    assert isinstance(node, MemoryBus)
+    cellar.close()
+    lab.crash("odometry")
+    if how == "ended":
+        keepers.end(keeper)
+    else:
+        lab.network.pause(node)
+    lab.let_pass(1.5)
+    lab.network.resume(node)
+    assert lab.until(lambda: lab.active() == TASK | {"tracker"}, 10.0)
+    lab.let_pass(3.0)
+    assert {name: list(lab.components[name].said) for name in said} == said
+    assert lab.active() == TASK | {"tracker"}
 
 
 def test_the_next_site_goes_on_though_its_clock_is_behind(keepers: Keepers) -> None:

@@ -107,6 +107,10 @@ class Calls:
     def reserve(self, effect: ReserveOf) -> None:
         """Have a component held for this task."""
         component = effect.component
+        life = self._lives.life(component)
+        if life is None or not self.ecology.lives_on(component, life):
+            self._ended(component, life or "", Call.RESERVE)
+            return
         message = Reserve(
             **self._calling.claim(component, effect.epoch),
             inputs=self._ends.wires(effect.inputs),
@@ -170,7 +174,7 @@ class Calls:
     def _apply(self, effect: ApplyTo) -> None:
         life = self._lives.life(effect.component)
         if life is None or not self.ecology.lives_on(effect.component, life):
-            self._ended(effect.component, life or "")
+            self._ended(effect.component, life or "", Call.APPLY)
             return
         inputs = self._ends.wires(effect.inputs)
         claim = self._calling.claim(effect.component, effect.epoch)
@@ -192,10 +196,10 @@ class Calls:
         if not any(map(self._is_to_wait, self._held_back)):
             self._apply_held_back()
 
-    def _ended(self, component: IRI, life: str) -> None:
-        """A component that is to act has ended without a FAIL: its site may start it again."""
+    def _ended(self, component: IRI, life: str, call: Call) -> None:
+        """A component that is to be called has ended without a FAIL: its site may start it again."""
         detail, now = "it does not live any more", self.ecology.life(component)
-        self._report(ComponentUnreachable(component, Call.APPLY.value, detail))
+        self._report(ComponentUnreachable(component, call.value, detail))
         self._step(Failed(component, life, Cause.CRASH, detail))
         if now is not None:
             self._step(Appeared({component: now}))
