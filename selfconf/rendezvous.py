@@ -20,6 +20,7 @@ from selfconf.bus.zenoh import client
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
+from selfconf.protocol.endpoints import LISTENING_PORTS
 from selfconf.protocol.keys import any_ecology, checked_name, ecology_of
 from selfconf.this_machine import local_sites, runtime_folder
 
@@ -37,11 +38,6 @@ ECOLOGY_ANSWER = 3.0
 """Seconds that an endpoint may take to say which ecologies are there."""
 PLACES = 4
 """How many usual ports an ecology has: the first that is free is taken, by the one site that relays."""
-USUAL_PORTS = range(20000, 32768)
-"""The ports of sites: below those that Linux takes for outgoing connections.
-
-Else a client that tries to connect to a port where nothing listens might be given that very port for its own end.
-"""
 
 
 def usual_endpoints(ecology: str, secure: bool = False) -> list[str]:
@@ -53,7 +49,9 @@ def usual_endpoints(ecology: str, secure: bool = False) -> list[str]:
     digest = hashlib.blake2s(f"{runtime_folder()} {ecology}{' with keys' * secure}".encode(), digest_size=8).digest()
     first = int.from_bytes(digest, "big")
     protocol = "tls" if secure else "tcp"
-    return [f"{protocol}/127.0.0.1:{USUAL_PORTS[(first + number) % len(USUAL_PORTS)]}" for number in range(PLACES)]
+    return [
+        f"{protocol}/127.0.0.1:{LISTENING_PORTS[(first + number) % len(LISTENING_PORTS)]}" for number in range(PLACES)
+    ]
 
 
 def environment(ecology: str, endpoint: str, ontologies: Sequence[Path] = ()) -> dict[str, str]:
@@ -124,9 +122,9 @@ def component_credentials(keys: Path | None, components: Sequence[IRI]) -> Crede
 def find(ecology: str | None, connect: Sequence[str], credentials: Credentials | None = None) -> tuple[str, list[str]]:
     """The ecology and the endpoints to connect to.
 
-    Each is what is given, else what the environment says, else that of the sites on this machine: where they are
-    reached, then where they will be if one that hangs has its place taken by another. Raises NetworkError, saying what
-    to try, if there are none, and AuthorError for what cannot name an ecology.
+    Each is what is given, else what the environment says, else that of the sites on this machine: where their own host
+    reaches them, then where others do, then where they will be if one that hangs has its place taken by another. Raises
+    NetworkError, saying what to try, if there are none, and AuthorError for what cannot name an ecology.
     """
     ecology, endpoints = asked_for(ecology, connect)
     if ecology is not None:
@@ -145,7 +143,8 @@ def find(ecology: str | None, connect: Sequence[str], credentials: Credentials |
         which = f"{setting('ecology')}: {', '.join(names)}"
         raise NetworkError(f"several ecologies run on this machine; say which with {which}")
     usual = usual_endpoints(names[0], secure=credentials is not None)
-    return names[0], list(dict.fromkeys([*(site.endpoint for site in found), *usual]))
+    from_here = [site.from_here for site in found if site.from_here]
+    return names[0], list(dict.fromkeys([*from_here, *(site.endpoint for site in found), *usual]))
 
 
 @contextmanager

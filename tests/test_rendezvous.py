@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -46,6 +47,14 @@ def test_an_endpoint_that_several_sites_share_is_found_once() -> None:
     this_machine.announce(shared)
     this_machine.announce(LocalSite("home", "b", shared.endpoint, os.getpid(), relays=False))
     assert rendezvous.find("home", []) == ("home", [shared.endpoint, *usual_endpoints("home")])
+
+
+def test_programs_of_a_host_first_try_where_it_alone_reaches_its_hub() -> None:
+    clients = [replace(meeting(site=name), relays=False) for name in "ac"]
+    relaying = replace(meeting(site="b"), from_here="tls/127.0.0.1:20001")
+    for site in (*clients, relaying):
+        this_machine.announce(site)
+    assert rendezvous.find("home", [])[1][:2] == ["tls/127.0.0.1:20001", relaying.endpoint]
 
 
 def test_where_no_site_answers_the_suspended_one_of_this_machine_is_named() -> None:

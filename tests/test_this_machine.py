@@ -128,6 +128,7 @@ def test_the_file_is_plain_json(runtime_folder: Path) -> None:
         "endpoint": "tcp/127.0.0.1:7001",
         "relays": True,
         "log": "",
+        "from_here": "",
         **process,
     }
 

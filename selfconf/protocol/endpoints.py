@@ -10,6 +10,11 @@ import re
 _PARTS = re.compile(r"(?P<protocol>[^/?#]*/?)(?P<address>[^?#]*)(?P<settings>.*)", re.DOTALL)
 _PORT = re.compile(r"\+?[0-9]+", re.ASCII)
 MOST_PORT = (1 << 16) - 1
+LISTENING_PORTS = range(20000, 32768)
+"""The ports that hubs take where none is given: below those that Linux takes for outgoing connections.
+
+Else a client that tries to connect to a port where nothing listens might be given that very port for its own end.
+"""
 _WITH_PORT = frozenset(("tcp/", "tls/", "udp/", "quic/", "ws/"))
 # The protocols whose addresses have a host and a port.
 
@@ -42,6 +47,11 @@ def with_other_port(endpoint: str, port: int) -> str:
     """An endpoint with another port in place of its own."""
     protocol, address, settings = _parts(endpoint)
     return f"{protocol}{address.rpartition(':')[0]}:{port}{settings}"
+
+
+def with_settings(endpoint: str, settings: str) -> str:
+    """An endpoint with further settings of its link, such as `so_rcvbuf=65536`."""
+    return f"{endpoint}{';' if '#' in endpoint else '#'}{settings}"
 
 
 def _parts(endpoint: str) -> tuple[str, str, str]:

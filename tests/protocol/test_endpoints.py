@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.protocol.endpoints import endpoint_host, endpoint_port, is_zenoh_endpoint, with_other_port
+from selfconf.protocol.endpoints import endpoint_host, endpoint_port, is_zenoh_endpoint, with_other_port, with_settings
 
 
 @pytest.mark.parametrize(
@@ -27,6 +27,11 @@ def test_an_endpoint_has_a_host_and_a_port_or_none(endpoint: str, host: str, por
 
 def test_another_port_keeps_the_settings_of_the_link() -> None:
     assert with_other_port("tls/[::1]:0?prio=1#so_rcvbuf=1000", 7447) == "tls/[::1]:7447?prio=1#so_rcvbuf=1000"
+
+
+def test_further_settings_of_the_link_follow_those_that_are_there() -> None:
+    assert with_settings("tls/[::1]:7447?prio=1", "a=1") == "tls/[::1]:7447?prio=1#a=1"
+    assert with_settings("tls/[::1]:7447#b=2", "a=1") == "tls/[::1]:7447#b=2;a=1"
 
 
 @pytest.mark.parametrize(

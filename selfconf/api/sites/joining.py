@@ -111,7 +111,8 @@ class Joining:
     @property
     def endpoints(self) -> list[str]:
         """Where a component of this site looks for a hub: where the site is reached first."""
-        return list(dict.fromkeys([self.endpoint, *self._usual]))
+        from_here = [self.bus.from_here] if self.relays else self._from_here()
+        return list(dict.fromkeys([*from_here, self.endpoint, *self._usual]))
 
     def namesake(self) -> str:
         """The life of another site of this name, if one is seen in the ecology; empty if not."""
@@ -130,7 +131,15 @@ class Joining:
     def announce(self) -> None:
         """Write down for others on this machine where this site is reached. Raises NetworkError."""
         relays = bool(self.bus.endpoint)
-        mine = LocalSite(self._ecology, self._name, self.endpoint, os.getpid(), relays=relays, log=self.log)
+        mine = LocalSite(
+            self._ecology,
+            self._name,
+            self.endpoint,
+            os.getpid(),
+            relays=relays,
+            log=self.log,
+            from_here=self.bus.from_here,
+        )
         self._file = this_machine.announce(mine)
 
     def _announce_anew(self) -> None:
@@ -177,6 +186,10 @@ class Joining:
         others = this_machine.local_sites(self._ecology)
         return list(dict.fromkeys(other.endpoint for other in others if other.relays and other.site != self._name))
 
+    def _from_here(self) -> list[str]:
+        """Where the sites of this machine that relay are reached by their own host."""
+        return [site.from_here for site in this_machine.local_sites(self._ecology) if site.from_here]
+
     def _opened(self, listen: str | None, relays: list[str]) -> ZenohBus:
         connect = [*relays, *self._elsewhere]
         if listen is not None:
@@ -184,7 +197,7 @@ class Joining:
         if relays and not self._elsewhere:
             try:
                 own = None if self._security is None else self._security.credentials
-                return client(list(dict.fromkeys([*relays, *self._usual])), credentials=own)
+                return client(list(dict.fromkeys([*self._from_here(), *relays, *self._usual])), credentials=own)
             except NetworkError:  # those that relay hang
                 pass
         for endpoint in self._usual:

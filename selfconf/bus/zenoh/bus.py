@@ -90,6 +90,8 @@ class ZenohBus(Loop):
         self._session = session
         self.endpoint = ""
         """Where the relay of this bus listens; empty if it has none."""
+        self.from_here = ""
+        """Where it is reached from its own host; empty if there is none."""
         self._relay: Relay | None = None
         self._declared: set[Any] = set()
         self._direct: set[DirectReceiver] = set()
@@ -104,7 +106,7 @@ class ZenohBus(Loop):
 
     def relay(self, hub: Hub, connect: Sequence[str]) -> None:
         """Keep a hub, connected to others, until this bus is closed or relays no more."""
-        self._relay, self.endpoint = Relay(hub, self, connect), hub.endpoint
+        self._relay, self.endpoint, self.from_here = Relay(hub, self, connect), hub.endpoint, hub.from_here
 
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate, where this bus relays. Raises NetworkError."""
@@ -115,7 +117,7 @@ class ZenohBus(Loop):
         """Close the hub, if there is one; this bus goes to another hub that it knows."""
         if self._relay is not None:
             self._relay.close()
-        self._relay, self.endpoint = None, ""
+        self._relay, self.endpoint, self.from_here = None, "", ""
 
     def watch_link(self, changed: Callable[[], None]) -> Callable[[], None]:
         """Call `changed` whenever this bus has gained or lost its hub, on the bus's thread."""

@@ -23,12 +23,13 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import zenoh
 
 from selfconf.bus.loop import Loop
+from selfconf.bus.zenoh.descriptors import sockets_at
+from selfconf.bus.zenoh.door import Door
 from selfconf.bus.zenoh.receivers import callback
 from selfconf.bus.zenoh.session import Security, open_session, with_port
 from selfconf.errors import NetworkError
@@ -50,28 +51,41 @@ LINGER = 3.0
 """Seconds for which an uplink that was replaced stays, up to twice that by chance."""
 MOST_LINGERING = 3
 """How many replaced uplinks stay at most, however fast the links change."""
-DESCRIPTORS = Path("/proc/self/fd")
-"""Where Linux lists what a process has open."""
 
 
 class Hub:
-    """The session of a router that listens on an endpoint."""
+    """The session of a router that listens on an endpoint; with keys also on one that its own host alone knows.
+
+    To that no stranger of the network gets, so whatever goes on at the other, programs of this host join (`door`).
+    """
 
     def __init__(self, listen: str, security: Security | None = None) -> None:
         """Port 0 means any free one. Raises NetworkError if the endpoint is taken, or none."""
         self.security = security
-        attempts = 5 if endpoint_port(listen) == 0 else 1
+        attempts = 5 if endpoint_port(listen) == 0 or security is not None else 1
         for attempt in range(1, attempts + 1):
             self.endpoint = with_port(listen)
+            self.from_here = self._reached_from_here()
             try:
                 self._session = self._open()
-                return
+                break
             except NetworkError:
                 if attempt == attempts:
                     raise
+        self._door = None if security is None else Door(self.endpoint, lambda: self._session.info.links())
+
+    def _reached_from_here(self) -> str:
+        """The endpoint by which programs of this host reach it: with keys one of their own."""
+        if self.security is not None:
+            return with_port("tls/127.0.0.1:0")
+        return self.endpoint.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
+
+    @property
+    def _listens_at(self) -> list[str]:
+        return [self.endpoint] if self.security is None else [self.endpoint, self.from_here]
 
     def _open(self) -> Any:
-        return open_session("router", listen=[self.endpoint], shared_memory=True, security=self.security)
+        return open_session("router", listen=self._listens_at, shared_memory=True, security=self.security)
 
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate: Zenoh reads them only as a session is opened, so it is opened anew.
@@ -92,18 +106,16 @@ class Hub:
                     raise
                 time.sleep(PORT_PAUSE)  # nothing says when the system gives the port back
 
-    @property
-    def from_here(self) -> str:
-        """The endpoint by which a hub that listens on all addresses is reached from its own host."""
-        return self.endpoint.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
-
     def close(self) -> None:
         """Leave the network, and have no session stay connected, the client of the same process included.
 
         A router that has broken inside lets go of no connection when it is closed.
         """
+        if self._door is not None:
+            self._door.close()
         _close(self._session)
-        cut_connections(self.endpoint)
+        for endpoint in self._listens_at:
+            cut_connections(endpoint)
 
 
 class Relay:
@@ -238,16 +250,9 @@ def cut_connections(endpoint: str, *, from_here: bool = False) -> None:
     `from_here`: those that this process has made to an endpoint of another one. Nothing is done where it has no port.
     """
     port = endpoint_port(endpoint)
-    if port is None:
-        return
-    for path in list(DESCRIPTORS.iterdir()) if DESCRIPTORS.is_dir() else ():
-        with suppress(OSError):  # it was closed meanwhile, or is not connected any more
-            if not path.is_socket():
-                continue
-            with socket.fromfd(int(path.name), socket.AF_INET, socket.SOCK_STREAM) as connection:
-                address = connection.getpeername() if from_here else connection.getsockname()
-                if isinstance(address, tuple) and address[1] == port:  # it is a path where it is of another family
-                    connection.shutdown(socket.SHUT_RDWR)
+    for connection in () if port is None else sockets_at(port, from_here=from_here):
+        with suppress(OSError):  # it is not connected any more
+            connection.shutdown(socket.SHUT_RDWR)
 
 
 def _close(session: Any) -> None:

@@ -11,8 +11,10 @@ ones. A hub has room for 350 such clients; others cost it nothing.
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import random
 import socket
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -24,16 +26,27 @@ from selfconf.bus.credentials import Credentials
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
-from selfconf.protocol.endpoints import endpoint_host, endpoint_port, is_zenoh_endpoint, with_other_port
+from selfconf.protocol.endpoints import (
+    LISTENING_PORTS,
+    endpoint_host,
+    endpoint_port,
+    is_zenoh_endpoint,
+    with_other_port,
+    with_settings,
+)
 
 LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
 ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
 HANDSHAKE_MS = 1500
 """How long the end that accepts may take to greet, or to answer: beyond that it is no router, or a hung one."""
+MOST_ACCEPTED = 2000
+"""How many clients may be about to greet at once; one more is turned away. By default it is 100, which a stranger that
+opens a hundred connections and stays silent would have all the time."""
 SHARED_FROM = 1 << 15
 """From how many bytes on a payload goes through shared memory; smaller ones are as fast through a socket."""
 SHARED_MEMORY = Path("/dev/shm")
+_PORTS_TRIED = 100
 ENOUGH_SHARED = 256_000_000
 """Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
 _RETRY = {
@@ -84,7 +97,7 @@ def open_session(
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
-        where = ", ".join(connect if mode == "client" else listen)
+        where = ", ".join(connect if mode == "client" else listen[:1])
         if "Address already in use" in str(error):
             raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
         what = "no site answers at" if mode == "client" else "cannot listen on"
@@ -97,12 +110,16 @@ def with_port(endpoint: str) -> str:
         return endpoint
     host = endpoint_host(endpoint)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    with socket.socket(family, socket.SOCK_STREAM) as probe:
-        try:
-            probe.bind((host, 0))
-        except OSError as error:
-            raise NetworkError(f"cannot listen on {endpoint}: {error.strerror or error}") from None
-        return with_other_port(endpoint, probe.getsockname()[1])
+    for port in (*random.sample(LISTENING_PORTS, _PORTS_TRIED), 0):
+        with socket.socket(family, socket.SOCK_STREAM) as probe:
+            try:
+                probe.bind((host, port))
+            except OSError as error:
+                if error.errno != errno.EADDRINUSE:
+                    raise NetworkError(f"cannot listen on {endpoint}: {error.strerror or error}") from None
+            else:
+                return with_other_port(endpoint, probe.getsockname()[1])
+    raise NetworkError(f"cannot listen on {endpoint}: no port is free")
 
 
 def _has_shared_memory() -> bool:
@@ -127,7 +144,7 @@ def _config(
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
         "scouting/delay": 0,  # there is nothing to be scouted; by default a router opens half a second later
-        "listen/endpoints": list(listen),
+        "listen/endpoints": [_listening(endpoint, security) for endpoint in listen],
         "connect/endpoints": list(connect),
         "connect/retry": _RETRY[mode],
         "connect/exit_on_failure": mode == "client",
@@ -137,6 +154,7 @@ def _config(
         "transport/link/tx/keep_alive": 3,
         "transport/unicast/open_timeout": HANDSHAKE_MS,
         "transport/unicast/accept_timeout": HANDSHAKE_MS,
+        "transport/unicast/accept_pending": MOST_ACCEPTED,
         "transport/shared_memory/enabled": shared_memory,
         "transport/shared_memory/transport_optimization/message_size_threshold": SHARED_FROM,
         "timestamping/enabled": {"router": True, "peer": True, "client": True},
@@ -148,6 +166,11 @@ def _config(
         except zenoh.ZError:
             raise _no_endpoint(", ".join(value)) from None
     return config
+
+
+def _listening(endpoint: str, security: Security | None) -> str:
+    """An endpoint to listen at, where a handshake of TLS may take as long as that of Zenoh after it."""
+    return endpoint if security is None else with_settings(endpoint, f"tls_handshake_timeout_ms={HANDSHAKE_MS}")
 
 
 def _secured(security: Security) -> dict[str, Any]:

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import socket
+import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from selfconf.access import Authority, PrincipalKind
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, client, with_port
 from selfconf.bus.zenoh import relay as relaying
+from selfconf.bus.zenoh.door import MOST_AT_DOOR
 from selfconf.bus.zenoh.relay import Hub, Relay
 from selfconf.errors import NetworkError
+from selfconf.protocol.endpoints import endpoint_port
 from tests.bus.zenoh.test_bus import until
 
 NOBODY = "tcp/127.0.0.1:1"
@@ -77,6 +83,23 @@ def test_nobody_stays_connected_to_a_hub_that_has_broken_inside_and_was_closed(m
         assert until(lambda: not connected.link, connected)
     finally:
         connected.close()
+        hub.close()
+
+
+def test_strangers_who_fill_the_door_of_a_hub_keep_out_neither_its_host_nor_others_for_long(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "authority")
+    hub = Hub("tls/127.0.0.1:0", Security(authority.credentials((PrincipalKind.SITE,), "home")))
+    reader = authority.credentials((PrincipalKind.READER,))
+    try:
+        with ExitStack() as held:
+            for _ in range(MOST_AT_DOOR + 20):
+                held.enter_context(socket.create_connection(("127.0.0.1", endpoint_port(hub.endpoint))))
+            began = time.monotonic()
+            client([hub.from_here], credentials=reader).close()
+            assert time.monotonic() - began < 1.0
+        assert endpoint_port(hub.from_here) != endpoint_port(hub.endpoint)
+        client([hub.endpoint], seconds=30.0, credentials=reader).close()
+    finally:
         hub.close()
 
 

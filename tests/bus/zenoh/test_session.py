@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import socket
+import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
 from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, open_session, with_port
+from selfconf.bus.zenoh.session import HANDSHAKE_MS
 from selfconf.errors import NetworkError
+from selfconf.protocol.endpoints import LISTENING_PORTS, endpoint_port
 
 
 def test_port_zero_becomes_a_free_port() -> None:
     head, _, port = with_port(ANYWHERE_ON_LOOPBACK).rpartition(":")
     assert head == "tcp/127.0.0.1"
-    assert int(port) > 0
+    assert int(port) in LISTENING_PORTS
 
 
 def test_an_endpoint_with_a_port_stays_as_it_is() -> None:
@@ -42,6 +47,17 @@ def test_an_endpoint_may_be_of_any_protocol_that_zenoh_speaks(tmp_path: Path) ->
             open_session("client", connect=[endpoint], connect_seconds=5.0).close()
         finally:
             router.close()
+
+
+def test_those_that_connect_and_stay_silent_keep_no_client_out() -> None:
+    endpoint = with_port(ANYWHERE_ON_LOOPBACK)
+    with ExitStack() as stack:
+        stack.callback(open_session("router", listen=[endpoint]).close)
+        for _ in range(300):
+            stack.enter_context(socket.create_connection(("127.0.0.1", endpoint_port(endpoint))))
+        began = time.monotonic()
+        open_session("client", connect=[endpoint]).close()
+        assert time.monotonic() - began < HANDSHAKE_MS / 1000, "nothing has had to time out before"
 
 
 def test_a_client_without_a_router_names_every_endpoint_that_it_has_asked() -> None:
