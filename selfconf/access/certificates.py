@@ -171,17 +171,24 @@ class Certificate:
 
     def fault(self, authorities: Iterable[Certificate], now: datetime | None = None) -> str:
         """What is wrong with it, in words that follow "the certificate of NAME"; empty if nothing is."""
-        now = now or _now()
         if not any(self._signed_by(authority) for authority in authorities):
             return "was issued by another authority"
-        if now < self.begins:
-            return f"is not valid before {utc_text(self.begins)}; is the clock of this host right?"
-        if now > self.ends:
-            return f"has expired at {utc_text(self.ends)}; renew it with `selfconf keys renew`"
+        untimely = self.untimely(now)
+        if untimely:
+            return untimely
         try:
             _ = self.principals
         except PeerError as error:
             return f"names no principal: {error}"
+        return ""
+
+    def untimely(self, now: datetime | None = None) -> str:
+        """That it is not valid yet, or not any more, in such words; empty if it is valid now."""
+        now = now or _now()
+        if now < self.begins:
+            return f"is not valid before {utc_text(self.begins)}; is the clock of this host right?"
+        if now > self.ends:
+            return f"has expired at {utc_text(self.ends)}; renew it with `selfconf keys renew`"
         return ""
 
     def _signed_by(self, authority: Certificate) -> bool:
