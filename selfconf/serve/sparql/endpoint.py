@@ -23,8 +23,8 @@ LARGEST_ANSWER = 64 << 20
 """An answer of more bytes than this is refused."""
 AT_ONCE = 24
 """How many queries are answered at once; others wait."""
-JSON, RESULTS_JSON = "application/json", "application/sparql-results+json"
-"""Clients that know JSON alone, as those of Things do, ask for the former and read the latter."""
+BROADER = {"application/json": "application/sparql-results+json", "application/xml": "application/sparql-results+xml"}
+"""Clients that know JSON or XML alone, as those of Things do, ask for the broader type and read the results."""
 _STATUS: dict[type[Exception], int] = {
     QueryTimeoutError: 503,
     NotAcceptableError: 406,
@@ -65,8 +65,8 @@ class SparqlEndpoint:
         )
 
     async def _answer(self, query: QueryRequest, accept: str, request: Request) -> Response:
-        media = acceptable(accept, [*RESULT_TYPES, *TRIPLE_TYPES, JSON])
-        known = list(dict.fromkeys(RESULTS_JSON if one == JSON else one for one in media))
+        media = acceptable(accept, [*RESULT_TYPES, *TRIPLE_TYPES, *BROADER])
+        known = list(dict.fromkeys(BROADER.get(one, one) for one in media))
         question = StandingQuestion(
             query.text, known, query.default_graphs, query.named_graphs, self._seconds, base=_endpoint(request)
         )
@@ -80,7 +80,7 @@ class SparqlEndpoint:
             self._metrics.queried(str(status), time.monotonic() - began)
             return problem(status, str(error))
         self._metrics.queried("200", time.monotonic() - began)
-        told = JSON if kind == RESULTS_JSON and RESULTS_JSON not in media else kind
+        told = next((broad for broad in media if BROADER.get(broad) == kind and kind not in media), kind)
         return Response(answer, media_type=told, headers={"Vary": "Accept"})
 
     async def _received(self, question: StandingQuestion) -> bytes:

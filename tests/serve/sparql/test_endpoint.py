@@ -26,6 +26,8 @@ CROSS = "/sparql?query=" + quote(
         ("", "application/sparql-results+json"),
         ("application/sparql-results+xml", "application/sparql-results+xml"),
         ("application/json", "application/json"),
+        ("application/xml", "application/xml"),
+        ("application/xml, application/sparql-results+xml", "application/sparql-results+xml"),
         ("text/csv", "text/csv"),
         ("text/tab-separated-values", "text/tab-separated-values"),
         ("text/html, */*;q=0.1", "application/sparql-results+json"),
