@@ -1,12 +1,13 @@
 """The pinned versions in requirements.txt: writes them anew, and selects those that some extras need.
 
+    python -m supply.pins installer            prints the part for pip, which installs the others
     python -m supply.pins select build sim     prints the part for these extras, for `pip install --require-hashes`
     python -m supply.pins renew [--upgrade]    writes the file; needs uv (`pip install uv`), and the registry of pip
 
 The file has the SHA-256 of every file of every version, for all platforms, and names no registry. pip takes hashes from
 requirements only, and not from constraints, so what is not wanted has to be left out. Therefore each requirement says
-in a comment above it who needs it: the core (`-`), an extra, or `build`, which builds the package. `select` needs
-nothing but Python, as it runs in a virtual environment in which nothing is installed.
+in a comment above it who needs it: the core (`-`), an extra, or `build`, which builds the package. `installer` and
+`select` need nothing but Python, as they run in a virtual environment in which nothing is installed.
 """
 
 from __future__ import annotations
@@ -46,6 +47,14 @@ def selected(text: str, extras: Collection[str]) -> str:
         )
     wanted = {CORE, *extras}
     return "".join(f"{requirement}\n" for who, requirement in found if who & wanted)
+
+
+def installer(text: str) -> str:
+    """The requirement of pip. That of Python's `venv` is older, and takes twice as long to install many."""
+    for _, requirement in requirements(text):
+        if _name(requirement) == "pip":
+            return f"{requirement}\n"
+    raise SystemExit(f"{FILE}: pip is not pinned; type: python -m supply.pins renew")
 
 
 def renew(upgrade: bool) -> str:
@@ -116,10 +125,13 @@ def main() -> None:
     """Run a command."""
     parser = argparse.ArgumentParser(description="the pinned versions in requirements.txt")
     commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("installer", help="print that of pip")
     commands.add_parser("select", help="print those of some extras").add_argument("extras", nargs="*")
     commands.add_parser("renew", help="write them anew").add_argument("--upgrade", action="store_true")
     given = parser.parse_args()
-    if given.command == "select":
+    if given.command == "installer":
+        sys.stdout.write(installer(FILE.read_text("utf-8")))
+    elif given.command == "select":
         sys.stdout.write(selected(FILE.read_text("utf-8"), given.extras))
     else:
         FILE.write_text(renew(given.upgrade), "utf-8")

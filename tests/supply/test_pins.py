@@ -12,7 +12,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from supply.pins import FILE, ROOT, requirements, selected
+from supply.pins import FILE, ROOT, installer, requirements, selected
 
 TEXT = FILE.read_text("utf-8")
 EXTRAS = ("sim", "solvers", "serve", "keys", "wot", "ros2", "dev", "fast-owl", "bench")
@@ -83,6 +83,19 @@ def test_the_core_is_selected_without_what_it_does_not_need_and_in_a_bare_python
     assert {"rdflib", "eclipse-zenoh"} <= pinned(printed).keys()
     assert not {"pytest", "mitsuba", "cryptography", "uvicorn", "hatchling"} & pinned(printed).keys()
     assert "hatchling" in pinned(selected(TEXT, ["build"]))
+
+
+def test_the_installer_is_pip_alone_and_is_selected_in_a_bare_python() -> None:
+    command = [sys.executable, "-I", "-S", str(ROOT / "supply" / "pins.py"), "installer"]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path("/")).stdout
+    assert printed == installer(TEXT)
+    assert pinned(printed).keys() == {"pip"}
+    assert "--hash=sha256:" in printed
+
+
+def test_an_installer_that_is_not_pinned_is_a_sentence() -> None:
+    with pytest.raises(SystemExit, match="pip is not pinned"):
+        installer(TEXT.replace("\npip==", "\npop=="))
 
 
 def test_an_extra_that_is_not_pinned_is_a_sentence() -> None:
