@@ -38,8 +38,8 @@ BRIEF = 1_000
 """Conflicts and questions of the first solver before it has company, and gets numbers beyond one as clauses."""
 BRIEF_COUNTING = 250
 """Conflicts and questions before it gets them as clauses, where some are beyond `FEW_TO_COUNT`."""
-BRIEF_COUNTED = 500
-"""Conflicts and questions after that before it has company."""
+BRIEF_COUNTED = 1_500
+"""Conflicts and questions after that before it has company: most of them end by then, and company takes preparing."""
 COUNTED_IN_VAIN = 4
 """Counting groups from so many of them without a result, it is left until the first solver gets company."""
 NEARLY = 2
