@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, ShapeViolated
 from selfconf.model.template import Parameter, Role
@@ -19,7 +20,6 @@ from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 _WORD = re.compile(r"\S+")
-_KINDS_OF_VALUE: dict[Term, type] = {SH.IRI: IRI, SH.Literal: Literal}
 
 
 def parameters_of(document: Document, template: IRI, roles: tuple[Role, ...]) -> tuple[Parameter, ...]:
@@ -51,26 +51,19 @@ class _ParameterReader(DocumentReader):
             if name.lexical in named:
                 raise self.mistake(f"two parameters have the name {name.lexical!r}", value, SC.name, name)
             named.add(name.lexical)
-            parameters.append(Parameter(value, name.lexical, self._default(value), value in in_shapes, value in is_set))
+            known = Parameter(value, name.lexical, in_shape=value in in_shapes, is_set=value in is_set)
+            parameters.append(replace(known, default=self._default(known)))
         return tuple(sorted(parameters, key=lambda parameter: parameter.name))
 
-    def _default(self, parameter: IRI) -> Term | None:
-        defaults = self.document.values(parameter, SH.defaultValue)
+    def _default(self, parameter: Parameter) -> Term | None:
+        iri = parameter.iri
+        defaults = self.document.values(iri, SH.defaultValue)
         if len(defaults) > 1:
-            problem = f"the parameter {worded(parameter)} has several defaults"
-            raise self.mistake(problem, parameter, SH.defaultValue, defaults[1])
-        default = defaults[0] if defaults else None
-        if default is not None and not self._allows(parameter, default):
-            problem = f"the default of the parameter {worded(parameter)} is not of its sh:datatype or sh:nodeKind"
-            raise self.mistake(problem, parameter, SH.defaultValue, default)
-        return default
-
-    def _allows(self, parameter: IRI, value: Term) -> bool:
-        """Whether a parameter can have a value, by its datatype and its kind."""
-        kinds = [_KINDS_OF_VALUE.get(kind, object) for kind in self.document.values(parameter, SH.nodeKind)]
-        datatypes = self.document.values(parameter, SH.datatype)
-        datatype = value.datatype if isinstance(value, Literal) else None
-        return all(isinstance(value, kind) for kind in kinds) and all(datatype == wanted for wanted in datatypes)
+            raise self.mistake(f"the parameter {worded(iri)} has several defaults", iri, SH.defaultValue, defaults[1])
+        for default, reason in misfits(parameter, defaults, self.document).items():
+            problem = f"the default of the parameter {worded(iri)} cannot stand for it: {reason.rstrip('.')}"
+            raise self.mistake(problem, iri, SH.defaultValue, default)
+        return defaults[0] if defaults else None
 
 
 def _is_word(text: str) -> bool:

@@ -52,16 +52,19 @@ def test_a_default_that_keeps_to_datatype_and_kind_is_read(stated: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "stated",
+    ("stated", "reason"),
     [
-        "sh:nodeKind sh:IRI ; sh:defaultValue 5",
-        "sh:nodeKind sh:Literal ; sh:defaultValue :kitchen",
-        "sh:datatype xsd:decimal ; sh:defaultValue 5",
-        "sh:datatype xsd:string ; sh:defaultValue :kitchen",
+        ("sh:nodeKind sh:IRI ; sh:defaultValue 5", "it is 5, not an IRI"),
+        ("sh:nodeKind sh:Literal ; sh:defaultValue :kitchen", "it is kitchen, not a Literal"),
+        ("sh:datatype xsd:decimal ; sh:defaultValue 5", "it is 5, not a decimal"),
+        ("sh:datatype xsd:string ; sh:defaultValue :kitchen", "it is kitchen, not a string"),
+        ("sh:minInclusive 7 ; sh:defaultValue 5", "it is 5, not at least 7"),
+        ("sh:in ( 1 2 ) ; sh:defaultValue 5", "it is 5, not 1 or 2"),
     ],
 )
-def test_a_default_of_another_datatype_or_kind_is_an_error(stated: str) -> None:
-    with pytest.raises(TemplateError, match=r"^t\.ttl: the default of the parameter .* is not of its sh:datatype"):
+def test_a_default_that_its_parameter_does_not_allow_is_an_error(stated: str, reason: str) -> None:
+    sentence = rf"^t\.ttl: the default of the parameter .* cannot stand for it: {reason}$"
+    with pytest.raises(TemplateError, match=sentence):
         parameters(f"{ONE} {stated} .")
 
 
