@@ -120,7 +120,7 @@ class ThingWorld:
             await asyncio.sleep(self._settings.reread)
 
     async def _read(self, source: str) -> list[DescribedThing] | None:
-        """The things of a source; None if it cannot be read."""
+        """The things of a source, those of before where it cannot be read now; None if it cannot be fetched."""
         fetched: list[SourceDocument] = []
         if is_url(source):
             try:
@@ -132,7 +132,9 @@ class ThingWorld:
         found, unreadable = await asyncio.to_thread(_things_in, source, fetched)  # it may take long, but never waits
         for wrong in unreadable:
             self._tell(str(wrong))
-        return None if unreadable and not found else found
+        spoiled = {wrong.file for wrong in unreadable}
+        before = self._found.get(source, ())
+        return [*found, *(thing for thing in before if spoiled.intersection(_places(thing.source.shown)))]
 
     def _compare(self) -> None:
         """Let the things come that are new or described anew, and go that are described no more."""
@@ -195,7 +197,7 @@ class ThingWatch:
         """Since when it lives here, by the clock of the loop."""
         self._waits = self._not_before = 0.0
         self._trouble = ""
-        """What it was last complained of."""
+        """What it was last complained of, without the words after the first colon, which may be other ones each time."""
         document = ImportedDocument("", thing.source.shown, (found.component.described(),), thing.prefixes)
         bridge.advertise(self._iri, document)
         self._looking = asyncio.ensure_future(self._look())
@@ -255,9 +257,10 @@ class ThingWatch:
         asyncio.get_running_loop().call_later(LETTING_GO, self._bridge.end_life, self._iri, code)
 
     def _tell(self, trouble: str) -> None:
-        if trouble and trouble != self._trouble:
+        kind = trouble.partition(": ")[0]
+        if trouble and kind != self._trouble:
             self._bridge.complain(f"{self._iri.short}: {trouble}")
-        self._trouble = trouble
+        self._trouble = kind
 
 
 def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[DescribedThing], list[AuthorError]]:
@@ -266,6 +269,11 @@ def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[Describ
     ledger = ImportLedger(NAMESPACE, unreadable.append)
     documents = fetched or gather([source], DESCRIPTIONS, unreadable.append)
     return list(described_things(documents, ledger)), unreadable
+
+
+def _places(shown: str) -> list[str]:
+    """Where a document comes from: its file, and the folders in which that lies; or its URL alone."""
+    return [shown] if is_url(shown) else [shown, *map(str, Path(shown).parents)]
 
 
 def unreadable_file(source: str) -> AuthorError | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import json
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -120,6 +122,43 @@ def test_what_cannot_be_read_is_named_once_and_hinders_nothing(
         requests = len(server.received)
         assert until(lambda: len(server.received) > requests + 10)
         assert sum("broken.json" in complaint for complaint in found.complaints) == 1
+
+
+def test_a_thing_stays_while_its_description_is_being_written(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    source = tmp_path / "things"
+    source.mkdir()
+    (source / "other.td.json").write_text(json.dumps(server.describe("other")))
+    written(source, server.describe())
+    with bridging(living, tmp_path / "ads", str(source)) as found:
+        assert until(lambda: found.lives("lamp") and found.lives("other"))
+        lives = len(found.complaints)
+        (source / "things.td.json").write_text('{"title": ')
+        (source / "other.td.json").unlink()
+        assert until(lambda: found.complained("things.td.json:1:11: this is not JSON") and not found.lives("other"))
+        assert found.lives("lamp")
+        written(source, server.describe())
+        (source / "other.td.json").write_text(json.dumps(server.describe("other")))
+        assert until(lambda: found.lives("other"))
+        assert found.lives("lamp")
+        assert not any("lamp is here" in complaint for complaint in found.complaints[lives:])
+        (source / "things.td.json").unlink()
+        assert until(lambda: not found.lives("lamp"))
+
+
+def test_a_thing_that_answers_nonsense_is_complained_of_once(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    numbers = itertools.count()
+    server.answers["/on"] = lambda handler: reply(handler, f"nonsense {next(numbers)}".encode())
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe())) as found:
+        assert until(lambda: len(server.received) > 20)
+        assert sum("answers what is not JSON: b'nonsense 0'" in complaint for complaint in found.complaints) == 1
+        assert len(found.complaints) == 1
 
 
 def test_a_component_that_lives_elsewhere_is_left_to_live(
