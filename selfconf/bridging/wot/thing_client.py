@@ -20,7 +20,7 @@ from selfconf.importing import LARGEST_SOURCE
 from selfconf.model.immutable import immutable
 
 CONNECTIONS = 32
-"""How many connections to one host are open at once; an output that is followed keeps one."""
+"""How many connections to one host are open at once, beside those that outputs which are followed keep, one each."""
 _LINE_END = b"\n"
 
 
@@ -55,8 +55,14 @@ class ThingClient:
 
     def __init__(self, limits: ThingLimits) -> None:
         self._limits = limits
-        self._session = aiohttp.ClientSession(
-            connector=aiohttp.TCPConnector(limit=0, limit_per_host=CONNECTIONS),
+        self._requests = self._opened(CONNECTIONS)
+        # A host of many things may be followed by many outputs: they would leave no connection to ask anything else.
+        self._followed = self._opened(0)
+
+    def _opened(self, connections: int) -> aiohttp.ClientSession:
+        """A session with so many connections to a host at most, or without a limit if that is 0."""
+        return aiohttp.ClientSession(
+            connector=aiohttp.TCPConnector(limit=0, limit_per_host=connections),
             cookie_jar=aiohttp.DummyCookieJar(),  # what one thing sets, another one must not be sent
             auto_decompress=False,  # what is compressed may be a thousand times larger than it looks
             headers={"Accept-Encoding": "identity", "User-Agent": "selfconf"},
@@ -65,7 +71,8 @@ class ThingClient:
 
     async def close(self) -> None:
         """Close every connection."""
-        await self._session.close()
+        await self._requests.close()
+        await self._followed.close()
 
     async def fetch(self, form: ThingForm, seconds: float) -> bytes:
         """The bytes of an answer, whatever they say, within so many seconds. Raises ThingError."""
@@ -139,13 +146,17 @@ class ThingClient:
     async def _asked(
         self, form: ThingForm, seconds: float | None, body: bytes | None = None, more: dict[str, str] | None = None
     ) -> AsyncIterator[aiohttp.ClientResponse]:
-        """A request that was answered without an error; the body may not have come yet. Raises ThingError."""
+        """A request that was answered without an error; the body may not have come yet. Raises ThingError.
+
+        Without `seconds` something is followed: it may take as long as it wants.
+        """
         media = "text/event-stream" if form.subprotocol == "sse" else form.media
         headers = {"Accept": media, **form.headers, **(more or {})}
         time = aiohttp.ClientTimeout(total=seconds, sock_connect=self._limits.answer)
         try:
             url = URL(form.url).update_query(form.query) if form.query else URL(form.url)
-            async with self._session.request(
+            session = self._followed if seconds is None else self._requests
+            async with session.request(
                 form.method, url, data=body, headers=headers, allow_redirects=False, timeout=time
             ) as answer:
                 self._check(form, answer)

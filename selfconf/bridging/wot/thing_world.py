@@ -197,7 +197,7 @@ class ThingWatch:
         """Since when it lives here, by the clock of the loop."""
         self._waits = self._not_before = 0.0
         self._trouble = ""
-        """What it was last complained of, without the words after the first colon, which may be other ones each time."""
+        """What it was last complained of, up to the first colon: what follows may be other words each time."""
         document = ImportedDocument("", thing.source.shown, (found.component.described(),), thing.prefixes)
         bridge.advertise(self._iri, document)
         self._looking = asyncio.ensure_future(self._look())

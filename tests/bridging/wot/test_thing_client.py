@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import pytest
 
 from selfconf.bridging.wot.forms import ThingForm
-from selfconf.bridging.wot.thing_client import ThingAnswer, ThingClient, ThingError, ThingLimits
+from selfconf.bridging.wot.thing_client import CONNECTIONS, ThingAnswer, ThingClient, ThingError, ThingLimits
 from tests.bridging.thing_server import ThingServer, reply
 
 Answer = TypeVar("Answer")
@@ -61,6 +61,25 @@ def test_a_value_is_read_written_and_sent(thing_server: Start) -> None:
     assert server.sent("POST") == [b""]
     put = next(one for one in server.received if one.method == "PUT")
     assert put.headers["Content-Type"] == "application/json"
+
+
+def test_outputs_that_are_followed_leave_room_for_requests_to_their_host(thing_server: Start) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    server.answers["/poll"] = server.say_nothing
+
+    async def work(client: ThingClient) -> ThingAnswer:
+        poll = ThingForm(server.url + "/poll", "GET", subprotocol="longpoll")
+        followed = [asyncio.ensure_future(client.wait(poll)) for _ in range(CONNECTIONS + 3)]
+        while len(server.received) < len(followed):
+            await asyncio.sleep(0.01)
+        try:
+            return await client.read(ThingForm(server.url + "/on", "GET"))
+        finally:
+            for one in followed:
+                one.cancel()
+
+    assert asked(lambda client: asyncio.wait_for(work(client), 30.0)) == ThingAnswer(True)
 
 
 def test_a_form_sends_what_its_security_asks_for(thing_server: Start) -> None:

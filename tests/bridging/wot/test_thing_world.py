@@ -134,8 +134,8 @@ def test_a_thing_stays_while_its_description_is_being_written(
     (source / "other.td.json").write_text(json.dumps(server.describe("other")))
     written(source, server.describe())
     with bridging(living, tmp_path / "ads", str(source)) as found:
-        assert until(lambda: found.lives("lamp") and found.lives("other"))
-        lives = len(found.complaints)
+        assert until(lambda: found.complained("lamp is here") and found.lives("other"))
+        before = len(found.complaints)
         (source / "things.td.json").write_text('{"title": ')
         (source / "other.td.json").unlink()
         assert until(lambda: found.complained("things.td.json:1:11: this is not JSON") and not found.lives("other"))
@@ -144,7 +144,7 @@ def test_a_thing_stays_while_its_description_is_being_written(
         (source / "other.td.json").write_text(json.dumps(server.describe("other")))
         assert until(lambda: found.lives("other"))
         assert found.lives("lamp")
-        assert not any("lamp is here" in complaint for complaint in found.complaints[lives:])
+        assert not any("lamp is here" in complaint for complaint in found.complaints[before:])
         (source / "things.td.json").unlink()
         assert until(lambda: not found.lives("lamp"))
 
