@@ -13,6 +13,13 @@ from functools import lru_cache
 from typing import Any
 
 from pyshacl.constraints.constraint_component import ConstraintComponent
+from pyshacl.constraints.core import (
+    cardinality_constraints,
+    logical_constraints,
+    other_constraints,
+    shape_based_constraints,
+    value_constraints,
+)
 from pyshacl.graph_abstraction import DataGraph
 from pyshacl.helper.sparql_query_helper import SPARQLQueryHelper
 from pyshacl.monkey import apply_patches
@@ -68,13 +75,22 @@ def _checked_once(helper: object, text: str, valuenode: object = None, extravars
 
 
 def _undescribed(*_: object, **__: object) -> str:
-    """A result in words, for which pySHACL looks up the name of every term."""
+    """A result, or a term, in words: pySHACL looks up the prefix of every IRI, and writes blank nodes out."""
     return ""
 
 
-_NOTHING_IN_VAIN: tuple[tuple[type, str, object], ...] = (
+_WORDING = (
+    cardinality_constraints,
+    logical_constraints,
+    other_constraints,
+    shape_based_constraints,
+    value_constraints,
+)
+"""The modules of pySHACL that word a message where the shape has none, in particular of each part of a `sh:or`."""
+_NOTHING_IN_VAIN: tuple[tuple[object, str, object], ...] = (
     (SPARQLQueryHelper, "check_invalid_sparql", _checked_once),
     (ConstraintComponent, "make_v_result_description", _undescribed),
+    *((module, "stringify_node", _undescribed) for module in _WORDING),
 )
 """By which pySHACL looks at the text of a query once, and describes no result in words."""
 
