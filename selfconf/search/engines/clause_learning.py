@@ -20,7 +20,7 @@ from typing import Any
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.encoding import FEW_TO_COUNT, Encoding, Implied
+from selfconf.search.engines.encoding import FEW_TO_COUNT, AtMost, Encoding, Implied
 from selfconf.search.reduction import Constraint, Option, ReducedProblem
 
 SOLVER = "Minicard"
@@ -79,7 +79,7 @@ class ClauseSolver:
         self._interrupted = False
         """Whether an interrupt has to be cleared after the call that it ends."""
         self.counters = counters
-        """Whether numbers beyond one, up to half of all, are counted by clauses, about which the solver can learn."""
+        """Whether numbers that are worth it are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
         self.guards: dict[Constraint, int] = encoding.guards
         self.plays: tuple[tuple[int, ...], ...] = encoding.plays
@@ -125,8 +125,7 @@ class ClauseSolver:
         """Allow no more than a number of the literals to hold, under the guards given."""
         if most >= len(literals):
             return
-        # Of most of them there is little to learn, and counting so far would take many clauses.
-        counted = self.counters and 1 < most <= len(literals) // 2
+        counted = self.counters and AtMost(literals, most).worth_counting
         if not force and not counted and self._solver.supports_atmost():
             self._solver.add_atmost(list(literals), most)
             return

@@ -59,6 +59,11 @@ class AtMost(NamedTuple):
     most: int
     force: Sequence[int] = ()
 
+    @property
+    def worth_counting(self) -> bool:
+        """Whether clauses that count are worth their number: of few, and of most of them, there is little to learn."""
+        return FEW_TO_COUNT < self.most <= len(self.literals) // 2
+
 
 class Implied(NamedTuple):
     """Each of the literals implies the literal, which nothing else brings about: a clause of two literals for each.

@@ -26,7 +26,7 @@ from contextlib import ExitStack
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import LONGEST_CALL, SECOND_SOLVER, ClauseSolver
-from selfconf.search.engines.encoding import FEW_TO_COUNT, Encoding
+from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival, processors
 from selfconf.search.engines.turn import Turn
@@ -35,9 +35,9 @@ from selfconf.search.reduction import Option, ReducedProblem
 UNSUPPORTED = 100
 """Conflicts and questions of the first solver before it gets support clauses."""
 BRIEF = 1_000
-"""Conflicts and questions of the first solver before it has company, and gets numbers beyond one as clauses."""
+"""Conflicts and questions of the first solver before it has company."""
 BRIEF_COUNTING = 250
-"""Conflicts and questions before it gets them as clauses, where some are beyond `FEW_TO_COUNT`."""
+"""Conflicts and questions before it gets numbers as clauses, where some are worth that."""
 BRIEF_COUNTED = 1_500
 """Conflicts and questions after that before it has company: most of them end by then, and company takes preparing."""
 COUNTED_IN_VAIN = 4
@@ -114,10 +114,10 @@ class _Descent:
             self.advance(first, UNSUPPORTED)
             if not self.finished:
                 first.clauses.extend(encoding.support(), encoding.top)
-            if any(FEW_TO_COUNT < bound.most <= len(bound.literals) // 2 for bound in encoding.bounds):
+            if any(bound.worth_counting for bound in encoding.bounds):
                 self.advance(first, BRIEF_COUNTING)
                 if not self.finished:
-                    first = self._counting(first, encoding, stack)
+                    first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
                 self.advance(first, BRIEF_COUNTED)
             else:
                 self.advance(first, BRIEF)
@@ -135,31 +135,20 @@ class _Descent:
         """Let all solvers work, beside each other or in turns."""
         in_order: OrderedDecisions | None = None
         if OrderedDecisions.available(encoding):
+            # Left before the first solver is, as its thread interrupts that one.
             in_order = stack.enter_context(OrderedDecisions(encoding, self.slots))
         if self.budget.steps is None and Rival.available():
             self._work_beside(first, encoding, in_order, stack)
         else:
             self._take_turns(first, encoding, in_order, stack)
 
-    def _counting(self, first: Turn, encoding: Encoding, stack: ExitStack) -> Turn:
-        """Return the first solver, with numbers beyond one as clauses where there are any.
-
-        So they are something to learn about; until then that would have been a detour.
-        """
-        if first.clauses.counters or all(bound.most <= 1 for bound in encoding.bounds):
-            return first
-        return Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
-
     def _work_beside(
         self, first: Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack
     ) -> None:
         """Let all solvers work, each beside the others, but two at a time for long where there are two processors."""
         if in_order is not None:
-            in_order.begin(lambda: first.clauses.interrupt())
+            in_order.begin(first.clauses.interrupt)
             self.beside.append(in_order)
-        first = self._counting(first, encoding, stack)
-        if in_order is not None:
-            stack.callback(in_order.pause)  # its thread interrupts a solver, which must not be deleted before
         crowded = in_order is not None and processors() == 2
         self.advance(first, ALONE_OF_TWO if crowded else ALONE)
         if self.finished:
@@ -187,7 +176,6 @@ class _Descent:
 
     def _take_turns(self, first: Turn, encoding: Encoding, in_order: OrderedDecisions | None, stack: ExitStack) -> None:
         """Let one solver after the other work, each time for longer, until one has the answer or the budget ends."""
-        first = self._counting(first, encoding, stack)
         self.advance(first, ALONE)
         if self.finished or self.budget.steps == 0:
             return

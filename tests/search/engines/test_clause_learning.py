@@ -96,11 +96,11 @@ def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest
         assert clauses.conflicts - before >= 100
 
 
-def test_numbers_up_to_half_are_counted_by_clauses_and_greater_ones_by_the_solver() -> None:
+def test_numbers_of_five_up_to_half_are_counted_by_clauses_and_others_by_the_solver() -> None:
     pytest.importorskip("pysat")
     with clause_learning.ClauseSolver(reduced(families.satisfiability(10, 2.0, 1)), counters=True) as clauses:
         literals = [clauses.literal() for _ in range(10)]
-        for most, grown in ((1, False), (5, True), (6, False), (10, False)):
+        for most, grown in ((1, False), (4, False), (5, True), (6, False), (10, False)):
             before = clauses.literal()
             clauses.at_most(literals, most)
             assert (clauses.literal() > before + 1) == grown, most

@@ -8,12 +8,13 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from benchmarks.search.further_families import cover, queens
+from benchmarks.search.further_families import cover, queens, ring
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, least_solution, rival
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses
@@ -47,6 +48,25 @@ def test_a_rival_that_does_all_the_work_finds_the_least_solution(problem: Proble
         patch.setattr(Rival, "available", staticmethod(lambda: True))
         patch.setattr(least_solution._Descent, "_ask", lambda *_: time.sleep(0) or 1)
         assert numbers(least_by_clauses(reduced(problem), Budget())) == least_numbers(problem)
+
+
+def test_the_first_solver_begins_anew_with_counters_only_where_a_role_asks_for_many(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for moment in ("UNSUPPORTED", "BRIEF_COUNTING", "BRIEF_COUNTED", "BRIEF"):
+        monkeypatch.setattr(least_solution, moment, 0)
+    counters: list[bool] = []
+
+    class Noted(clause_learning.ClauseSolver):
+        def __init__(self, *arguments: Any, **options: Any) -> None:
+            super().__init__(*arguments, **options)
+            counters.append(self.counters)
+
+    monkeypatch.setattr(least_solution, "ClauseSolver", Noted)
+    for problem, expected in ((ring(6, 3, 8, 6, 1), [False]), (cover(30, 24, 6, 0.25, 1), [False, True])):
+        counters.clear()
+        least_by_clauses(pruned(reduced(problem)), Budget())
+        assert counters == expected
 
 
 def test_one_that_decides_in_order_and_never_ends_stops_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
