@@ -5,7 +5,7 @@ Each living component is asked for its `state`, which it answers from its contro
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from selfconf.bus.port import Replies
@@ -67,21 +67,31 @@ class ComponentState(NamedTuple):
         }
 
 
-def told_states(keys: Keys, replies: Replies) -> Mapping[IRI, CallAnswer]:
-    """What living components say of themselves, by component; of two lives of one the smaller, which stays."""
-    answers: dict[IRI, CallAnswer] = {}
+def told_lives(keys: Keys, replies: Replies) -> Mapping[IRI, Sequence[CallAnswer]]:
+    """What the lives of each component say of themselves, the least first: that is the one which stays."""
+    answers: dict[IRI, dict[str, CallAnswer]] = {}
     for sample in replies.samples:
         try:
             answer = decode(sample.payload, CallAnswer)
         except PeerError:
             continue
-        known = answers.get(answer.component)
-        if sample.key == keys.call(answer.component, "state") and (known is None or answer.life < known.life):
-            answers[answer.component] = answer
-    return answers
+        if sample.key == keys.call(answer.component, "state"):
+            answers.setdefault(answer.component, {})[answer.life] = answer
+    return {component: [lives[life] for life in sorted(lives)] for component, lives in answers.items()}
 
 
-def component_states(discovery: Discovery, told: Mapping[IRI, CallAnswer]) -> Iterator[ComponentState]:
+def doubled(told: Mapping[IRI, Sequence[CallAnswer]]) -> Iterator[str]:
+    """A sentence for each component that several processes are."""
+    for component, (first, *others) in sorted(told.items()):
+        if others:
+            places = " and ".join(other.place or f"life {other.life}" for other in others)
+            yield (
+                f"{component} is {first.place or f'life {first.life}'}, and {places} as well; tasks take the first one:"
+                " end what is not meant to be it"
+            )
+
+
+def component_states(discovery: Discovery, told: Mapping[IRI, Sequence[CallAnswer]]) -> Iterator[ComponentState]:
     """The state of each advertised component, sorted by IRI; what strangers have told is passed over.
 
     The state is `dormant` or `absent` for a component that has not answered; a caller that knows its life corrects it.
@@ -91,20 +101,19 @@ def component_states(discovery: Discovery, told: Mapping[IRI, CallAnswer]) -> It
         state = "dormant" if found.startable else "absent"
         site = discovery.name_of_site(found)
         one = ComponentState(component, types, site, state, reason=found.unable)
-        heard = told.get(component)
-        if heard is not None:
+        for heard in told.get(component, ())[:1]:
             task = task_name(heard.task)
             what = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.life
             one = ComponentState(component, types, site, "alive", *what, stopping=heard.stopping)
         yield one
 
 
-def unadvertised(discovery: Discovery, told: Mapping[IRI, CallAnswer]) -> Iterator[str]:
+def unadvertised(discovery: Discovery, told: Mapping[IRI, Sequence[CallAnswer]]) -> Iterator[str]:
     """A sentence for each component that a task holds and no site advertises, as its file is gone since it began.
 
     None where a site has not answered, which may advertise it.
     """
-    for component, answer in sorted(told.items()) if not discovery.missing else ():
+    for component, (answer, *_) in sorted(told.items()) if not discovery.missing else ():
         if answer.task and component not in discovery.found:
             yield f"{component} lives, and the task {task_name(answer.task)} holds it, but no site advertises it"
 

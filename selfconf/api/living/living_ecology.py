@@ -20,7 +20,7 @@ from selfconf.api.arguments import (
     listed_endpoints,
 )
 from selfconf.api.ecology import Ecology
-from selfconf.api.living.component_states import ComponentState, component_states, told_states, unadvertised
+from selfconf.api.living.component_states import ComponentState, component_states, doubled, told_lives, unadvertised
 from selfconf.api.living.configurators import Configurators
 from selfconf.api.living.echo import HeardSignal, echo
 from selfconf.api.living.output_sources import follow_output
@@ -147,7 +147,7 @@ class LivingEcology(Ecology):
         holders = self.holders() if self._membership.looks_on_only else {}
         found = []
         silent: list[str] = []
-        told = told_states(self._view.keys, replies)
+        told = told_lives(self._view.keys, replies)
         for one in component_states(discovery, told):
             if one.state != "alive" and self._life(one.component) is not None:
                 held_by = holders.get(one.component)
@@ -156,7 +156,7 @@ class LivingEcology(Ecology):
             found.append(one)
         if silent and self._membership.looks_on_only:
             silent = ["components do not tell readers how they are; that takes keys of conf.NAME"]
-        self._complaints = (*self.complaints, *silent, *unadvertised(discovery, told))
+        self._complaints = (*self.complaints, *silent, *unadvertised(discovery, told), *doubled(told))
         return tuple(found)
 
     def out_of_control(self) -> Mapping[IRI, str]:

@@ -7,8 +7,9 @@ from dataclasses import replace
 from selfconf.api.living.component_states import (
     ComponentState,
     component_states,
+    doubled,
     issue_rates,
-    told_states,
+    told_lives,
     unadvertised,
 )
 from selfconf.bus.port import Replies, Sample
@@ -33,12 +34,12 @@ FOUND = {
 
 
 def states(*samples: Sample) -> dict[IRI, ComponentState]:
-    found = component_states(Discovery(found=FOUND), told_states(KEYS, Replies(samples)))
+    found = component_states(Discovery(found=FOUND), told_lives(KEYS, Replies(samples)))
     return {one.component: one for one in found}
 
 
-def answer(component: IRI, life: str = "b", task: str = "t~1", key: str = "") -> Sample:
-    said = CallAnswer(Verdict.DONE, component, life, 1, True, task=task, place="process 1 on a", age=2.5, memory=9)
+def answer(component: IRI, life: str = "b", task: str = "t~1", key: str = "", place: str = "process 1 on a") -> Sample:
+    said = CallAnswer(Verdict.DONE, component, life, 1, True, task=task, place=place, age=2.5, memory=9)
     return Sample(key or KEYS.call(component, "state"), encode(said))
 
 
@@ -54,7 +55,7 @@ def test_what_a_component_says_is_its_state_and_the_others_are_dormant_or_absent
 def test_of_two_sites_of_one_name_each_component_names_its_own() -> None:
     lives = {CLOCK: "1", LAMP: "2"}
     found = {component: replace(one, site_life=lives[component]) for component, one in FOUND.items()}
-    told = told_states(KEYS, Replies((answer(CLOCK),)))
+    told = told_lives(KEYS, Replies((answer(CLOCK),)))
     both = {one.component: one for one in component_states(Discovery(found, ("home (1)", "home (2)")), told)}
     assert {component: one.site for component, one in both.items()} == {CLOCK: "home (1)", LAMP: "home (2)"}
     assert both[LAMP].body()["site"] == "home (2)"
@@ -76,8 +77,19 @@ def test_of_two_lives_the_smaller_one_counts_and_what_is_no_answer_is_passed_ove
     assert {one.state for one in states(*strangers).values()} == {"absent", "dormant"}
 
 
+def test_a_component_that_is_several_processes_is_named_with_each_of_them() -> None:
+    first, other, unplaced = (
+        answer(CLOCK, "a"),
+        answer(CLOCK, "b", place="process 2 on a"),
+        answer(CLOCK, "c", place=""),
+    )
+    told = told_lives(KEYS, Replies((unplaced, first, other, first, answer(LAMP))))
+    (said,) = doubled(told)
+    assert said.startswith(f"{CLOCK} is process 1 on a, and process 2 on a and life c as well; ")
+
+
 def test_a_component_that_is_held_and_advertised_no_more_is_named() -> None:
-    told = told_states(KEYS, Replies((answer(CLOCK), answer(LAMP, task=""))))
+    told = told_lives(KEYS, Replies((answer(CLOCK), answer(LAMP, task=""))))
     assert list(unadvertised(Discovery(found=FOUND), told)) == []
     assert list(unadvertised(Discovery(), told)) == [
         f"{CLOCK} lives, and the task t holds it, but no site advertises it"
