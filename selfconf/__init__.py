@@ -19,8 +19,8 @@ tried without a network by `selfconf.testing`.
 from selfconf.late_names import TYPE_CHECKING, late_names
 
 if TYPE_CHECKING:
+    from selfconf.api.configuring import configure
     from selfconf.api.ecology import Ecology
-    from selfconf.api.inquiry import configure
     from selfconf.api.living.living_ecology import LivingEcology, join
     from selfconf.api.partition_table import partition
     from selfconf.api.reading import read
@@ -54,7 +54,7 @@ __all__ = [
 ]
 
 _HOME = {
-    "configure": "api.inquiry",
+    "configure": "api.configuring",
     "Ecology": "api.ecology",
     "LivingEcology": "api.living.living_ecology",
     "join": "api.living.living_ecology",

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import FrameType
 
 from selfconf.bus.port import Bus
-from selfconf.signal_handlers import run_to_its_end
+from selfconf.os_signals import run_to_its_end
 
 PARENT_CHECK = 0.5
 """How often, in seconds, a program looks whether the one that started it is still there."""

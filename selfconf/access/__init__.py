@@ -10,8 +10,8 @@ program's certificate to the sites, and `CertificateWatch` shows it again when i
 """
 
 from selfconf.access.authority import DAYS, Authority, open_keys
-from selfconf.access.beliefs import believe, believed
 from selfconf.access.certificates import Certificate
+from selfconf.access.disputed_components import believe, believed
 from selfconf.access.doorkeeper import Doorkeeper, GuardedHub, SiteIdentity, first_rules
 from selfconf.access.expiry import CertificateWatch, is_in_time
 from selfconf.access.host_authority import HostAuthority

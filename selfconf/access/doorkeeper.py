@@ -15,8 +15,8 @@ import logging
 from collections.abc import Callable, Iterable, Mapping
 from typing import TypeGuard
 
-from selfconf.access.beliefs import believed, claims
 from selfconf.access.certificates import Certificate
+from selfconf.access.disputed_components import believed, claims
 from selfconf.access.expiry import CertificateWatch
 from selfconf.access.host_authority import HostAuthority
 from selfconf.access.keys_folder import KeysFolder

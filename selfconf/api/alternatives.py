@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 
-from selfconf.api.inquiry import Inquiry
+from selfconf.api.configuring import Inquiry
 from selfconf.composition import TimeLimit
 from selfconf.model import cost
 from selfconf.model.alternative import Alternative

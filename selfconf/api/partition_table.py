@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 
 from selfconf.api.arguments import Paths
+from selfconf.api.configuring import Inquiry
 from selfconf.api.ecology import Ecology
-from selfconf.api.inquiry import Inquiry
 from selfconf.api.method import Method
 from selfconf.api.tables import Tabular
 from selfconf.api.task import TaskSpecification

@@ -24,8 +24,8 @@ from selfconf.cli.terminal import complain, display
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer
+    from selfconf.api.configuring import Inquiry
     from selfconf.api.ecology import Ecology
-    from selfconf.api.inquiry import Inquiry
     from selfconf.model.configuration import Configuration
     from selfconf.model.refusal import Refusal, Undecided
     from selfconf.model.term import IRI
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 with a configuration, 1 with a refusal, 2 where the budget ended before it was decided."""
     from selfconf.api.answer import Answer
-    from selfconf.api.inquiry import Inquiry
+    from selfconf.api.configuring import Inquiry
     from selfconf.model.refusal import Undecided
     from selfconf.render import undecided_text
 

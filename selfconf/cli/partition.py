@@ -23,7 +23,7 @@ from selfconf.cli.terminal import display
 from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
-    from selfconf.api.inquiry import Inquiry
+    from selfconf.api.configuring import Inquiry
     from selfconf.api.partition_table import PartitionTable, RolePartition
     from selfconf.model.alternative import Alternative
     from selfconf.model.term import IRI
@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(given: argparse.Namespace) -> int:
     """0 if every role has as many candidates as it asks for, else 1."""
     from selfconf.api.alternatives import alternatives
-    from selfconf.api.inquiry import Inquiry
+    from selfconf.api.configuring import Inquiry
     from selfconf.api.method import Method
     from selfconf.api.partition_table import PartitionTable
 

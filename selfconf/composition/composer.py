@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
-from selfconf import certificate
 from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
 from selfconf.composition.searches import Searches, Strategy
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
@@ -178,7 +178,7 @@ class Composer:
         for answer in self.searches.answers(problem, running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
             if isinstance(outcome, Configuration):
-                wrong = certificate.broken_conditions(self._task, problem.partition, outcome, self.hierarchy)
+                wrong = broken_conditions(self._task, problem.partition, outcome, self.hierarchy)
                 if wrong:
                     raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
                 yield answer if self.outside is None else inside_alone(outcome, self.outside)

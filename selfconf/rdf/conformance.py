@@ -34,11 +34,11 @@ from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
 from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
+from selfconf.rdf.library_patches import one_at_a_time
 from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
 from selfconf.rdf.rdflib_terms import rdflib_term
-from selfconf.rdf.replacements import one_at_a_time
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.turtle import Node

@@ -27,7 +27,7 @@ from functools import partial
 from types import FrameType
 from typing import NamedTuple
 
-from selfconf.signal_handlers import is_handler
+from selfconf.os_signals import is_handler
 
 SHORT = 1.0
 """Seconds up to which a limit of processor time is short."""

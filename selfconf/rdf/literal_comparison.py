@@ -27,8 +27,8 @@ from pyshacl.rdfutil.compare import compare_literal
 from rdflib.xsd_datetime import Duration
 
 from selfconf.model.term import Literal, Term
+from selfconf.rdf.library_patches import replaced
 from selfconf.rdf.rdflib_terms import rdflib_term
-from selfconf.rdf.replacements import replaced
 
 UNORDERED = (TypeError, ArithmeticError)
 """What comparing two literals raises if they have no order; the latter for a decimal beside NaN."""

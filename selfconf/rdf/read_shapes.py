@@ -28,7 +28,7 @@ from rdflib import Graph
 from rdflib.term import Node
 
 from selfconf.rdf.constraint_lookup import index_constraints
-from selfconf.rdf.replacements import replaced
+from selfconf.rdf.library_patches import replaced
 
 
 class ReadShapes:

@@ -19,8 +19,8 @@ from selfconf.serve.board import CHANGE, Board
 from selfconf.serve.directory import Directory, event_stream
 from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
+from selfconf.serve.look_endpoint import Onlookers
 from selfconf.serve.metrics import PROMETHEUS, Metrics
-from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.origins import Origins
 from selfconf.serve.problems import problem
 from selfconf.serve.sparql.endpoint import SparqlEndpoint

@@ -18,8 +18,8 @@ from starlette.responses import Response
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
-from selfconf.serve.apart import judged_apart
 from selfconf.serve.board import Board
+from selfconf.serve.judging_process import judged_apart
 from selfconf.serve.problems import problem
 from selfconf.serve.watching.change import Body
 from selfconf.serve.watching.checked import checked_refusal

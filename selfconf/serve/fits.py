@@ -20,8 +20,8 @@ from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.serve.apart import judged_apart
 from selfconf.serve.board import Board
+from selfconf.serve.judging_process import judged_apart
 from selfconf.serve.problems import problem
 
 JUDGING = 15.0

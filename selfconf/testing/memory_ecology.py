@@ -10,7 +10,7 @@ from typing import TypeVar
 from selfconf import files, library
 from selfconf.api.answer import Answer
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
-from selfconf.api.inquiry import refusal_with_places
+from selfconf.api.configuring import refusal_with_places
 from selfconf.api.method import Method
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered, text_of

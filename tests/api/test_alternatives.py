@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import selfconf as sc
 from selfconf.api.alternatives import MOST_TRIED, alternatives
-from selfconf.api.inquiry import Inquiry
+from selfconf.api.configuring import Inquiry
 from selfconf.api.method import Method
 from selfconf.model.alternative import Alternative
 

@@ -15,9 +15,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf import certificate
 from selfconf.composition.outside import with_outside, with_outside_candidate
 from selfconf.composition.searches import Searches, Strategy
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Input, Output, needed_operation, offered_operation
@@ -100,7 +100,7 @@ def holds(problem: Problem, asked: Problem, answer: Configuration, solution: Sol
         assert set(assignment.components) >= {c.profile.component for c in some}
         assert assignment.components[: role.minimum] == tuple(c.profile.component for c in some)
     assert answer.recruits == tuple(recruit.component for recruit in recruits)
-    assert not certificate.broken_conditions(problem.task, problem.partition, answer, problem.hierarchy)
+    assert not broken_conditions(problem.task, problem.partition, answer, problem.hierarchy)
 
 
 def outcome(strategy: Strategy, problem: Problem, running: Configuration | None = None) -> Optimum | Outcome:
@@ -155,4 +155,4 @@ def after_failure(problem: Problem, running: Configuration, data: st.DataObject)
     *_, possible = solutions(left)
     assert isinstance(answer, Configuration) == bool(possible)
     if isinstance(answer, Configuration):
-        assert not certificate.broken_conditions(left.task, left.partition, answer, left.hierarchy)
+        assert not broken_conditions(left.task, left.partition, answer, left.hierarchy)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.certificate import broken_conditions
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.template import Parameter, Setting

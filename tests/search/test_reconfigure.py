@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 
-from selfconf.certificate import broken_conditions
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Profile

@@ -17,8 +17,8 @@ from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
 from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
+from selfconf.serve.look_endpoint import Onlookers
 from selfconf.serve.metrics import Metrics
-from selfconf.serve.onlookers import Onlookers
 from selfconf.serve.sparql.endpoint import SparqlEndpoint
 from selfconf.serve.watching.watcher import EcologyWatcher
 from tests.lab import Lab

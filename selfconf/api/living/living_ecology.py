@@ -304,7 +304,7 @@ class LivingEcology(Ecology):
         what_if: bool = False,
     ) -> Answer | Refusal | Undecided:
         """What `selfconf.configure` answers for this ecology, as it is now. Changes nothing."""
-        from selfconf.api.inquiry import configure  # here and below: who only looks on needs no search and no machine
+        from selfconf.api.configuring import configure  # here and below: who only looks on needs no search
 
         return configure(
             task,

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from selfconf.api.arguments import checked_priority, checked_text, checked_upgrade, option
-from selfconf.api.inquiry import refusal_with_places
+from selfconf.api.configuring import refusal_with_places
 from selfconf.api.method import Method
 from selfconf.api.task import TaskSpecification
 from selfconf.api.tasks.run_outcomes import composing, searched_ecology

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from selfconf import this_machine
 from selfconf.api.answer import Answer
-from selfconf.api.inquiry import refusal_with_places
+from selfconf.api.configuring import refusal_with_places
 from selfconf.api.membership import Membership
 from selfconf.api.method import Method
 from selfconf.api.places import Places

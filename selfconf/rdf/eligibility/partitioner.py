@@ -40,7 +40,6 @@ from selfconf.rdf.eligibility.advertisement_index import (
     ClassClosure,
     TypeSet,
 )
-from selfconf.rdf.eligibility.alternatives import in_doubt, passable
 from selfconf.rdf.eligibility.compiled_roles import compile_role, left_to_judge, suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.free_values import (
     conjuncts,
@@ -51,6 +50,7 @@ from selfconf.rdf.eligibility.free_values import (
     stated_on_paths,
 )
 from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
+from selfconf.rdf.eligibility.logical_constraints import in_doubt, passable
 from selfconf.rdf.eligibility.role_tests import CompiledRole, Count
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.wanted_signals import required_signals

@@ -14,7 +14,7 @@ from itertools import chain, islice, product
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Output, Profile
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf.eligibility.alternatives import MOST_COMBINATIONS
+from selfconf.rdf.eligibility.logical_constraints import MOST_COMBINATIONS
 from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest
 from selfconf.rdf.vocabulary import SC
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf import certificate
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate, Recruit
 from selfconf.model.profile import Profile, WantedSignal
@@ -152,7 +152,7 @@ def check(problem: Problem) -> None:
     players, recruits = expected
     assert [a.components for a in found.assignments] == [tuple(c.profile.component for c in some) for some in players]
     assert found.recruits == tuple(recruit.component for recruit in recruits)
-    assert not certificate.broken_conditions(problem.task, problem.partition, found, problem.hierarchy)
+    assert not broken_conditions(problem.task, problem.partition, found, problem.hierarchy)
 
 
 @given(recruiting())
@@ -170,7 +170,7 @@ def test_without_a_solver_recruits_are_enough_and_none_of_them_can_be_spared(pro
         found = None if isinstance(outcome, Refusal) else recruited(problem, outcome)
     if found is not None:
         configuration, _ = found
-        assert not certificate.broken_conditions(problem.task, problem.partition, configuration, problem.hierarchy)
+        assert not broken_conditions(problem.task, problem.partition, configuration, problem.hierarchy)
 
 
 def with_recruits(problem: Problem, *profiles: Profile) -> Problem:
@@ -205,7 +205,7 @@ def test_a_further_player_is_no_reason_to_do_without_a_recruit() -> None:
     assert found is not None
     assert found[0].recruits == (iri("mic"),)
     assert found[0].assignments[1].components == ()
-    assert not certificate.broken_conditions(helped.task, helped.partition, found[0])
+    assert not broken_conditions(helped.task, helped.partition, found[0])
 
 
 def test_a_further_player_joins_what_has_its_recruits() -> None:
@@ -215,7 +215,7 @@ def test_a_further_player_joins_what_has_its_recruits() -> None:
     assert found is not None
     assert found[0].assignments[0].components == (iri("a"), iri("b"))
     assert found[0].recruits == (iri("mic"),)
-    assert not certificate.broken_conditions(helped.task, helped.partition, found[0])
+    assert not broken_conditions(helped.task, helped.partition, found[0])
 
 
 def test_of_equally_few_recruits_those_that_run_are_kept() -> None:
@@ -256,7 +256,7 @@ def test_a_further_player_that_would_feed_what_a_recruit_feeds_keeps_no_other_ou
         ["blind", "looking"],
         ["mind", "more"],
     ]
-    assert not certificate.broken_conditions(helped.task, helped.partition, found[0])
+    assert not broken_conditions(helped.task, helped.partition, found[0])
 
 
 def busy(unrelated: int) -> Problem:
@@ -307,4 +307,4 @@ def test_the_certificate_names_what_is_wrong_with_recruits(change: object, words
     found = recruited(helped, first.search(helped))
     assert found is not None
     wrong = change(found[0])  # type: ignore[operator]  # a table of functions
-    assert any(words in said for said in certificate.broken_conditions(helped.task, helped.partition, wrong))
+    assert any(words in said for said in broken_conditions(helped.task, helped.partition, wrong))

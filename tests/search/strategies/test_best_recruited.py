@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf import certificate
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration
 from selfconf.model.cost import CostTerm, cost
 from selfconf.model.optimum import Optimum
@@ -123,7 +123,7 @@ def test_the_best_with_recruits_is_the_first_of_least_cost(problem: Problem, dat
     assert answer.proved
     assert (answer.unknown, *answer.cost) == world.total(*least)
     is_solution(answer.configuration, least)
-    assert not certificate.broken_conditions(problem.task, problem.partition, answer.configuration, problem.hierarchy)
+    assert not broken_conditions(problem.task, problem.partition, answer.configuration, problem.hierarchy)
     if not answer.configuration.components:
         return
     lost = frozenset((data.draw(st.sampled_from(answer.configuration.components)),))

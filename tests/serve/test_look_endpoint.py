@@ -13,7 +13,7 @@ from starlette.responses import StreamingResponse
 
 from selfconf.bus.memory import Network
 from selfconf.serve.board import Board
-from selfconf.serve.onlookers import MOST_LOOKS, Onlookers
+from selfconf.serve.look_endpoint import MOST_LOOKS, Onlookers
 from tests.lab import iri
 from tests.serve.asgi import ask, served
 

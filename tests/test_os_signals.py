@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import pytest
 
+from selfconf.os_signals import run_to_its_end
 from selfconf.rdf.deadline import Abandoned, abandonable
-from selfconf.signal_handlers import run_to_its_end
 
 
 def endless() -> None:

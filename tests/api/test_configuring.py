@@ -9,7 +9,7 @@ import pytest
 import selfconf as sc
 from selfconf import configure, read, template
 from selfconf.api.answer import Answer
-from selfconf.api.inquiry import Inquiry
+from selfconf.api.configuring import Inquiry
 from selfconf.api.method import Method
 from selfconf.api.reading import described_in
 from selfconf.composition import Strategy
@@ -134,7 +134,7 @@ def test_a_file_that_advertises_many_composites_is_read_once_for_what_they_are_i
     sets = [f":set{number} a sc:Component, :Radio ; sc:grounding [ sc:template :play ] ." for number in range(9)]
     (tmp_path / "sets.ttl").write_text("\n".join([RADIO.partition(":radio-set")[0], *sets]))
     task = template(f"{PREFIXES}:listen a sc:Template ; sc:roles ( :set ) . :set a sc:Role ; sh:class :Radio .")
-    monkeypatch.setattr("selfconf.api.inquiry.described_in", described)
+    monkeypatch.setattr("selfconf.api.configuring.described_in", described)
     inquiry = Inquiry(task, read(tmp_path), Method())
     assert read_again == [iri("radio-set"), iri("set0")]
     assert inquiry.eligible == {str(iri("set")): 1}
@@ -158,7 +158,7 @@ def test_what_composites_of_one_file_are_inside_is_read_from_it_once(
         read_again.append(advertisement.component)
         return described_in(advertisement)
 
-    monkeypatch.setattr("selfconf.api.inquiry.described_in", described)
+    monkeypatch.setattr("selfconf.api.configuring.described_in", described)
     ((component, inside),) = inquiry.insides(answer)
     assert component == iri("set0")
     assert isinstance(inside, Configuration)

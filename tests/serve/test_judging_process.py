@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from selfconf.serve.apart import judged_apart
+from selfconf.serve.judging_process import judged_apart
 
 pytestmark = pytest.mark.process
 

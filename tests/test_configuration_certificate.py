@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 from hypothesis import given
 
-from selfconf import certificate
-from selfconf.certificate import broken_conditions
+from selfconf import configuration_certificate
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
 from selfconf.model.partition import Recruit
 from selfconf.model.template import Parameter, Setting, Task
@@ -174,8 +174,8 @@ def test_of_a_long_chain_of_recruits_each_connection_is_looked_at_a_few_times() 
 
     recruits = [iri(f"r{k:03}") for k in range(200)]
     chain = [Connection(source, "s", sink, "s") for source, sink in pairwise(recruits)]
-    assert not list(certificate._cycle(recruits, Followed(chain)))
-    assert list(certificate._cycle(recruits, [*chain, Connection(recruits[-1], "s", recruits[0], "s")]))
+    assert not list(configuration_certificate._cycle(recruits, Followed(chain)))
+    assert list(configuration_certificate._cycle(recruits, [*chain, Connection(recruits[-1], "s", recruits[0], "s")]))
     assert Followed.times == 1
 
 
@@ -194,7 +194,7 @@ def _sentences() -> list[str]:
     """Every sentence of the certificate, as a pattern."""
     return [
         "".join(re.escape(str(part.value)) if isinstance(part, ast.Constant) else ".+" for part in parts)
-        for node in ast.walk(ast.parse(inspect.getsource(certificate)))
+        for node in ast.walk(ast.parse(inspect.getsource(configuration_certificate)))
         if isinstance(node, ast.Yield) and isinstance(node.value, ast.Constant | ast.JoinedStr)
         for parts in [node.value.values if isinstance(node.value, ast.JoinedStr) else [node.value]]
     ]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access.beliefs import FILE, believe, believed, claims
+from selfconf.access.disputed_components import FILE, believe, believed, claims
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
 
