@@ -2,10 +2,11 @@
 
     python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--half HALF] [--write]
 
-Each engine runs in a process of its own, on the problems of `further_families`, `later_families` and `last_families`,
-and is asked two questions: which configuration is the first one, or that there is none, which is what selfconf answers;
-and, where there is one, for any configuration, which is easier. An engine is stopped at the limit, or at `PATIENCE`
-times the best time so far where that is sooner, since what is slower does not change how selfconf compares to the best.
+Each engine runs in a process of its own, on the problems of `further_families`, `later_families`, `last_families` and
+`newest_families`, and is asked two questions: which configuration is the first one, or that there is none, which is
+what selfconf answers; and, where there is one, for any configuration, which is easier. An engine is stopped at the
+limit, or at `PATIENCE` times the best time so far where that is sooner, since what is slower does not change how
+selfconf compares to the best.
 `--write` writes `docs/benchmarks/further.md`.
 """
 
@@ -28,6 +29,7 @@ from benchmarks.search.further_families import CHOOSING, REPORTING, SMALL, UNSEE
 from benchmarks.search.last_families import LAST_CHOOSING, LAST_REPORTING, LAST_SMALL
 from benchmarks.search.later_families import LATER_CHOOSING, LATER_REPORTING, LATER_SMALL
 from benchmarks.search.measure import Measured, made, measure
+from benchmarks.search.newest_families import NEWEST_CHOOSING, NEWEST_REPORTING, NEWEST_SMALL
 from benchmarks.search.report import WORK, Row, table
 from selfconf.search.problem import Problem
 
@@ -46,6 +48,8 @@ HALVES: dict[str, Mapping[str, Family]] = {
     "reporting later": LATER_REPORTING,
     "choosing last": LAST_CHOOSING,
     "reporting last": LAST_REPORTING,
+    "choosing newest": NEWEST_CHOOSING,
+    "reporting newest": NEWEST_REPORTING,
 }
 """The families by what they are for."""
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "further.md"
@@ -59,8 +63,8 @@ one thread. An engine that takes {patience:g} times as long as the best before i
 time is written as `>`. Ratios are of those instances that take selfconf or the best other engine {work:g} ms at least.
 
 The families `choosing` are those on which ideas and thresholds of the search were chosen; `reporting` were only
-measured; `unseen` were made after the search was finished, and those called `later` and `last` once more each, to
-choose on and to measure. [Luck, and what was
+measured; `unseen` were made after the search was finished, and those called `later`, `last` and `newest` once more
+each, to choose on and to measure. [Luck, and what was
 missing](../search.md#luck-and-what-was-missing) says why it lost, and what helped."""
 
 
@@ -219,7 +223,7 @@ def main() -> int:
     engines = anything.installed()
     everything: list[Asked] = []
     for half, families in (
-        {"smoke": {**SMALL, **LATER_SMALL, **LAST_SMALL}}.items() if options.smoke else HALVES.items()
+        {"smoke": {**SMALL, **LATER_SMALL, **LAST_SMALL, **NEWEST_SMALL}}.items() if options.smoke else HALVES.items()
     ):
         chosen = {name: sizes for name, sizes in families.items() if options.only in name}
         if options.half not in (None, half):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from benchmarks.search import families, first, further
@@ -9,6 +11,7 @@ from benchmarks.search.further import Asked
 from benchmarks.search.further_families import counted, cover
 from benchmarks.search.last_families import Circuit, multiplied
 from benchmarks.search.measure import Measured
+from benchmarks.search.newest_families import cycles, magic, tree, workshop
 from benchmarks.search.report import Row
 from selfconf.model.partition import Candidate
 from tests.benchmarks.short_run import short_run
@@ -53,10 +56,43 @@ def test_two_numbers_of_two_bits_are_found_for_each_product_that_there_is(known:
         assert found is False
 
 
+def labels(found: first.First) -> list[list[int]]:
+    """The numbers in the names of the components of a configuration."""
+    assert isinstance(found, tuple)
+    return [[int(number) for number in re.findall(r"\d+", name.rpartition(":")[2])] for name in found]
+
+
+def test_the_numbers_of_a_magic_square_have_one_sum_in_each_line() -> None:
+    cells = labels(first.selfconf(magic(6, 1)))[:16]
+    square = {(x, y): number for x, y, number in cells}
+    assert sorted(square.values()) == list(range(1, 17))
+    lines = [[square[x, y] for y in range(4)] for x in range(4)] + [[square[x, y] for x in range(4)] for y in range(4)]
+    lines += [[square[k, k] for k in range(4)], [square[k, 3 - k] for k in range(4)]]
+    assert {sum(line) for line in lines} == {34}
+
+
+def test_each_node_of_a_tree_hangs_one_level_below_another_at_a_socket_of_its_own() -> None:
+    sockets = labels(first.selfconf(tree(12, 2, 8, 5, 1)))[1:]
+    level = {0: 0} | {node: level for node, (_, _, level) in enumerate(sockets, 1)}
+    assert all(level[node] == level[other] + 1 for node, (other, _, _) in enumerate(sockets, 1))
+    assert len({(other, socket) for other, socket, _ in sockets}) == len(sockets)
+
+
+def test_cycles_are_followed_both_ways_and_have_three_nodes_at_least() -> None:
+    names = [number for _, number in labels(first.selfconf(cycles(8, 8, 2)))]
+    after, before = names[:8], names[8:]
+    assert all(before[other] == one and after[other] != one for one, other in enumerate(after))
+
+
+def test_a_workshop_that_has_to_end_too_early_has_no_configuration() -> None:
+    assert isinstance(first.selfconf(workshop(3, 2, 12, 1)), tuple)
+    assert first.selfconf(workshop(3, 2, 6, 1)) is False
+
+
 @pytest.mark.process
 def test_the_short_run_asks_all_engines_both_questions() -> None:
     printed = short_run("benchmarks.search.further")
-    for family in ("pigeonholes", "relay chain", "crossword", "teams", "timetable"):
+    for family in ("pigeonholes", "relay chain", "crossword", "teams", "timetable", "squads", "magic square"):
         assert f"| smoke | {family} | 1 |" in printed
     assert "## Any configuration" in printed
 
