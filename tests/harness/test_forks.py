@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -92,10 +93,11 @@ def outcome(folder: Path, text: str, *options: str) -> subprocess.CompletedProce
     """Run such tests in two processes."""
     (folder / "conftest.py").write_text(CONFTEST)
     (folder / "test_some.py").write_text(text)
-    quiet = "-q", "-p", "no:cacheprovider", "-p", "no:hypothesispytest", "-c", "/dev/null", "--rootdir", str(folder)
+    quiet = "-q", "-p", "no:cacheprovider", "-c", "/dev/null", "--rootdir", str(folder)
     return subprocess.run(
         [sys.executable, "-m", "pytest", *quiet, "--forks=2", *options, str(folder)],
         cwd=ROOT,
+        env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},  # to import them takes as long as all else
         capture_output=True,
         text=True,
         timeout=60,
