@@ -38,7 +38,7 @@ def live(network: Network, condition: Callable[[], bool], seconds: float = 20.0)
     began, first = time.monotonic(), network.time
     while not condition() and (elapsed := time.monotonic() - began) < seconds:
         network.run(condition, max(0.0, first + elapsed - network.time))
-        threading.Event().wait(0.002)  # let the processes have the processor
+        threading.Event().wait(0.01)  # let the processes have the processor
     return condition()
 
 
@@ -46,7 +46,7 @@ def until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
     """Wait in real time for a condition."""
     deadline = time.monotonic() + seconds
     while not condition() and time.monotonic() < deadline:
-        threading.Event().wait(0.002)
+        threading.Event().wait(0.01)
     return condition()
 
 
