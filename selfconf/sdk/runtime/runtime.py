@@ -184,8 +184,11 @@ class ComponentRuntime:
         self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
 
     def _restless(self, why: str) -> None:
-        """Raise FAIL for code that broke as it was to rest; a release that it broke in is not obeyed."""
-        self.fail(why)
+        """Raise FAIL for code that broke as it was to rest: like one that hangs, it does what it likes until it ends.
+
+        A release that it broke in is not obeyed.
+        """
+        self.fail(why, Cause.HUNG)
         self.bus.wake_up(lambda: self._told_restless(why))
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:

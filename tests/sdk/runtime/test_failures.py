@@ -128,7 +128,7 @@ def test_an_actuator_that_breaks_when_it_is_to_rest_fails_and_is_stopped_once_mo
         stage.call(apply(3, US, {"position": ()}))
         stage.let_pass(2.0)
     assert [(fail.cause, fail.detail) for fail in stage.fails] == [
-        (Cause.FAIL, "it broke in stopped: RuntimeError: jammed")
+        (Cause.HUNG, "it broke in stopped: RuntimeError: jammed")
     ]
     with caplog.at_level(logging.CRITICAL):
         assert not stage.ask("release", encode(release(4, US))).samples
