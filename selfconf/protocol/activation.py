@@ -191,7 +191,7 @@ def obey(
         return activation, Verdict.NOT_HELD, ActivationStep.NONE
     if own is not None and _failed_in(served, own, call.epoch):
         return activation, Verdict.REFUSED, ActivationStep.NONE
-    return _activate(served, call, gone), Verdict.DONE, _START[served.phase]
+    return _activate(served, call, gone, shareable), Verdict.DONE, _START[served.phase]
 
 
 def _failed_in(activation: Activation, own: Hold, epoch: int) -> bool:
@@ -219,10 +219,17 @@ def in_the_way(
     return min(others, key=lambda hold: (hold.claim.supervisor in gone, _rank(hold.claim)), default=None)
 
 
-def _activate(activation: Activation, call: Apply, gone: frozenset[str]) -> Activation:
-    """Act for a task, and no more for tasks whose supervisor is gone: those cannot say any more what they want."""
+def _activate(activation: Activation, call: Apply, gone: frozenset[str], shareable: bool) -> Activation:
+    """Act for a task, and no more for tasks whose supervisor is gone: those cannot say any more what they want.
+
+    One that shares the component and wants the same is in no other's way, and its supervisor may only be out of sight.
+    """
     others = [hold for hold in activation.holds if hold.claim.task != call.task]
-    left = {hold.claim.task: hold.claim.epoch for hold in others if hold.claim.supervisor in gone}
+    left = {
+        hold.claim.task: hold.claim.epoch
+        for hold in others
+        if hold.claim.supervisor in gone and not (shareable and hold.agrees_with(call))
+    }
     kept = (hold for hold in others if hold.claim.task not in left)
     return replace(
         activation,

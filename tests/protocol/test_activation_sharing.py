@@ -54,6 +54,17 @@ def test_tasks_that_want_something_else_share_no_component(wants: dict[str, obje
     assert obey(held, call_of(call, B, **wants), shareable=True)[1] is Verdict.BUSY
 
 
+@pytest.mark.parametrize(("inputs", "sharing"), [(INPUTS, [A, B]), (OTHER, [B])])
+def test_a_task_whose_supervisor_is_out_of_sight_shares_on_what_it_wants_as_well(
+    inputs: object, sharing: list[str]
+) -> None:
+    """Else what follows the component for that task would follow one that acts for others alone."""
+    gone = frozenset({supervisor(A)})
+    both, verdict, step = obey(shared_by(A, B), call_of(Apply, B, 6, inputs=inputs), shareable=True, gone=gone)
+    assert (verdict, step) == (Verdict.DONE, ActivationStep.NONE)
+    assert [hold.claim.task for hold in both.holds] == sharing
+
+
 def test_a_shared_component_acts_while_one_of_its_tasks_has_applied() -> None:
     both, _, _ = obey(activation_in(ACTIVE), call_of(Reserve, B), shareable=True)
     left, _, step = obey(both, call_of(Release, A, 6), shareable=True)
