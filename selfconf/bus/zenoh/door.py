@@ -33,8 +33,9 @@ MOST_AT_DOOR = 30
 """How many connections may wait for longer than a look: the last of them would wait for three seconds."""
 BETWEEN_LOOKS = 0.1
 """Seconds between two looks."""
-BACKLOG = 1024
-"""How many connections the system takes before they are accepted, as Zenoh has it."""
+BACKLOG = 50
+"""How many connections the system takes before they are accepted; Zenoh would have it take 1024, and accepts all that
+there are before it waits."""
 SAID_AGAIN = 600.0
 """After how many seconds it is said again that too many wait."""
 
@@ -46,23 +47,36 @@ class Door:
         """`links` are those of the session that listens; it may raise ZError while that is opened anew."""
         self._endpoint, self._links = endpoint, links
         self._port = endpoint_port(endpoint)
-        self._waiting = frozenset[str]()
-        """The other ends of the connections that waited at the last look."""
-        self._shut = False
-        self._least = math.inf
-        """How many descriptors that are no links there have been at least since it was last looked who waits."""
         self._said_at = -math.inf
         self._closed = threading.Event()
+        self._judging = threading.Lock()
+        self.opened()
         if self._port is not None and open_descriptors():
             threading.Thread(target=self._watch, daemon=True, name="door").start()
+
+    def opened(self) -> None:
+        """Begin to judge anew: the socket that listens at the endpoint is a new one. On any thread."""
+        with self._judging:
+            self._waiting = frozenset[str]()
+            """The other ends of the connections that waited at the last look."""
+            self._shut = False
+            self._least = math.inf
+            """How many descriptors that are no links there have been at least since it was last looked who waits."""
+            self._take(BACKLOG)
 
     def close(self) -> None:
         """Look no more."""
         self._closed.set()
 
+    def _take(self, connections: int) -> None:
+        """Have the system take so many connections, and one more, before they are accepted."""
+        for found in sockets_at(self._port or 0):
+            if found.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN):
+                found.listen(connections)
+
     def _watch(self) -> None:
         while not self._closed.wait(BETWEEN_LOOKS):
-            with suppress(zenoh.ZError, OSError):
+            with suppress(zenoh.ZError, OSError), self._judging:
                 self.look()
 
     def look(self) -> None:
@@ -80,9 +94,7 @@ class Door:
         self._waiting = waiting if shut or len(waiting) > MOST_AT_DOOR else frozenset()
         if shut != self._shut:
             self._shut = shut
-            for found in sockets_at(self._port or 0):
-                if found.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN):
-                    found.listen(0 if shut else BACKLOG)
+            self._take(0 if shut else BACKLOG)
             if shut and time.monotonic() - self._said_at > SAID_AGAIN:
                 self._said_at = time.monotonic()
                 log.error(

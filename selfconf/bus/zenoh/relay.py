@@ -100,11 +100,13 @@ class Hub:
         while True:
             try:
                 self._session = self._open()
-                return
+                break
             except NetworkError:
                 if time.monotonic() > deadline:
                     raise
                 time.sleep(PORT_PAUSE)  # nothing says when the system gives the port back
+        if self._door is not None:
+            self._door.opened()
 
     def close(self) -> None:
         """Leave the network, and have no session stay connected, the client of the same process included.

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from selfconf.bus.zenoh.door import MOST_AT_DOOR, Door
+from selfconf.bus.zenoh.door import BACKLOG, MOST_AT_DOOR, Door
 
 MANY = MOST_AT_DOOR + 5
 
@@ -85,6 +85,20 @@ def test_it_is_shut_while_many_wait_for_longer_than_a_look(
             entrance.door.look()
         assert not entrance.takes(10)
         assert not caplog.text, "it was said a moment ago"
+
+
+def test_a_socket_that_listens_anew_is_not_shut(entrance: Entrance) -> None:
+    entrance.knocked(MANY)
+    for _ in range(2):
+        entrance.door.look()
+    assert not entrance.takes(10)
+    entrance.door.opened()
+    assert entrance.takes(10)
+
+
+def test_the_system_takes_no_crowd_at_once(entrance: Entrance) -> None:
+    assert entrance.takes(BACKLOG)
+    assert not entrance.takes(BACKLOG + 10)
 
 
 def test_those_that_are_admitted_do_not_wait(entrance: Entrance) -> None:
