@@ -49,8 +49,15 @@ def _of_role(
     chosen = _players(answer, role.iri)
     for number, candidate in enumerate(candidates):
         profile = candidate.profile
-        price = cost.cost(levels, role.iri, profile, hierarchy) if levels else (Fraction(0),)
-        one = Alternative(profile.component, profile.preference, price[1:], int(price[0]), False, "not tried")
+        unknown, *price = cost.cost(levels, role.iri, profile, hierarchy) if levels else (Fraction(0),)
+        one = Alternative(
+            component=profile.component,
+            preference=profile.preference,
+            cost=tuple(price),
+            unknown=int(unknown),
+            chosen=False,
+            outcome="not tried",
+        )
         if profile.component in chosen:
             yield _with(one._replace(chosen=True), answer)
         elif profile.component in taken or role.minimum != 1 or number >= MOST_TRIED:
@@ -68,7 +75,7 @@ def _answer(
         *_, last = inquiry.composer.answers(inquiry.ecology, frozenset(taken), None, played)
         return last
 
-    too_late: Optimum | Outcome = Undecided(seconds=SECONDS_FOR_ALL)
+    too_late: Optimum | Outcome = Undecided(seconds=limit.seconds)
     return limit.within(ask, too_late)
 
 

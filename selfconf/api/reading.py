@@ -50,8 +50,7 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
 
     A string that is the URL of an endpoint is asked when a task needs its advertisements; a string with a line break,
     or that begins as only Turtle does (`@prefix`, `<`, `[`), is Turtle; any other string is a path. A folder stands for
-    all *.ttl below it.
-    `left_out` of the ecology names the advertisements that do not count.
+    all *.ttl below it. `left_out` of the ecology names the advertisements that do not count.
 
     Raises AuthorError for what is not there, cannot be read or is not Turtle; ProgrammerError for what is no source.
 
@@ -189,5 +188,7 @@ def gathered(texts: Iterable[Text]) -> tuple[AdvertisementIndex, tuple[LeftOut, 
 
 
 def described_in(advertisement: Advertisement) -> Document:
-    """The document in which a component is advertised. Raises AuthorError."""
-    return turtle.parse(*text_of(Path(advertisement.profile.place.source if advertisement.profile.place else "")))
+    """The document in which a component is advertised. Raises AuthorError, also where that is not known."""
+    if advertisement.place is None:
+        raise AuthorError(f"it is not known which document advertises {advertisement.component}")
+    return turtle.parse(*text_of(Path(advertisement.place.source)))
