@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 from collections.abc import Iterator
 from contextlib import suppress
@@ -12,7 +13,10 @@ _LISTED = Path("/proc/self/fd")
 
 def open_descriptors() -> int:
     """How many descriptors this process has open; 0 where that is not known."""
-    return sum(1 for _ in _LISTED.iterdir()) if _LISTED.is_dir() else 0
+    if not _LISTED.is_dir():
+        return 0
+    with os.scandir(_LISTED) as listed:
+        return sum(1 for _ in listed)
 
 
 def sockets_at(port: int, *, from_here: bool = False) -> Iterator[socket.socket]:

@@ -33,6 +33,8 @@ MOST_AT_DOOR = 30
 """How many connections may wait for longer than a look: the last of them would wait for three seconds."""
 BETWEEN_LOOKS = 0.1
 """Seconds between two looks."""
+LOOKS_SHARE = 0.02
+"""Which part of the time may be spent on them: where thousands are connected, it is looked less often."""
 BACKLOG = 50
 """How many connections the system takes before they are accepted; Zenoh would have it take 1024, and accepts all that
 there are before it waits."""
@@ -75,9 +77,12 @@ class Door:
                 found.listen(connections)
 
     def _watch(self) -> None:
-        while not self._closed.wait(BETWEEN_LOOKS):
+        pause = BETWEEN_LOOKS
+        while not self._closed.wait(pause):
+            began = time.monotonic()
             with suppress(zenoh.ZError, OSError), self._judging:
                 self.look()
+            pause = max(BETWEEN_LOOKS, (time.monotonic() - began) / LOOKS_SHARE)
 
     def look(self) -> None:
         """Shut the door, or open it, as many or few wait; cheap as long as few descriptors have come."""
