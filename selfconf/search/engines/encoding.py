@@ -40,9 +40,9 @@ from functools import reduce
 from operator import and_, or_
 from typing import NamedTuple
 
+from selfconf.search.engines.counting_order import counting_order
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.group_counting import ExclusiveGroups
-from selfconf.search.engines.nearby import nearby
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.support_clauses import clauses_of_needs, clauses_of_values
 from selfconf.search.engines.symmetry import interchangeable
@@ -163,7 +163,7 @@ class Encoding:
             if len(literals) == 2 and literals[0] == -literals[1]:
                 continue
             if FEW_TO_COUNT < asked < len(literals):
-                literals = tuple([literals[place] for place in nearby(self.reduced.options[role])])
+                literals = tuple([literals[place] for place in counting_order(self.reduced.options[role])])
             self._at_most(literals, asked)
             if len(literals) < asked:
                 impossible = self.literal()

@@ -19,7 +19,7 @@ COMPARED = 64
 """With how many of those that follow an option is compared, so that the cost is linear beyond."""
 
 
-def nearby(options: Sequence[Option]) -> list[int]:
+def counting_order(options: Sequence[Option]) -> list[int]:
     """Return the places of options in an order in which those that bear on the same needs stand side by side."""
     parts = [([place], _needs(option)) for place, option in enumerate(options)]
     while len(parts) > 1:

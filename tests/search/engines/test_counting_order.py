@@ -10,7 +10,7 @@ from benchmarks.search.further_families import counted
 from benchmarks.search.later_families import domination
 from selfconf.model.partition import Candidate
 from selfconf.search.budget import Budget
-from selfconf.search.engines import encoding, nearby
+from selfconf.search.engines import counting_order, encoding
 from selfconf.search.engines.clause_learning import ClauseSolver
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.least_solution import least_of_clauses
@@ -23,7 +23,7 @@ from tests.search.worlds import agreement, problems
 @agreement(0.5)
 def test_each_option_has_one_place_in_the_order(problem: Problem) -> None:
     for options in reduced(problem).options:
-        assert sorted(nearby.nearby(options)) == [*range(len(options))]
+        assert sorted(counting_order.counting_order(options)) == [*range(len(options))]
 
 
 def _of_regions(regions: str, wanted: str = "abc") -> tuple[Option, ...]:
@@ -38,20 +38,20 @@ def _of_regions(regions: str, wanted: str = "abc") -> tuple[Option, ...]:
     ("regions", "order"), [("abab", "aabb"), ("abcabc", "aabbcc"), ("abba", "aabb"), ("aba", "aab")]
 )
 def test_options_of_one_region_stand_side_by_side(regions: str, order: str) -> None:
-    assert "".join(regions[place] for place in nearby.nearby(_of_regions(regions))) == order
+    assert "".join(regions[place] for place in counting_order.counting_order(_of_regions(regions))) == order
 
 
 def test_an_option_is_compared_with_the_next_ones_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(nearby, "COMPARED", 1)
-    assert "".join("abab"[place] for place in nearby.nearby(_of_regions("abab"))) == "abab"
+    monkeypatch.setattr(counting_order, "COMPARED", 1)
+    assert "".join("abab"[place] for place in counting_order.counting_order(_of_regions("abab"))) == "abab"
 
 
 @pytest.mark.parametrize("seed", [94_211, 94_213])
 def test_guards_of_one_neighbourhood_are_counted_together(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """In the order of the candidates, which is random, it takes many times the conflicts."""
     conflicts, found = [], []
-    for order in (nearby.nearby, lambda options: [*range(len(options))]):
-        monkeypatch.setattr(encoding, "nearby", order)
+    for order in (counting_order.counting_order, lambda options: [*range(len(options))]):
+        monkeypatch.setattr(encoding, "counting_order", order)
         given_ = pruned(reduced(domination(7, 12, seed)))
         with ClauseSolver(given_, encoding=Encoding(given_, ordered=True), counters=True) as clauses:
             assert clauses.solve((), Budget()) is True
