@@ -179,7 +179,7 @@ def obey(
     if own is not None and _is_anothers(own, call, gone, unseen):
         return activation, Verdict.BUSY, ActivationStep.NONE
     if isinstance(call, Release):
-        after, step = drop(activation, (call.task,), call.epoch)
+        after, step = _released(activation, call, gone)
         return _no_longer_waiting(after, call.task), Verdict.DONE, step
     if _blocked(activation, call, shareable, gone) or (isinstance(call, Reserve) and call.waits):
         after = activation if _others_may_agree(own, call) else _wait(activation, call)
@@ -192,6 +192,15 @@ def obey(
     if own is not None and _failed_in(served, own, call.epoch):
         return activation, Verdict.REFUSED, ActivationStep.NONE
     return _activate(served, call, gone, shareable), Verdict.DONE, _START[served.phase]
+
+
+def _released(activation: Activation, call: Release, gone: frozenset[str]) -> tuple[Activation, ActivationStep]:
+    """Let a task go, and with the last one whose supervisor lives those that have shared on: these are orphaned."""
+    after, step = drop(activation, (call.task,), call.epoch)
+    if activation.hold(call.task) is None or any(hold.claim.supervisor not in gone for hold in after.holds):
+        return after, step
+    after, last = drop(after, [hold.claim.task for hold in after.holds])
+    return after, step if last is ActivationStep.NONE else last
 
 
 def _failed_in(activation: Activation, own: Hold, epoch: int) -> bool:

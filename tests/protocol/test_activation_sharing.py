@@ -63,6 +63,8 @@ def test_a_task_whose_supervisor_is_out_of_sight_shares_on_what_it_wants_as_well
     both, verdict, step = obey(shared_by(A, B), call_of(Apply, B, 6, inputs=inputs), shareable=True, gone=gone)
     assert (verdict, step) == (Verdict.DONE, ActivationStep.NONE)
     assert [hold.claim.task for hold in both.holds] == sharing
+    rested, verdict, step = obey(both, call_of(Release, B, 7), shareable=True, gone=gone)
+    assert (verdict, step, rested.phase, rested.holds) == (Verdict.DONE, ActivationStep.STOP, IDLE, ())
 
 
 def test_a_shared_component_acts_while_one_of_its_tasks_has_applied() -> None:
