@@ -141,10 +141,22 @@ def test_a_question_for_which_there_is_no_room_is_ended_at_once(
     zenoh_router: ZenohBus, top: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     busy, asker = client([zenoh_router.endpoint]), client([zenoh_router.endpoint])
-    monkeypatch.setattr(ZenohBus, "MOST_BYTES", 1000)
     said: list[Replies] = []
+
+    def answer(request: Request) -> None:
+        request.reply(request.key, b"")
+        request.finish()
+
+    def answered() -> bool:
+        said.clear()
+        asker.ask(f"{top}/busy", b"", 10.0, said.append)
+        return until(lambda: bool(said), asker, busy) and bool(said[0].samples)
+
     try:
-        busy.serve(f"{top}/busy", lambda request: request.finish())
+        busy.serve(f"{top}/busy", answer)
+        assert until(answered), "it is known who answers"
+        said.clear()
+        monkeypatch.setattr(ZenohBus, "MOST_BYTES", 1000)
         for _ in range(3):
             asker.ask(f"{top}/busy", b"x" * 400, 10.0, said.append)
         assert until(lambda: len(said) == 2, asker)
