@@ -58,11 +58,11 @@ class Thing(BaseHTTPRequestHandler):
 
     def tell_changes(self) -> None:
         """Send each change as a server-sent event, until the observer is gone."""
+        before = self.on
         self.send_response(200)
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Connection", "close")
         self.end_headers()
-        before = self.on
         while True:
             with self.changed:
                 if Thing.on == before:

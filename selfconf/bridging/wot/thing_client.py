@@ -105,23 +105,31 @@ class ThingClient:
                 None if answer.status == 204 or (not body and not answer.content_type) else _value(form, answer, body)
             )
 
-    async def events(self, form: ThingForm) -> AsyncIterator[ThingAnswer]:
-        """The values of a stream of server-sent events, until the thing ends it (HTML, section 9.2)."""
+    @asynccontextmanager
+    async def subscribed(self, form: ThingForm) -> AsyncIterator[AsyncIterator[ThingAnswer]]:
+        """The values of a stream of server-sent events, inside the `async with` block. Raises ThingError.
+
+        The block begins once the thing has begun to answer, so that it tells of what changes from then on.
+        """
         async with self._asked(form, None) as answer:
             if answer.content_type != "text/event-stream":
                 raise ThingError(f"{form} answers {answer.content_type}, where text/event-stream is expected")
-            lines: list[bytes] = []
-            size = 0
-            async for line in self._lines(form, answer):
-                size += len(line)
-                if size > self._limits.size:
-                    raise self._too_large(form)
-                if line.startswith(b"data:"):
-                    lines.append(line[5:].removeprefix(b" "))
-                elif not line:
-                    if lines:
-                        yield ThingAnswer(_json(form, b"\n".join(lines)))
-                    lines, size = [], 0
+            yield self._events(form, answer)
+
+    async def _events(self, form: ThingForm, answer: aiohttp.ClientResponse) -> AsyncIterator[ThingAnswer]:
+        """The values of server-sent events, until the thing ends the stream (HTML, section 9.2)."""
+        lines: list[bytes] = []
+        size = 0
+        async for line in self._lines(form, answer):
+            size += len(line)
+            if size > self._limits.size:
+                raise self._too_large(form)
+            if line.startswith(b"data:"):
+                lines.append(line[5:].removeprefix(b" "))
+            elif not line:
+                if lines:
+                    yield ThingAnswer(_json(form, b"\n".join(lines)))
+                lines, size = [], 0
 
     async def reach(self, form: ThingForm) -> None:
         """See whether something listens where a form leads. Raises ThingError."""

@@ -43,6 +43,8 @@ class ThingComponent(Component):
         self._work: list[asyncio.Task[None]] = []
         self._waiting: dict[str, asyncio.Queue[Signal]] = {}
         """The signals that are to be sent, for each input; replaced with each activation."""
+        self._last: dict[str, ThingAnswer] = {}
+        """What was issued last on each output."""
 
     # On the thread of the component's code.
 
@@ -104,7 +106,7 @@ class ThingComponent(Component):
     async def _feed(self, output: ThingOutput) -> None:
         """Issue what the thing says on an output, for as long as this task runs."""
         if output.read is not None:
-            self._issue(output, await self._client.read(output.read))
+            await self._read(output, output.read)
         if output.follow is None:
             await self._poll(output)
         else:
@@ -116,21 +118,31 @@ class ThingComponent(Component):
         while output.read is not None:
             due = max(due + 1 / self._rate, self._loop.time())
             await asyncio.sleep(due - self._loop.time())
-            self._issue(output, await self._client.read(output.read))
+            await self._read(output, output.read)
+
+    async def _read(self, output: ThingOutput, form: ThingForm, *, changed: bool = False) -> None:
+        """Issue what the thing says when it is asked; if `changed`, only where that was not issued last."""
+        answer = await self._client.read(form)
+        if not changed or answer != self._last.get(output.name):
+            self._issue(output, answer)
 
     async def _follow(self, output: ThingOutput) -> None:
         form = output.follow
         while form is not None:
             began, pause = self._loop.time(), AGAIN
             if form.subprotocol == "sse":
-                async for answer in self._client.events(form):
-                    self._issue(output, answer)
+                async with self._client.subscribed(form) as answers:
+                    if output.read is not None:  # it may have changed before the thing told of changes
+                        await self._read(output, output.read, changed=True)
+                    async for answer in answers:
+                        self._issue(output, answer)
             elif (found := await self._client.wait(form)) is not None:
                 pause = SOONEST
                 self._issue(output, found)
             await asyncio.sleep(max(0.0, began + pause - self._loop.time()))
 
     def _issue(self, output: ThingOutput, answer: ThingAnswer) -> None:
+        self._last[output.name] = answer
         self.emit(output.name, _wrapped(answer, output.field), media=answer.media)
 
     async def _send(self, taken: ThingInput, queue: asyncio.Queue[Signal]) -> None:

@@ -203,6 +203,12 @@ def test_something_that_listens_can_be_reached(thing_server: Start) -> None:
     assert server.received == []
 
 
+async def streamed(client: ThingClient, server: ThingServer) -> list[ThingAnswer]:
+    """What a thing streams to its end."""
+    async with client.subscribed(ThingForm(server.url + "/on", "GET", subprotocol="sse")) as answers:
+        return [answer async for answer in answers]
+
+
 def test_server_sent_events_come_one_by_one(thing_server: Start) -> None:
     server = thing_server()
 
@@ -219,7 +225,7 @@ def test_server_sent_events_come_one_by_one(thing_server: Start) -> None:
     server.answers["/on"] = stream
 
     async def work(client: ThingClient) -> list[Any]:
-        return [answer.value async for answer in client.events(ThingForm(server.url + "/on", "GET", subprotocol="sse"))]
+        return [answer.value for answer in await streamed(client, server)]
 
     assert asked(work) == [1, {}, True]
     assert server.received[0].headers["Accept"] == "text/event-stream"
@@ -239,8 +245,8 @@ def test_a_stream_without_end_of_line_or_of_event_is_bounded(thing_server: Start
 
     server.answers["/on"] = stream
 
-    async def work(client: ThingClient) -> list[Any]:
-        return [answer async for answer in client.events(ThingForm(server.url + "/on", "GET", subprotocol="sse"))]
+    async def work(client: ThingClient) -> list[ThingAnswer]:
+        return await streamed(client, server)
 
     with pytest.raises(ThingError, match="more than 1 MiB"):
         asked(work, LIMITS)

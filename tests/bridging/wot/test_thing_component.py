@@ -71,6 +71,33 @@ def test_what_is_observed_is_issued_as_it_comes(thing_server: Start, living: Liv
         assert until(lambda: a[-1:] == [{"on": True}] and b[-1:] == [{"on": True}])
 
 
+def test_what_changes_before_the_thing_tells_of_changes_is_not_missed(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    streams: list[int] = []
+
+    def stream(handler: BaseHTTPRequestHandler) -> None:
+        streams.append(1)
+        server.values["/on"] = len(streams) == 1
+        handler.send_response(200)
+        handler.send_header("Content-Type", "text/event-stream")
+        handler.send_header("Connection", "close")
+        handler.end_headers()
+        server.released.wait(0.5 if len(streams) == 1 else 60.0)
+        handler.close_connection = True
+
+    server.answers["/on/changes"] = stream
+    forms = [{"href": "on"}, {"href": "on/changes", "op": "observeproperty", "subprotocol": "sse"}]
+    description = server.describe(properties={"on": {**SWITCH, "readOnly": True, "forms": forms}})
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        values = found.heard("lamp", "on")
+        active(found)
+        assert until(lambda: len(values) == 3)
+    assert [value["on"] for value in values] == [False, True, False]
+
+
 def test_a_signal_writes_a_property_and_calls_an_action(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:
