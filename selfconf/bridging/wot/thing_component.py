@@ -105,8 +105,7 @@ class ThingComponent(Component):
 
     async def _feed(self, output: ThingOutput) -> None:
         """Issue what the thing says on an output, for as long as this task runs."""
-        if output.read is not None:
-            await self._read(output, output.read)
+        await self._read(output)
         if output.follow is None:
             await self._poll(output)
         else:
@@ -118,11 +117,13 @@ class ThingComponent(Component):
         while output.read is not None:
             due = max(due + 1 / self._rate, self._loop.time())
             await asyncio.sleep(due - self._loop.time())
-            await self._read(output, output.read)
+            await self._read(output)
 
-    async def _read(self, output: ThingOutput, form: ThingForm, *, changed: bool = False) -> None:
-        """Issue what the thing says when it is asked; if `changed`, only where that was not issued last."""
-        answer = await self._client.read(form)
+    async def _read(self, output: ThingOutput, *, changed: bool = False) -> None:
+        """Issue what the thing says when it is asked, if it can be; if `changed`, only where that is not the last."""
+        if output.read is None:
+            return
+        answer = await self._client.read(output.read)
         if not changed or answer != self._last.get(output.name):
             self._issue(output, answer)
 
@@ -132,8 +133,7 @@ class ThingComponent(Component):
             began, pause = self._loop.time(), AGAIN
             if form.subprotocol == "sse":
                 async with self._client.subscribed(form) as answers:
-                    if output.read is not None:  # it may have changed before the thing told of changes
-                        await self._read(output, output.read, changed=True)
+                    await self._read(output, changed=True)  # it may have changed before the thing told of changes
                     async for answer in answers:
                         self._issue(output, answer)
             elif (found := await self._client.wait(form)) is not None:
