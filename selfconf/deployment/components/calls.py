@@ -107,9 +107,7 @@ class Calls:
     def reserve(self, effect: ReserveOf) -> None:
         """Have a component held for this task."""
         component = effect.component
-        life = self._lives.life(component)
-        if life is None or not self.ecology.lives_on(component, life):
-            self._ended(component, life or "", Call.RESERVE)
+        if self._fails_as_ended(component, Call.RESERVE):
             return
         message = Reserve(
             **self._calling.claim(component, effect.epoch),
@@ -172,9 +170,7 @@ class Calls:
                 self._apply(effect)
 
     def _apply(self, effect: ApplyTo) -> None:
-        life = self._lives.life(effect.component)
-        if life is None or not self.ecology.lives_on(effect.component, life):
-            self._ended(effect.component, life or "", Call.APPLY)
+        if self._fails_as_ended(effect.component, Call.APPLY):
             return
         inputs = self._ends.wires(effect.inputs)
         claim = self._calling.claim(effect.component, effect.epoch)
@@ -183,6 +179,7 @@ class Calls:
         message = replace(message, rests=effect.rests)
         self._calling.call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
+        life = message.life
         known, before = self._connections.get(effect.component, (life, frozenset()))
         for c in sorted(connections - before if known == life else connections):
             self._report(InputConnected(c.source, c.output, c.sink, c.input))
@@ -196,13 +193,17 @@ class Calls:
         if not any(map(self._is_to_wait, self._held_back)):
             self._apply_held_back()
 
-    def _ended(self, component: IRI, life: str, call: Call) -> None:
-        """A component that is to be called has ended without a FAIL: its site may start it again."""
+    def _fails_as_ended(self, component: IRI, call: Call) -> bool:
+        """Whether a component that is to be called has ended; then it fails, and its site may start it again."""
+        life = self._lives.life(component)
+        if life is not None and self.ecology.lives_on(component, life):
+            return False
         detail, now = "it does not live any more", self.ecology.life(component)
         self._report(ComponentUnreachable(component, call.value, detail))
-        self._step(Failed(component, life, Cause.CRASH, detail))
+        self._step(Failed(component, life or "", Cause.CRASH, detail))
         if now is not None:
             self._step(Appeared({component: now}))
+        return True
 
     def forget_connections(self) -> None:
         """Components may have turned themselves off: all that is applied to from now on is connected anew."""
