@@ -5,12 +5,13 @@
 *What it hears*, each an `Event`: its task begins (`Accepted`), is taken over as it runs (`Adopted`), is handed over
 (`HandedOver`) or ends (`Stopped`); the ecology has answered (`Discovered`), and a search has (`Composed`); a component
 has `Answered` a `Call`, has `Failed`, is `Freed` by another task, is still not free (`WaitedLong`), has `Appeared`, or
-has others behind its outputs (`Rewired`); one was lost a while ago (`LossLasts`); something better may be had
-(`Improvable`); the bus is back (`Reconnected`); the task is `Ranked` otherwise.
+has others behind its outputs (`Rewired`); one was lost a while ago (`LossLasts`), or for good (`StayedAway`); something
+better may be had (`Improvable`); the bus is back (`Reconnected`); the task is `Ranked` otherwise.
 
 *What is to be done*, each an `Effect`: ask the ecology (`Discover`), search (`Compose`); `WakeUp` a component, reserve
-it (`ReserveOf`), wait for it (`QueueFor`, `AwaitRelease`) or not (`Decline`), apply to it (`ApplyTo`), let go of it
-(`ReleaseFrom`), follow its life or not (`Watch`, `Unwatch`); tell that the task is `Running`, or over (`Finish`).
+it (`ReserveOf`), wait for it (`QueueFor`, `AwaitRelease`, `AwaitReturn`) or not (`Decline`), apply to it (`ApplyTo`),
+let go of it (`ReleaseFrom`), follow its life or not (`Watch`, `Unwatch`); tell that the task is `Running`, or over
+(`Finish`).
 
 Of a state: its `Phase` (`DEPLOYING` are those of a deployment), its `Policy` after a failure, and why a component is
 lost (`Loss`). Of a configuration: its `Plan` (`plan_of`), which says of each component which outputs its inputs
@@ -22,6 +23,7 @@ from selfconf.configurator.deploying import DEPLOYING
 from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
+    AwaitReturn,
     Compose,
     Decline,
     Discover,
@@ -52,6 +54,7 @@ from selfconf.configurator.events import (
     Ranked,
     Reconnected,
     Rewired,
+    StayedAway,
     Stopped,
     WaitedLong,
 )
@@ -67,6 +70,7 @@ __all__ = [
     "Appeared",
     "ApplyTo",
     "AwaitRelease",
+    "AwaitReturn",
     "Call",
     "Caller",
     "Callers",
@@ -95,6 +99,7 @@ __all__ = [
     "Rewired",
     "Running",
     "State",
+    "StayedAway",
     "Stopped",
     "Unwatch",
     "WaitedLong",

@@ -160,4 +160,4 @@ def _free(state: State, component: IRI) -> Reaction:
     )
     known = replace(state, lost=lost, taken=taken, sharers=sharers, free=state.free | {component}, news=True)
     known = replace(known, asked_about=state.asked_about - {component})
-    return phases.discover(known) if state.phase is Phase.REFUSED else (known, ())
+    return phases.discover(known) if state.waits_for_news else (known, ())

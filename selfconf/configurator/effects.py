@@ -110,6 +110,13 @@ class AwaitRelease:
 
 
 @immutable
+class AwaitReturn:
+    """What was lost may be out of sight for a moment only: a search that has found nothing waits (`StayedAway`)."""
+
+    attempt: int
+
+
+@immutable
 class Running:
     """The configuration is complete: note and report it."""
 
@@ -135,6 +142,7 @@ Effect = (
     | ApplyTo
     | ReleaseFrom
     | AwaitRelease
+    | AwaitReturn
     | Running
     | Finish
 )

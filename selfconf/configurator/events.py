@@ -136,6 +136,13 @@ class LossLasts:
 
 
 @immutable
+class StayedAway:
+    """What was lost has not come back in time, so a search that has found nothing counts; `attempt` is its number."""
+
+    attempt: int
+
+
+@immutable
 class Improvable:
     """What the task needs may be had from components that the strategy would rather have."""
 
@@ -170,6 +177,7 @@ Event = (
     | Appeared
     | Rewired
     | LossLasts
+    | StayedAway
     | Improvable
     | Reconnected
     | Ranked

@@ -46,6 +46,7 @@ from selfconf.configurator.events import (
     Ranked,
     Reconnected,
     Rewired,
+    StayedAway,
     Stopped,
     WaitedLong,
 )
@@ -75,6 +76,8 @@ def step(state: State, event: Event) -> Reaction:
             return losing.heed_failure(state, event)
         case LossLasts():
             return loss_lasts(state, event.actuators)
+        case StayedAway():
+            return searching.heed_absence(state, event)
         case Freed():
             return answering.heed_free(state, event.component)
         case WaitedLong():
@@ -118,8 +121,8 @@ def _appeared(state: State, event: Appeared) -> Reaction:
     effects = [ReleaseFrom(component, state.owed[component]) for component in sorted(owed)]
     known = replace(state, lost=lost, news=True)
     if state.phase is Phase.REFUSED:  # what was kept for it when it was refused is kept no more
-        return then(effects, phases.discover(replace(known, offered=frozenset())))
-    return known, tuple(effects)
+        known = replace(known, offered=frozenset())
+    return then(effects, phases.discover(known)) if state.waits_for_news else (known, tuple(effects))
 
 
 def _stays_lost(component: IRI, loss: Loss, lives: Mapping[IRI, str]) -> bool:

@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 from selfconf.configurator.deploying import Reaction, then
 from selfconf.configurator.effects import (
+    AwaitReturn,
     Compose,
     Decline,
     Discover,
@@ -56,7 +57,13 @@ def begin_search(state: State, running: Configuration | None, avoided: Avoided) 
     """Search near what runs, if anything, without what is lost, held by others or `avoided`; older searches end."""
     attempt = state.attempt + 1
     without = state.lost.keys() if state.ignores_holders else state.lost.keys() | state.taken.keys() | avoided.keys()
-    return replace(state, attempt=attempt, avoided=avoided), (Compose(attempt, frozenset(without), running),)
+    searching = replace(state, attempt=attempt, avoided=avoided, awaits_return=False)
+    return searching, (Compose(attempt, frozenset(without), running),)
+
+
+def await_return(state: State) -> Reaction:
+    """Wait a moment for what has gone without a word, before a search that has found nothing counts."""
+    return replace(state, awaits_return=True, put_off=state.put_off + 1), (AwaitReturn(state.attempt),)
 
 
 def refuse(state: State) -> Reaction:

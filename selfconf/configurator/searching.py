@@ -2,7 +2,8 @@
 
 A search that finds nothing counts only if nothing has appeared since the ecology was asked; else it is asked again. Nor
 does it count before the lost components whose sites can start them again are searched with: they are woken as dormant
-ones are, and how often that is done in vain is limited by their sites.
+ones are, and how often that is done in vain is limited by their sites. What else has gone without a word may have been
+cut off for a moment, so a task that does not wait is not refused before that has passed.
 
 Components that a task of the same or a higher priority holds do not count for the search; one that can be shared does,
 until a configuration is found that wants something else of it than its holder: first the search avoids the sources that
@@ -22,7 +23,7 @@ from dataclasses import replace
 from selfconf.configurator import deploying, phases
 from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import Discover
-from selfconf.configurator.events import Composed, Discovered
+from selfconf.configurator.events import Composed, Discovered, StayedAway
 from selfconf.configurator.phases import NOTHING
 from selfconf.configurator.state import Loss, Phase, State
 from selfconf.model.configuration import Configuration
@@ -75,10 +76,21 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
         return phases.compose(_avoided_in_vain(state))
     if any(loss.startable for loss in state.lost.values()):
         return phases.compose(replace(state, lost={c: loss for c, loss in state.lost.items() if not loss.startable}))
+    refused = replace(state, refusal=event.outcome)
+    return phases.await_return(refused) if state.may_await_return and not state.asks_again else _refused(refused)
+
+
+def heed_absence(state: State, event: StayedAway) -> Reaction:
+    """What was lost has not come back while a search that found nothing waited for it."""
+    waited = state.phase is Phase.COMPOSING and state.awaits_return and event.attempt == state.attempt
+    return _refused(state) if waited else (state, ())
+
+
+def _refused(state: State) -> Reaction:
+    """A search that found nothing counts, unless something has appeared meanwhile."""
     if state.asks_again:
         return phases.discover(replace(state, put_off=state.put_off + 1))
-    refused = replace(state, refusal=event.outcome)
-    return phases.compose_ignoring_holders(refused) if state.taken else phases.refuse(refused)
+    return phases.compose_ignoring_holders(state) if state.taken else phases.refuse(state)
 
 
 def _coveted(state: State, event: Composed) -> State:

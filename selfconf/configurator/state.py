@@ -17,7 +17,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause
 
 MOST_PUT_OFF = 10
-"""How many searches in a row may find nothing and not count, because something has appeared meanwhile."""
+"""How many searches in a row may find nothing and not count, for what has appeared meanwhile or may come back."""
 
 
 class Phase(str, Enum):
@@ -150,8 +150,10 @@ class State:
     """Whether something has appeared since the ecology was last asked."""
     improving: bool = False
     """Whether the ecology was asked for what the strategy would rather have than what runs."""
+    awaits_return: bool = False
+    """Whether the last search has found nothing, and waits for what was lost before it counts."""
     put_off: int = 0
-    """How many searches in a row have found nothing and did not count, because something had appeared meanwhile."""
+    """How many searches in a row have found nothing and did not count, for what had appeared or might come back."""
 
     def contested(self, configuration: Configuration) -> dict[IRI, Holder]:
         """The components of a configuration that others hold and would share, but want something else of.
@@ -176,6 +178,17 @@ class State:
     def searches_again(self) -> bool:
         """Whether a search that finds nothing does not count yet: the next one has more to choose from."""
         return self.asks_again or any(loss.startable for loss in self.lost.values())
+
+    @property
+    def may_await_return(self) -> bool:
+        """Whether the end of the task waits for what has gone without a word: it may have been cut off for a moment."""
+        gone = any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
+        return gone and not self.patient and self.put_off < MOST_PUT_OFF
+
+    @property
+    def waits_for_news(self) -> bool:
+        """Whether there is nothing to do about the task until something appears, or is free."""
+        return self.phase is Phase.REFUSED or (self.phase is Phase.COMPOSING and self.awaits_return)
 
     @property
     def asks_again(self) -> bool:

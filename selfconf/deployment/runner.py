@@ -21,6 +21,7 @@ from selfconf.configurator import (
     Appeared,
     ApplyTo,
     AwaitRelease,
+    AwaitReturn,
     Compose,
     Composed,
     Decline,
@@ -40,6 +41,7 @@ from selfconf.configurator import (
     Rewired,
     Running,
     State,
+    StayedAway,
     Stopped,
     Unwatch,
     WakeUp,
@@ -77,6 +79,8 @@ log = logging.getLogger(__name__)
 
 AT_LEISURE = 0.01
 """Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
+RETURN = 2.0
+"""Seconds for which a task that does not wait is not refused for lack of what has gone without a word: two leases."""
 PULSE = 0.25
 """How often, in seconds, a configurator looks whether it has been suspended."""
 SUSPENDED = 1.0
@@ -319,6 +323,7 @@ class TaskRunner:
 
     # Effects.
 
+    # complexity: one case for each effect
     def _do(self, effect: Effect) -> None:
         match effect:
             case Discover():
@@ -340,6 +345,8 @@ class TaskRunner:
                 self._calls.decline(effect)
             case AwaitRelease():
                 self._calls.await_release(effect)
+            case AwaitReturn():
+                self.bus.later(RETURN, lambda: self._step(StayedAway(effect.attempt)))
             case ApplyTo():
                 self._apply(effect)
             case ReleaseFrom():

@@ -12,6 +12,7 @@ from selfconf.configurator.answering import OBEYED
 from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
+    AwaitReturn,
     Compose,
     Decline,
     Effect,
@@ -41,6 +42,7 @@ from selfconf.configurator.events import (
     Ranked,
     Reconnected,
     Rewired,
+    StayedAway,
     Stopped,
     WaitedLong,
 )
@@ -94,6 +96,7 @@ ONE_OF_EACH: list[Event] = [
     *(WaitedLong(component, epoch) for component in EVERYBODY for epoch in (1, 101, 102)),
     LossLasts(),
     LossLasts(frozenset((DRIVE,))),
+    *(StayedAway(attempt) for attempt in range(4)),
     Appeared({}),
     Appeared({TRACKER: "1"}),
     Appeared({TRACKER: "2", ODOMETRY: "1"}),
@@ -223,6 +226,8 @@ class Ledger:
                 assert component in state.queued - state.owed.keys()
             case Decline(component):
                 assert component not in state.held
+            case AwaitReturn(attempt):
+                assert (state.phase, state.patient, attempt) == (Phase.COMPOSING, False, state.attempt)
             case Compose(_, lost, _):
                 taken = frozenset() if state.ignores_holders else frozenset(state.taken)
                 assert lost == frozenset(state.lost) | taken

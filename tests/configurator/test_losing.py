@@ -1,4 +1,4 @@
-"""What crashed and can be started again counts before a task is refused for lack of it; what was refused does not."""
+"""What crashed counts before a task is refused for lack of it, if its site starts it or it comes back in time."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.configurator.effects import Compose, Finish, ReleaseFrom, WakeUp
-from selfconf.configurator.events import Answered, Call, Failed
-from selfconf.configurator.state import Phase, State
+from selfconf.configurator.effects import AwaitReturn, Compose, Discover, Finish, ReleaseFrom, WakeUp
+from selfconf.configurator.events import Answered, Appeared, Call, Discovered, Failed, StayedAway
+from selfconf.configurator.state import MOST_PUT_OFF, Phase, State
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import CONTROL, DRIVE, ODOMETRY, REFUSAL, TRACKER, History, navigation, released
 
@@ -51,10 +51,47 @@ def test_what_can_be_started_but_says_that_it_cannot_act_is_not_asked_again(caus
     assert history.state.phase is Phase.DISMANTLING
 
 
-def test_what_no_site_can_start_is_not_waited_for() -> None:
+def out_of_sight() -> History:
+    """The tracker, which no site can start, has gone without a word, and nothing can be had instead."""
     history = lost(startable=False)
-    history.composed(REFUSAL)
+    assert history.composed(REFUSAL) == [AwaitReturn(history.state.attempt)]
+    return history
+
+
+def test_what_no_site_can_start_may_have_been_cut_off_and_back_in_a_moment() -> None:
+    history = out_of_sight()
+    assert history.hear(Appeared({TRACKER: "1"}))[-1] == Discover()
+    assert history.hear(Discovered())[-1] == Compose(history.state.attempt, frozenset(), history.state.target)
+    history.hear(StayedAway(history.state.attempt - 1))
+    history.composed(navigation())
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert {CONTROL, DRIVE} < set(history.state.held)
+    assert not history.state.owed
+
+
+def test_what_has_not_come_back_in_time_is_a_reason_to_refuse() -> None:
+    history = out_of_sight()
+    history.hear(StayedAway(history.state.attempt))
+    history.all_answer()
+    assert history.state.phase is Phase.REFUSED
+    assert history.effects[-1] == Finish(REFUSAL)
+
+
+def test_what_comes_and_goes_is_not_waited_for_for_ever() -> None:
+    history = out_of_sight()
+    for _ in range(MOST_PUT_OFF):
+        history.hear(Appeared({ODOMETRY: "1"}), Discovered())
+        history.composed(REFUSAL)
     assert history.state.phase is Phase.DISMANTLING
+
+
+def test_a_task_that_waits_lets_go_of_what_it_holds_meanwhile() -> None:
+    history = lost(startable=False, patient=True)
+    history.composed(REFUSAL)
+    history.all_answer()
+    assert history.state.phase is Phase.REFUSED
+    assert not history.state.held
 
 
 def test_what_its_site_starts_no_more_is_a_reason_to_refuse() -> None:
@@ -71,7 +108,7 @@ def test_what_its_site_starts_no_more_is_a_reason_to_refuse() -> None:
 
 @pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])
 @pytest.mark.parametrize("startable", [True, False])
-def test_what_says_that_its_life_is_over_is_waited_for_if_its_site_can_start_it(call: Call, startable: bool) -> None:
+def test_what_says_that_its_life_is_over_is_searched_with_if_its_site_can_start_it(call: Call, startable: bool) -> None:
     history = History().accepted()
     history.composed(navigation())
     while (TRACKER, call) not in history.state.pending:
@@ -79,9 +116,8 @@ def test_what_says_that_its_life_is_over_is_waited_for_if_its_site_can_start_it(
     over = Answered(TRACKER, call, history.state.epoch, Verdict.OTHER_LIFE, "1", detail="it ends", startable=startable)
     history.hear(over)
     assert (history.state.lost[TRACKER].cause, history.state.lost[TRACKER].detail) == (Cause.CRASH, "it ends")
-    effects = history.composed(REFUSAL)
-    assert effects == ([Compose(history.state.attempt, frozenset(), history.state.target)] if startable else effects)
-    assert (history.state.phase is Phase.COMPOSING) is startable
+    again = Compose(history.state.attempt + 1, frozenset(), history.state.target)
+    assert history.composed(REFUSAL) == [again if startable else AwaitReturn(history.state.attempt)]
 
 
 def silent(history: History, call: Call) -> None:

@@ -82,13 +82,30 @@ def test_a_component_that_is_restarted_while_it_acts_is_activated_and_set_anew(l
     agent = lab.agent()
     lab.running(agent)
     lab.crash("control")
-    lab.let_pass(0.5)
-    assert agent.state.phase is Phase.REFUSED
+    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
     lab.ended.clear()
     lab.component("control")
     again = lab.agent()
     assert lab.running(again)
     assert lab.components["control"].said == [("goal", "(AT BEDROOM)"), ("started",)]
+
+
+@pytest.mark.parametrize("seconds", [0.3, 1.5])
+def test_components_that_are_out_of_sight_for_a_moment_do_not_end_a_task_that_does_not_wait(
+    lab: Lab, seconds: float
+) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    everybody = sorted(TASK | {"tracker", "odometry"})
+    for name in everybody:
+        lab.isolate(name)
+    lab.let_pass(seconds)
+    assert {loss.component for loss in lab.acts("lost")} >= {iri("thinking-cap"), iri("wheels")}
+    for name in everybody:
+        lab.rejoin(name)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 2.0)
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"tracker"}
 
 
 def test_a_configurator_that_was_suspended_applies_anew_to_components_that_have_turned_themselves_off(lab: Lab) -> None:
