@@ -21,6 +21,8 @@ from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
 from selfconf.termination import alive, start_time, stopped
 
+CLAIMED = "names"
+"""The folder of the files that are locked: `tasks` is where sites keep tasks, and a site may be called like a task."""
 TURN = 5.0
 """Seconds to wait for a turn: a site that was stopped in its own does not stop all others."""
 
@@ -171,7 +173,7 @@ def claim(ecology: str, name: str, endpoints: Sequence[str]) -> ClaimedName | No
     """
     try:
         with _writing() as root:
-            folder = root / "tasks"
+            folder = root / CLAIMED
             folder.mkdir(mode=0o700, exist_ok=True)
             file = _locked_file(folder / f"{ecology}@{name}")
     except NetworkError:
@@ -191,13 +193,13 @@ def suspended_tasks(ecology: str, endpoints: Sequence[str]) -> tuple[LocalTask, 
     Only of programs that have joined by one of the endpoints. No file is locked, which would keep others from a name.
     """
     found = []
-    for path in _files("tasks/*"):
+    for path in _files(f"{CLAIMED}/*"):
         try:
             task = LocalTask(**json.loads(path.read_bytes()))
             joined = task.ecology == ecology and not set(endpoints).isdisjoint(task.endpoints)
             if joined and task.is_suspended():
                 found.append(task)
-        except (OSError, ValueError, TypeError):  # it was released, is being written, or is the folder of a site
+        except (OSError, ValueError, TypeError):  # it was released, or is being written
             continue
     return tuple(found)
 

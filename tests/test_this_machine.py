@@ -159,7 +159,7 @@ def test_a_name_that_is_claimed_is_free_again_when_it_is_released_or_its_process
         assert other.stdout.readline() == "patrol\n"
         assert this_machine.claim("home", "patrol", []) is None
         with this_machine.claim("office", "patrol", []) or pytest.fail("none"):
-            assert sorted(path.name for path in (runtime_folder / "tasks").iterdir()) == [
+            assert sorted(path.name for path in (runtime_folder / this_machine.CLAIMED).iterdir()) == [
                 "home@patrol",
                 "office@patrol",
             ]
@@ -169,7 +169,7 @@ def test_a_name_that_is_claimed_is_free_again_when_it_is_released_or_its_process
     assert this_machine.claim("home", "patrol", []) is None
     claimed.release()
     claimed.release()
-    assert list((runtime_folder / "tasks").iterdir()) == []
+    assert list((runtime_folder / this_machine.CLAIMED).iterdir()) == []
 
 
 def names_of_suspended(ecology: str, *endpoints: str) -> list[str]:
@@ -180,8 +180,8 @@ def names_of_suspended(ecology: str, *endpoints: str) -> list[str]:
 def test_a_suspended_program_is_seen_by_those_that_have_joined_where_it_has_until_it_goes_on_or_ends(
     runtime_folder: Path,
 ) -> None:
-    (runtime_folder / "tasks" / "folder-of-a-site").mkdir(parents=True)
-    (runtime_folder / "tasks" / "home@half-written").write_text('{"ecology": "home"')
+    (runtime_folder / this_machine.CLAIMED / "folder-of-a-site").mkdir(parents=True)
+    (runtime_folder / this_machine.CLAIMED / "home@half-written").write_text('{"ecology": "home"')
     here, there, elsewhere = "tcp/127.0.0.1:7001", "tcp/127.0.0.1:7002", "tcp/127.0.0.1:7003"
     with this_machine.claim("home", "tidy", [here]) or pytest.fail("none"):  # which goes on
         with suspended_run("home", "patrol", here, there) as program:
@@ -193,13 +193,13 @@ def test_a_suspended_program_is_seen_by_those_that_have_joined_where_it_has_unti
             program.send_signal(signal.SIGCONT)
             assert os.WIFCONTINUED(os.waitpid(program.pid, os.WCONTINUED)[1])
             assert names_of_suspended("home", here) == []
-        assert (runtime_folder / "tasks" / "home@patrol").exists()  # it was killed
+        assert (runtime_folder / this_machine.CLAIMED / "home@patrol").exists()  # it was killed
         assert names_of_suspended("home", here) == []
 
 
 def test_a_suspended_process_that_has_by_now_the_number_of_one_that_ran_a_task_is_another(runtime_folder: Path) -> None:
     with suspended_run("home", "patrol", "tcp/127.0.0.1:7001"):
-        path = runtime_folder / "tasks" / "home@patrol"
+        path = runtime_folder / this_machine.CLAIMED / "home@patrol"
         path.write_text(json.dumps({**json.loads(path.read_text()), "started": "1"}))
         assert names_of_suspended("home", "tcp/127.0.0.1:7001") == []
 
@@ -211,7 +211,7 @@ def test_a_claim_that_is_refused_leaves_the_program_that_has_the_name_as_it_was_
 
 
 def test_a_claim_that_follows_one_of_a_program_that_was_killed_says_nothing_of_that(runtime_folder: Path) -> None:
-    path = runtime_folder / "tasks" / "home@patrol"
+    path = runtime_folder / this_machine.CLAIMED / "home@patrol"
     path.parent.mkdir()
     path.write_text("x" * 1000)
     with this_machine.claim("home", "patrol", ["tcp/127.0.0.1:7001"]) or pytest.fail("none"):

@@ -48,6 +48,14 @@ def test_a_task_that_runs_is_listed_by_its_name_and_stopped_by_it(
     assert program.ended() == 0
 
 
+def test_a_task_of_the_sites_may_be_called_like_a_site(house: Home, capsys: pytest.CaptureFixture[str]) -> None:
+    house.site("kitchen", CLOCK)
+    where = house.arguments()
+    handed_over = house.selfconf("run", TEMPLATE, "--detach", "--name", "kitchen", *where)
+    assert handed_over.ended() == 0, handed_over.complaints
+    assert run(capsys, "stop", "kitchen", *where).code == 0
+
+
 @pytest.mark.parametrize("command", ["tasks", "status"])
 def test_no_command_says_that_there_is_no_task_where_a_run_of_this_machine_is_suspended(
     house: Home, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, command: str
