@@ -17,7 +17,9 @@ class ImportLedger:
         self._omitted: dict[tuple[str, str], dict[str, int]] = {}
 
     def leave_out(self, what: str, reason: str, source: SourceDocument, number: int = 1) -> None:
-        """Note that something of a source will not be in the advertisements."""
+        """Note that something of a source will not be in the advertisements, unless there is none of it."""
+        if not number:
+            return
         counts = self._omitted.setdefault((what, reason), {})
         counts[source.shown] = counts.get(source.shown, 0) + number
 

@@ -15,6 +15,7 @@ def test_what_is_left_out_for_one_reason_is_counted_over_all_sources() -> None:
     for source, number in ((A, 2), (B, 1), (A, 3)):
         ledger.leave_out("forms", "why", source, number)
     ledger.leave_out("forms", "another why", B)
+    ledger.leave_out("links", "there are none", B, 0)
     assert ledger.omissions() == (Omission("forms", "another why", ("b",), 1), Omission("forms", "why", ("a", "b"), 6))
 
 

@@ -19,7 +19,14 @@ from typing import Any, TypeVar
 
 from selfconf import files, library
 from selfconf.bridging.wot.forms import FOLLOWED, ThingForm, ThingForms
-from selfconf.importing import DescribedThing, ImportedComponent, ImportedOperation, ImportedPort, NestedNode
+from selfconf.importing import (
+    DescribedThing,
+    ImportedComponent,
+    ImportedOperation,
+    ImportedPort,
+    NestedNode,
+    event_ports,
+)
 from selfconf.model.immutable import immutable
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI, Literal
@@ -130,15 +137,16 @@ def _usable(imported: Iterable[_Imported], interaction: Callable[[_Imported], _D
 
 
 class _Affordances:
-    """The affordances of a description, by their names."""
+    """The affordances of a description, by the names of their ports and operations."""
 
     def __init__(self, description: Mapping[str, Any]) -> None:
         self._kinds = {kind: description.get(kind) for kind in ("properties", "events", "actions")}
+        self._events = {port: event for event, port in event_ports(description).items()}
 
     def find(self, kind: str, name: str) -> Mapping[str, Any]:
         """An affordance; an empty one if there is none."""
-        found = self._kinds[kind]
-        affordance = found.get(name) if isinstance(found, dict) else None
+        found, called = self._kinds[kind], self._events.get(name) if kind == "events" else name
+        affordance = found.get(called) if isinstance(found, dict) else None
         return affordance if isinstance(affordance, dict) else {}
 
 

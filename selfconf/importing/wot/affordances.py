@@ -3,12 +3,13 @@
 A property that can be read, and an event, is an output; a property that can be written is an input that may stay
 unfed, because the thing does not wait until it is written; an action is an operation. The `@type`s of an
 affordance are its signal types. One without any is kept: an interaction can name it. What it says in terms of other
-vocabularies is said of the port or operation.
+vocabularies is said of the port or operation. A property and an event may have one name, two outputs may not
+(`event_ports`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -87,6 +88,7 @@ class AffordanceReader:
                 yield "input", replace(port, optional=True)
             if not reads and not writes:
                 self._leave_out("properties that can be neither read nor written", "there is nothing to connect")
+        names = event_ports(thing)
         for name, affordance in self._affordances(thing, "events"):
             data = affordance.get("data")
             signal: dict[str, Any] = data if isinstance(data, dict) else {}
@@ -95,7 +97,7 @@ class AffordanceReader:
             if SC.Failure in kinds:
                 continue  # every component can fail
             others = *self.other_terms.stated(affordance, _KNOWN), *self.other_terms.stated(signal, _DATA)
-            yield "output", ImportedPort(name, kinds, self._unit(signal), properties=others)
+            yield "output", ImportedPort(names[name], kinds, self._unit(signal), properties=others)
 
     def operations(self, thing: dict[str, Any]) -> Iterator[ImportedOperation]:
         """The actions of a thing."""
@@ -153,6 +155,22 @@ class AffordanceReader:
 
     def _leave_out(self, what: str, reason: str, number: int = 1) -> None:
         self.ledger.leave_out(what, reason, self.source, number)
+
+
+def event_ports(thing: Mapping[str, Any]) -> dict[str, str]:
+    """The name of the output that each event of a thing is: its own, or `event NAME` where a property has that."""
+    properties, events = (
+        found if isinstance(found := thing.get(kind), dict) else {} for kind in ("properties", "events")
+    )
+    taken, ports = {*properties, *events}, {}
+    for event in events:
+        name = event
+        if event in properties:
+            while name in taken:
+                name = f"event {name}"
+            taken.add(name)
+        ports[event] = name
+    return ports
 
 
 def _other_kind(iri: IRI) -> tuple[str, str] | None:

@@ -44,6 +44,22 @@ def test_what_can_be_observed_is_followed_and_the_rest_promises_the_rate() -> No
     }
 
 
+def test_an_event_with_the_name_of_a_property_is_followed_and_that_property_read() -> None:
+    thing = found(
+        properties={
+            "level": {"type": "number", "readOnly": True, "forms": [{"href": "level"}]},
+            "goal": {"type": "number", "writeOnly": True, "forms": [{"href": "goal"}]},
+        },
+        events={each: {"forms": [{"href": f"{each}/news", "subprotocol": "sse"}]} for each in ("level", "goal")},
+    )
+    assert [(each.name, each.read and each.read.url, each.follow and each.follow.url) for each in thing.outputs] == [
+        ("level", "http://192.0.2.7/level", None),
+        ("event level", None, "http://192.0.2.7/level/news"),
+        ("event goal", None, "http://192.0.2.7/goal/news"),
+    ]
+    assert [each.name for each in thing.inputs] == ["goal"]
+
+
 def test_what_is_said_in_the_terms_of_selfconf_alone_is_nothing_that_a_thing_can_do() -> None:
     sc = "https://w3id.org/selfconf#"
     rate = {f"{sc}value": 9, f"{sc}unit": {"@id": "http://qudt.org/vocab/unit/HZ"}}

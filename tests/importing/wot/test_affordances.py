@@ -72,6 +72,22 @@ def test_an_event_is_an_output_of_its_own_types_or_those_of_its_data() -> None:
     ]  # fmt: skip
 
 
+def test_an_event_with_the_name_of_a_property_gets_another() -> None:
+    """The W3C has names differ within properties and within events; two outputs of one name would not conform."""
+    reading = Reading(
+        properties={"a": {"writeOnly": True}, "b": {"readOnly": True}, "event b": {"readOnly": True}},
+        events={"a": {}, "b": {"@type": "x:A"}, "event a": {}, "c": {}},
+    )
+    assert [port.name for kind, port in reading.ports if kind == "output"] == [
+        "b", "event b", "event event a", "event event b", "event a", "c",
+    ]  # fmt: skip
+    assert next(port.types for _, port in reading.ports if port.name == "event event b") == (A,)
+
+
+def test_forms_that_are_none_are_not_said_to_be_left_out() -> None:
+    assert Reading(properties={"a": {"forms": []}}).left_out == {}
+
+
 def test_an_action_is_an_operation_asked_for_by_its_input_or_its_own_type() -> None:
     actions = {
         "a": {"@type": "x:A", "output": {"@type": "x:B"}},
