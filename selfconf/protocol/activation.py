@@ -13,12 +13,7 @@ Before the table come three guards. A call of an older epoch than the newest tha
 epochs order the calls of one task, not of two, as their clocks may differ. A call of another configurator than the one
 that supervises the task is BUSY while that one lives; one for which the component acts and that was not seen yet may
 have left while its last call was on its way. A call of a task that cannot hold the component beside those that do is
-BUSY, and the task *waits*: higher priority first, then the earlier beginning. Once the component is free, it is
-*offered* to the first that waits; until that one has reserved it or the offer is over, tasks that come later are BUSY.
-To one of higher priority that begins to wait meanwhile it is offered instead, which else would have to have it yielded.
-An offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot come
-for it, as each waits for the other, would have it offered to them for ever. A task that has not come for it waits on,
-but no task is asked to yield for its sake until it asks again: its configurator may be gone.
+BUSY, and the task *waits* (`selfconf.protocol.task_queue`).
 
 A component that has failed stays failed for the epoch it failed in: an apply of that epoch, repeated or late, is
 REFUSED, or it would hide the failure. An actuator, a component without outputs, is never applied to by a task that does
@@ -37,9 +32,8 @@ from enum import Enum
 
 from selfconf.model.immutable import immutable
 from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict, Wire
+from selfconf.protocol.task_queue import TaskQueue, rank
 
-MOST_WAITING = 64
-"""How many tasks a component remembers that wait for it; those that come last wait by asking again."""
 MOST_HOLDING = 64
 """How many tasks share a component at most; others wait."""
 MOST_ENDED = 64
@@ -110,14 +104,8 @@ class Activation:
 
     phase: ActivationPhase = ActivationPhase.IDLE
     holds: tuple[Hold, ...] = ()
-    waiting: tuple[Claim, ...] = ()
-    """The tasks that wait, in the order in which the component is offered to them."""
-    kept_for: str = ""
-    """The task that a component which is free is kept for."""
-    passed: frozenset[str] = frozenset()
-    """The tasks that wait and have been offered the component since it was held last."""
-    lapsed: frozenset[str] = frozenset()
-    """The tasks that wait, but did not come for the component when it was kept for them last."""
+    queue: TaskQueue = TaskQueue()
+    """The tasks that wait for it."""
     ended: tuple[tuple[str, int], ...] = ()
     """The newest epoch obeyed for each task that holds the component no more."""
 
@@ -131,7 +119,7 @@ class Activation:
     @property
     def first(self) -> Hold | None:
         """The hold of the highest priority, then of the earliest beginning."""
-        return min(self.holds, key=lambda hold: _rank(hold.claim), default=None)
+        return min(self.holds, key=lambda hold: rank(hold.claim), default=None)
 
     @property
     def epoch(self) -> int:
@@ -180,11 +168,11 @@ def obey(
         return activation, Verdict.BUSY, ActivationStep.NONE
     if isinstance(call, Release):
         after, step = _released(activation, call, gone)
-        return _no_longer_waiting(after, call.task), Verdict.DONE, step
+        return replace(after, queue=after.queue.left(call.task)), Verdict.DONE, step
     if _blocked(activation, call, shareable, gone) or (isinstance(call, Reserve) and call.waits):
-        after = activation if _others_may_agree(own, call) else _wait(activation, call)
-        return _wish(after, own, call), Verdict.BUSY, ActivationStep.NONE
-    served = replace(_no_longer_waiting(activation, call.task), kept_for="")
+        queue = activation.queue if _others_may_agree(own, call) else activation.queue.joined(call)
+        return _wish(replace(activation, queue=queue), own, call), Verdict.BUSY, ActivationStep.NONE
+    served = replace(activation, queue=activation.queue.taken(call.task))
     if isinstance(call, Reserve):
         return _reserve(served, own, call), Verdict.DONE, ActivationStep.NONE
     if own is None and actuator:
@@ -225,7 +213,7 @@ def in_the_way(
     if own is not None and _is_anothers(own, call, gone, unseen):
         return own
     others = [hold for hold in activation.holds if hold is not own]
-    return min(others, key=lambda hold: (hold.claim.supervisor in gone, _rank(hold.claim)), default=None)
+    return min(others, key=lambda hold: (hold.claim.supervisor in gone, rank(hold.claim)), default=None)
 
 
 def _activate(activation: Activation, call: Apply, gone: frozenset[str], shareable: bool) -> Activation:
@@ -245,7 +233,6 @@ def _activate(activation: Activation, call: Apply, gone: frozenset[str], shareab
         phase=ActivationPhase.ACTIVE,
         holds=(*(hold.fulfilled_by(call) for hold in kept), Hold(call, True)),
         ended=(*_ended(activation, call), *left.items())[-MOST_ENDED:],
-        passed=frozenset(),
     )
 
 
@@ -264,7 +251,7 @@ def _reserve(activation: Activation, own: Hold | None, call: Reserve) -> Activat
             own.claim.inputs if others or call.epoch == own.claim.epoch else _in_common(own.claim.inputs, call.inputs)
         )
         held = Hold(replace(own.claim, epoch=call.epoch, supervisor=call.supervisor, inputs=left), True, wish)
-    return replace(activation, holds=(*others, held), ended=_ended(activation, call), passed=frozenset())
+    return replace(activation, holds=(*others, held), ended=_ended(activation, call))
 
 
 def _in_common(
@@ -276,7 +263,7 @@ def _in_common(
 
 def _blocked(activation: Activation, call: Reserve | Apply, shareable: bool, gone: frozenset[str]) -> bool:
     """Whether another task stands in the way: one that holds the component, or one that it is kept for."""
-    if any(one.task == activation.kept_for != call.task and _rank(one) < _rank(call) for one in activation.waiting):
+    if activation.queue.is_kept_from(call):
         return True
     others = [h for h in activation.holds if h.claim.task != call.task and h.claim.supervisor not in gone]
     wanted = call.inputs, call.values
@@ -296,13 +283,6 @@ def _others_may_agree(own: Hold | None, call: Reserve | Apply) -> bool:
         return False
     newest = own.newest
     return (newest.inputs, newest.values) != (call.inputs, call.values) or not all(call.inputs.values())
-
-
-def _wait(activation: Activation, call: Reserve | Apply) -> Activation:
-    """Let a task wait, in its place; a call that it has made before is forgotten."""
-    rest = [claim for claim in activation.waiting if claim.task != call.task]
-    waiting = tuple(sorted([*rest, call], key=_rank)[:MOST_WAITING])
-    return replace(activation, waiting=waiting, lapsed=activation.lapsed - {call.task})
 
 
 def _wish(activation: Activation, own: Hold | None, call: Reserve | Apply) -> Activation:
@@ -341,18 +321,6 @@ def granted(activation: Activation) -> Apply | None:
     return next((wish for wish in wishes if all(hold.agrees_with(wish) for hold in activation.holds)), None)
 
 
-def _no_longer_waiting(activation: Activation, task: str) -> Activation:
-    waiting = tuple(claim for claim in activation.waiting if claim.task != task)
-    kept_for = "" if activation.kept_for == task else activation.kept_for
-    passed, lapsed = activation.passed - {task}, activation.lapsed - {task}
-    return replace(activation, waiting=waiting, kept_for=kept_for, passed=passed, lapsed=lapsed)
-
-
-def _rank(claim: Claim) -> tuple[int, float, str]:
-    """The order in which tasks are served: the higher priority first, then the earlier beginning."""
-    return -claim.priority, claim.beginning, claim.task
-
-
 def _ended(activation: Activation, call: Reserve | Apply) -> tuple[tuple[str, int], ...]:
     return tuple(one for one in activation.ended if one[0] != call.task)
 
@@ -386,7 +354,7 @@ def outranked(activation: Activation) -> tuple[str, ...]:
 
     That one may share it with them, and wait until it can have it do something else.
     """
-    first = next((claim for claim in activation.waiting if claim.task not in activation.lapsed), None)
+    first = activation.queue.first
     if first is None:
         return ()
     others = [hold.claim for hold in activation.holds if hold.claim.task != first.task]
@@ -395,21 +363,13 @@ def outranked(activation: Activation) -> tuple[str, ...]:
 
 
 def offer(activation: Activation) -> tuple[Activation, Claim | None]:
-    """Keep a component that no task holds for the first that waits, and return the claim of that task.
-
-    One that is kept already goes to no other, but to a task of higher priority that has come since.
-    """
-    first = next((claim for claim in activation.waiting if claim.task not in activation.passed), None)
-    kept = next((claim for claim in activation.waiting if claim.task == activation.kept_for), None)
-    if activation.holds or first is None or (kept is not None and kept.priority >= first.priority):
+    """Keep a component that no task holds for the first that waits, and return the claim of that task."""
+    if activation.holds:
         return activation, None
-    passed = activation.passed - {activation.kept_for} | {first.task}
-    return replace(activation, kept_for=first.task, passed=passed), first
+    queue, claim = activation.queue.offered()
+    return replace(activation, queue=queue), claim
 
 
 def withdraw(activation: Activation, task: str) -> Activation:
     """Keep the component no longer for a task that has not reserved it."""
-    if activation.kept_for != task:
-        return activation
-    waiting = {claim.task for claim in activation.waiting}
-    return replace(activation, kept_for="", lapsed=(activation.lapsed | {task}) & waiting)
+    return replace(activation, queue=activation.queue.withdrawn(task))

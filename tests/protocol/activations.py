@@ -48,7 +48,7 @@ def activation_in(phase: ActivationPhase, held: bool = True, epoch: int = 5) -> 
 
 def waiting_for(activation: Activation) -> list[str]:
     """The tasks that wait, in order."""
-    return [claim.task for claim in activation.waiting]
+    return [claim.task for claim in activation.queue.claims]
 
 
 def shared_by(*tasks: str, inputs: object = INPUTS) -> Activation:

@@ -19,6 +19,7 @@ from selfconf.protocol.activation import (
     obey,
 )
 from selfconf.protocol.messages import Apply, Release, Reserve, Verdict
+from selfconf.protocol.task_queue import TaskQueue
 from tests.protocol.activations import (
     ACTIVE,
     FAILED,
@@ -208,7 +209,7 @@ def test_a_component_is_held_by_one_task(phase: ActivationPhase, call: type[Call
     before = activation_in(phase)
     after, verdict, step = obey(before, call_of(call, B, 9))
     assert (verdict, step) == (Verdict.BUSY, ActivationStep.NONE)
-    assert after == replace(before, waiting=(call_of(call, B, 9),))
+    assert after == replace(before, queue=TaskQueue((call_of(call, B, 9),)))
 
 
 @pytest.mark.parametrize("phase", ActivationPhase)

@@ -85,7 +85,7 @@ def _mishap(activation: Activation, event: str) -> tuple[Activation, ActivationS
     if event == "offer":
         return offer(activation)[0], ActivationStep.NONE
     if event == "withdraw":
-        return withdraw(activation, activation.kept_for), ActivationStep.NONE
+        return withdraw(activation, activation.queue.kept_for), ActivationStep.NONE
     if event == "preempt":
         return drop(activation, outranked(activation))
     return drop(activation, held_under(activation, event))
@@ -157,11 +157,11 @@ def _check(activation: Activation, running: bool, shareable: bool, gone: set[str
     assert shareable or len(alive) <= 1
     acts_for = [hold for hold in alive if hold.active]
     assert all(hold.wants == acts_for[0].wants for hold in acts_for), "nobody obeys two that disagree"
-    ranks = [(-claim.priority, claim.beginning) for claim in activation.waiting]
+    ranks = [(-claim.priority, claim.beginning) for claim in activation.queue.claims]
     assert ranks == sorted(ranks)
     assert len(set(waiting_for(activation))) == len(ranks)
-    assert {activation.kept_for} - {""} <= activation.passed <= set(waiting_for(activation))
-    assert activation.lapsed <= set(waiting_for(activation))
-    top = max((claim.priority for claim in activation.waiting), default=-1)
+    assert {activation.queue.kept_for} - {""} <= activation.queue.passed <= set(waiting_for(activation))
+    assert activation.queue.lapsed <= set(waiting_for(activation))
+    top = max((claim.priority for claim in activation.queue.claims), default=-1)
     outranking = [hold.claim.priority for hold in activation.holds if hold.claim.task in outranked(activation)]
     assert all(top > priority for priority in outranking)

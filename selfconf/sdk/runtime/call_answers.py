@@ -78,8 +78,7 @@ class CallAnswers:
         """The answer that another task is in the way: one that holds the component, or one for which it is kept."""
         activation = self._activation()
         by = table.in_the_way(activation, call, self._supervision.gone, self._supervision.unseen)
-        kept = (one for one in activation.waiting if one.task == activation.kept_for)
-        claim = by.claim if by is not None else next(kept, None)
+        claim = by.claim if by is not None else activation.queue.kept
         if claim is None:
             return self.answer(Verdict.BUSY, call.task, "it is free, and tells so")
         who = f"the task {task_name(claim.task)} (priority {claim.priority}, configurator {owner_of(claim.supervisor)})"

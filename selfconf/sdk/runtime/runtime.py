@@ -299,7 +299,7 @@ class ComponentRuntime:
             self.outputs.forget()
             self._after_start = [answer]
             self.code.start(message.values, partial(self._started, self._after_start))
-            if self.activation.waiting:
+            if self.activation.queue:
                 self._waiting.tell("")
         self.inputs.follow(message)
         self.operations.follow(message)

@@ -61,10 +61,10 @@ class WaitingTasks:
     def ask_to_yield(self) -> None:
         """Tell those that hold the component that a task of higher priority asks for it, each time that it does."""
         activation = self._activation()
+        claim = activation.queue.first
         outranked = table.outranked(activation)
-        if not outranked:
+        if claim is None or not outranked:
             return
-        claim = next(one for one in activation.waiting if one.task not in activation.lapsed)
         for task in outranked:
             self._ask_holder(task, f"the task {task_name(claim.task)} of priority {claim.priority} asks for it")
         if self._preemption is None:
@@ -93,7 +93,7 @@ class WaitingTasks:
             self._end_of_offer = self._bus.later(OFFER, partial(self._withdraw, claim.task))
 
     def _withdraw(self, task: str) -> None:
-        if self._activation().kept_for == task:
+        if self._activation().queue.kept_for == task:
             self._become(table.withdraw(self._activation(), task))
             self.offer()
 

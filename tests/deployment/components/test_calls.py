@@ -260,6 +260,6 @@ def test_a_task_waits_where_another_configurator_of_it_has_run_it_by_a_clock_tha
     assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
     lab.let_pass(1.0)
     for name in ("control", "drive"):
-        assert [claim.task for claim in lab.runtimes[name].activation.waiting] == [agent.identity.task]
+        assert [claim.task for claim in lab.runtimes[name].activation.queue.claims] == [agent.identity.task]
     other.stop()
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 1.0)

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import pytest
 
 from selfconf.protocol.activation import (
-    MOST_WAITING,
     Activation,
     ActivationStep,
     in_the_way,
@@ -17,6 +16,7 @@ from selfconf.protocol.activation import (
     withdraw,
 )
 from selfconf.protocol.messages import Apply, Release, Reserve, Verdict
+from selfconf.protocol.task_queue import MOST_WAITING
 from tests.protocol.activations import (
     ACTIVE,
     IDLE,
@@ -41,7 +41,7 @@ def test_a_task_that_asks_again_waits_once() -> None:
     activation = activation_in(ACTIVE)
     for epoch in (5, 6, 7):
         activation, _, _ = obey(activation, call_of(Reserve, B, epoch))
-    assert activation.waiting == (call_of(Reserve, B, 7),)
+    assert activation.queue.claims == (call_of(Reserve, B, 7),)
 
 
 def test_only_so_many_tasks_wait_and_the_last_in_rank_by_asking_again() -> None:
@@ -49,8 +49,8 @@ def test_only_so_many_tasks_wait_and_the_last_in_rank_by_asking_again() -> None:
     for number in range(MOST_WAITING + 10):
         activation, verdict, _ = obey(activation, call_of(Reserve, f"{number:03}~1", beginning=float(-number)))
         assert verdict is Verdict.BUSY
-    assert len(activation.waiting) == MOST_WAITING
-    assert activation.waiting[0].task == f"{MOST_WAITING + 9:03}~1"
+    assert len(activation.queue.claims) == MOST_WAITING
+    assert activation.queue.claims[0].task == f"{MOST_WAITING + 9:03}~1"
 
 
 def test_a_task_that_only_waits_never_gets_hold_of_the_component() -> None:
@@ -77,7 +77,7 @@ def offered(*tasks: str, priorities: Mapping[str, int] | None = None) -> Activat
     activation, _, _ = obey(activation, call_of(Release, epoch=6))
     activation, claim = offer(activation)
     assert claim is not None
-    assert activation.kept_for == claim.task
+    assert activation.queue.kept_for == claim.task
     return activation
 
 
@@ -89,12 +89,12 @@ def test_a_component_that_is_held_is_offered_to_none() -> None:
 
 def test_a_component_that_is_kept_for_a_task_is_busy_for_those_that_come_later() -> None:
     activation = offered(B, C)
-    assert activation.kept_for == B
+    assert activation.queue.kept_for == B
     for call in (Reserve, Apply):
         kept, verdict, _ = obey(activation, call_of(call, C, beginning=1.0))
-        assert (verdict, kept.kept_for) == (Verdict.BUSY, B)
+        assert (verdict, kept.queue.kept_for) == (Verdict.BUSY, B)
         taken, verdict, _ = obey(kept, call_of(call, B, beginning=0.0))
-        assert (verdict, taken.kept_for, waiting_for(taken)) == (Verdict.DONE, "", [C])
+        assert (verdict, taken.queue.kept_for, waiting_for(taken)) == (Verdict.DONE, "", [C])
 
 
 def test_a_component_that_is_kept_for_a_task_may_be_had_by_one_that_goes_before_it() -> None:
@@ -128,7 +128,7 @@ def test_what_is_kept_is_offered_instead_to_a_task_of_higher_priority_that_has_c
     activation, verdict, _ = obey(activation, call_of(Reserve, C, priority=priority, beginning=-1.0, waits=True))
     assert verdict is Verdict.BUSY
     activation, claim = offer(activation)
-    assert (activation.kept_for, claim and claim.task) == (expected or B, expected)
+    assert (activation.queue.kept_for, claim and claim.task) == (expected or B, expected)
     if expected:
         assert offer(activation) == (activation, None)
         _, again = offer(withdraw(activation, C))
@@ -191,5 +191,5 @@ def test_a_component_is_kept_for_no_task_once_another_that_ranks_before_it_has_i
     offered, claim = offer(offered)
     assert claim is not None
     held, verdict, _ = obey(offered, call_of(Reserve, C, priority=1))
-    assert (verdict, held.kept_for) == (Verdict.DONE, "")
-    assert withdraw(held, B).lapsed == frozenset(), "it has not been slow to come"
+    assert (verdict, held.queue.kept_for) == (Verdict.DONE, "")
+    assert withdraw(held, B).queue.lapsed == frozenset(), "it has not been slow to come"
