@@ -32,11 +32,11 @@ _WHOLE: dict[str, _Bounds] = {
     "byte": (-(1 << 7), (1 << 7) - 1),
     "short": (-(1 << 15), (1 << 15) - 1),
     "int": (-(1 << 31), (1 << 31) - 1),
-    "long": (None, None),  # that 64 bits hold a number is not checked by rdflib either, which judges by the shape
+    "long": (-(1 << 63), (1 << 63) - 1),
     "unsignedByte": (0, (1 << 8) - 1),
     "unsignedShort": (0, (1 << 16) - 1),
     "unsignedInt": (0, (1 << 32) - 1),
-    "unsignedLong": (0, None),
+    "unsignedLong": (0, (1 << 64) - 1),
 }
 WHOLE_NUMBERS: dict[str, _Bounds] = {XSD_NAMESPACE + name: bounds for name, bounds in _WHOLE.items()}
 """The datatypes of whole numbers, each with its least and its greatest value."""

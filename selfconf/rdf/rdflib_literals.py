@@ -5,6 +5,7 @@ commented on stderr: selfconf itself reports a literal that is none of its datat
 
 * markup stays text, as its value would be a document that nothing compares;
 * a decimal is finite: Python's decimals have infinity and not-a-number, which raise in comparisons;
+* what 64 bits do not hold is no xsd:long and no xsd:unsignedLong, whose ranges rdflib does not know;
 * what is no boolean is false, without a warning.
 """
 
@@ -16,9 +17,10 @@ from xml.parsers import expat
 
 from rdflib import RDF, XSD, Literal, URIRef
 
-from selfconf.model.literal_values import TRUTH
+from selfconf.model.literal_values import TRUTH, number_of
 
 _MARKUP = frozenset((RDF.HTML, RDF.XMLLiteral))
+_IN_64_BITS = frozenset((XSD.long, XSD.unsignedLong))
 
 
 def _worth_logging(record: logging.LogRecord) -> bool:
@@ -37,6 +39,8 @@ def literal(text: str, datatype: URIRef | None, language: str | None = None) -> 
     found = Literal(text, lang=language, datatype=datatype, normalize=False)
     if isinstance(found.value, Decimal) and not found.value.is_finite():
         return _literal(text, datatype, None, True)
+    if datatype in _IN_64_BITS and number_of(text, str(datatype)) is None:
+        return _literal(text, datatype, found.value, True)
     return found
 
 

@@ -115,6 +115,7 @@ def test_a_value_that_does_not_fit_is_refused(bound: tuple[tuple[str, str], ...]
         ("decimal", Literal("0.5", XSD.double), Literal("0.5", XSD.decimal)),
         ("nonNegativeInteger", "2", Literal("2", XSD.nonNegativeInteger)),
         ("byte", "127", Literal("127", XSD.byte)),
+        ("long", "9223372036854775807", Literal("9223372036854775807", XSD.long)),
         ("int", Literal("7", XSD.integer), Literal("7", XSD.int)),
     ],
 )
@@ -132,6 +133,8 @@ def test_a_number_takes_the_datatype_that_its_parameter_asks_for(asked: str, val
         ("integer", "7.0"),
         ("byte", "128"),
         ("unsignedInt", "-1"),
+        ("long", "9223372036854775808"),
+        ("unsignedLong", "18446744073709551616"),
         ("int", "7.0"),
     ],
 )
