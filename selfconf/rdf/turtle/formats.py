@@ -48,16 +48,23 @@ N_QUADS = RdfFormat("N-Quads", ox.RdfFormat.N_QUADS, ("nq",), "nquads")
 FORMATS = (_TURTLE, N_TRIPLES, RDF_XML, JSON_LD, TRIG, N_QUADS)
 _BY_ENDING = {ending: each for each in FORMATS for ending in each.endings}
 _NODE = rb"(?:<[^<>\s]*>|_:\S+)"
+_COMMENTS = rb"(?:#[^\n]*\n\s*)*"
 _LOOKS = (
     (re.compile(rb"<(?:\?xml|!DOCTYPE|!--|(?:[A-Za-z_][\w.-]*:)?RDF[\s>])"), RDF_XML),
     (re.compile(rb'\{\s*["}]|\[\s*\{'), JSON_LD),
     (
-        re.compile(rb'(?:#.*\s+)*%b\s+<[^<>\s]*>\s+(?:%b|"(?:[^"\\\n]|\\.)*"\S*)\s+%b\s*\.' % (_NODE, _NODE, _NODE)),
+        re.compile(_COMMENTS + rb'%b\s+<[^<>\s]*>\s+(?:%b|"(?:[^"\\\n]|\\.)*"\S*)\s+%b\s*\.' % (_NODE, _NODE, _NODE)),
         N_QUADS,
     ),
-    (re.compile(rb"(?:.*\n)*?\s*(?:(?i:GRAPH)\s+)?(?:<[^<>\s]*>|[\w-]*:[\w-]*|_:\w+)?\s*\{"), TRIG),
+    (re.compile(rb"(?:.*\n)*?[^\S\n]*(?:(?i:GRAPH\s+)?(?:<[^<>\s]*>|[\w-]*:[\w-]*)\s*)?\{"), TRIG),
 )
-"""How files in other formats than Turtle begin; TriG shows where its first graph begins."""
+"""How files in other formats than Turtle begin; TriG shows where its first graph begins.
+
+No white space stands where two parts of a pattern could take it: a stranger's text of blank lines, or of a comment of
+many `#`, would be tried in all ways.
+"""
+_BEGINS_TURTLE = re.compile(_COMMENTS + rb"(?i:@?prefix|@?base)\s")
+"""How Turtle begins, for certain: anything that looks like no other format may be Turtle."""
 _NESTED_ENTITY = re.compile(rb"""<!ENTITY\s+[^>"']*["'][^>"']*&(?!#|amp;|lt;|gt;|quot;|apos;)""")
 
 
@@ -77,7 +84,7 @@ def conversion(name: str, found: RdfFormat) -> str:
     """The command that makes Turtle of a file; rdfpipe comes with rdflib, which selfconf needs."""
     if name.startswith("<"):  # the text came by a pipe: it is in no file
         return f"rdfpipe -i {found.rdfpipe} -o turtle -"
-    stem = name.removesuffix("." + _ending(name)) if _ending(name) else name
+    stem = _stem(name)
     # A shell empties the file that it writes to before the command reads it.
     target = f"{stem}-turtle.ttl" if f"{stem}.ttl" == name else f"{stem}.ttl"
     return f"rdfpipe -i {found.rdfpipe} -o turtle {shlex.quote(name)} > {shlex.quote(target)}"
@@ -88,7 +95,8 @@ def read_ontology(
 ) -> Document:
     """Read an ontology in any of the formats, or of it the triples with some predicates; of all named graphs alike.
 
-    Raises TurtleError with the line, and the column where it is known, for what is not in the format that it seems.
+    Raises TurtleError with the line, and the column where it is known, for what is not in the format that it seems,
+    and without for what is called after one format and written in another.
     """
     octets = octets.removeprefix(BOM_UTF8)
     check_utf_8(octets, source)
@@ -107,6 +115,11 @@ def read_ontology(
     try:
         return document_of(reader, source, base, predicates)
     except SyntaxError as error:
+        written = _by_content(octets)
+        if written not in (found, _TURTLE) or (written is not found and _BEGINS_TURTLE.match(_head(octets))):
+            message = f"this is {written.name}, and its name ends as that of {found.name}"
+            advice = f"rename it, as to {_stem(source)}.{written.endings[0]}"
+            raise TurtleError(f"{message}; {advice}", file=source) from None
         head, colon, tail = str(error.msg).partition(": ")
         message = tail if colon and head.startswith("Parser error") else str(error.msg)
         if "LoadDocumentCallback" in message:
@@ -152,6 +165,15 @@ def _ending(name: str) -> str:
     return ending.lower() if dot else ""
 
 
+def _stem(name: str) -> str:
+    """The name of a file without its ending."""
+    return name[: -len(_ending(name)) - 1] if _ending(name) else name
+
+
+def _head(octets: bytes) -> bytes:
+    return octets[:_HEAD].removeprefix(BOM_UTF8).lstrip()
+
+
 def _by_content(octets: bytes) -> RdfFormat:
-    head = octets[:_HEAD].removeprefix(BOM_UTF8).lstrip()
+    head = _head(octets)
     return next((found for pattern, found in _LOOKS if pattern.match(head)), _TURTLE)

@@ -82,6 +82,22 @@ def test_the_triples_of_every_graph_of_an_ontology_count() -> None:
             '<?xml version="1.0"?>\n<rdf:RDF xmlns:rdf="http://x#">\n<b></c>\n</rdf:RDF>\n',
             "a.rdf:3: not RDF/XML",
         ),
+        (
+            "a.ttl",
+            XML + "</rdf:RDF>",
+            "a.ttl: this is RDF/XML, and its name ends as that of Turtle; rename it, as to a.rdf",
+        ),
+        ("a.nt", '[ { "@id": "urn:a" } ]', "a.nt: this is JSON-LD, and its name ends as that of N-Triples"),
+        (
+            "a.rdf",
+            '{"@graph": []}',
+            "a.rdf: this is JSON-LD, and its name ends as that of RDF/XML; rename it, as to a.jsonld",
+        ),
+        (
+            "a.JSONLD",
+            "# lamps\nPREFIX : <urn:a> :a :b :c .",
+            "a.JSONLD: this is Turtle, and its name ends as that of JSON-LD; rename it, as to a.ttl",
+        ),
         ("a.rdf", "plain\ntext\n", "a.rdf:2: not RDF/XML: Unexpected text event: 'plain text"),
         ("a.nt", "<urn:a> <urn:b> <urn:c> .\n<urn:a> <urn:b> .\n", "a.nt:2:17: not N-Triples"),
         ("a.jsonld", '{\n"@id": "urn:a",}', "a.jsonld:2:"),
@@ -141,6 +157,16 @@ def test_what_came_by_a_pipe_is_converted_by_a_pipe() -> None:
 )
 def test_turtle_is_taken_for_nothing_else(text: str) -> None:
     assert turtle.other_format("a.ttl", text.encode()) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [b"# " * 30_000 + b"\n:a :b .", b":a\n" + b"\n" * 60_000 + b".", b":a\n" + b" " * 60_000, b"GRAPH\n" * 10_000],
+    ids=["comment", "blank lines", "spaces", "names"],
+)
+def test_the_format_of_no_text_takes_long_to_tell(text: bytes) -> None:
+    """Each of these took minutes, or for ever, where white space could be taken by two parts of a pattern."""
+    assert turtle.other_format("a.ttl", text) is None
 
 
 def test_terms_of_an_ontology_in_another_format_are_known_to_validation() -> None:
