@@ -115,21 +115,30 @@ def read_ontology(
     try:
         return document_of(reader, source, base, predicates)
     except SyntaxError as error:
-        written = _by_content(octets)
-        if written not in (found, _TURTLE) or (written is not found and _BEGINS_TURTLE.match(_head(octets))):
-            message = f"this is {written.name}, and its name ends as that of {found.name}"
-            advice = f"rename it, as to {_stem(source)}.{written.endings[0]}"
-            raise TurtleError(f"{message}; {advice}", file=source) from None
-        head, colon, tail = str(error.msg).partition(": ")
-        message = tail if colon and head.startswith("Parser error") else str(error.msg)
-        if "LoadDocumentCallback" in message:
-            message = "its @context is on the web, and is not fetched; write it into the file"
-        line = error.lineno or (lines.number if found is RDF_XML else None)
-        message = " ".join(message.split())  # it may quote some lines of the file
-        message = with_advice(message) if found is _TURTLE else message
-        raise TurtleError(f"not {found.name}: {message}", file=source, line=line, column=error.offset) from None
+        raise _misnamed(octets, source, found) or _refused(error, source, found, lines) from None
     except MemoryError:
         raise TurtleError("a literal in it is larger than can be read", file=source) from None
+
+
+def _misnamed(octets: bytes, source: str, named: RdfFormat) -> TurtleError | None:
+    """What is wrong with a text in another format than its name says; None where that is not the mistake."""
+    written = _by_content(octets)
+    if written is named or (written is _TURTLE and (named is TRIG or not _BEGINS_TURTLE.match(_head(octets)))):
+        return None  # Turtle is TriG too
+    message = f"this is {written.name}, and its name ends as that of {named.name}"
+    return TurtleError(f"{message}; rename it, as to {_stem(source)}.{written.endings[0]}", file=source)
+
+
+def _refused(error: SyntaxError, source: str, found: RdfFormat, lines: _Lines) -> TurtleError:
+    """Oxigraph's complaint about a text of a format as selfconf's; of RDF/XML it names no line."""
+    head, colon, tail = str(error.msg).partition(": ")
+    message = tail if colon and head.startswith("Parser error") else str(error.msg)
+    if "LoadDocumentCallback" in message:
+        message = "its @context is on the web, and is not fetched; write it into the file"
+    line = error.lineno or (lines.number if found is RDF_XML else None)
+    message = " ".join(message.split())  # it may quote some lines of the file
+    message = with_advice(message) if found is _TURTLE else message
+    return TurtleError(f"not {found.name}: {message}", file=source, line=line, column=error.offset)
 
 
 def in_turtle(octets: bytes, source: str, base: str | None = None) -> str:

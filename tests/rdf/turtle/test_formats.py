@@ -103,6 +103,7 @@ def test_the_triples_of_every_graph_of_an_ontology_count() -> None:
         ("a.jsonld", '{\n"@id": "urn:a",}', "a.jsonld:2:"),
         ("a.jsonld", '{"@context": "https://example.org/context", "a": 1}', "not fetched"),
         ("a.trig", ":g { }", "a.trig:1:1: not TriG: The prefix"),
+        ("a.trig", "@prefix : <urn:a> . :g { :a :b }", "a.trig:1:32: not TriG"),
         ("a.ttl", "<urn:a> <urn:b> .", "a.ttl:1:"),
         *(
             (f"a.{form}", "\n# \udce9", f"a.{form}:2:3: this is not UTF-8: the byte 0xE9")
