@@ -12,7 +12,7 @@ from docs import json_schemas, ontology
 from selfconf.cli import validate
 from selfconf.cli.main import COMMANDS, parser
 from selfconf.model.codes import CODES
-from selfconf.project import PROJECT_FILE, PROJECT_KEYS
+from selfconf.project import OTHER_WORDS, PROJECT_FILE, PROJECT_KEYS
 
 HERE = Path(__file__).parent
 NOTE = "<!-- Made by `python -m docs.generate`; edit the code instead. -->"
@@ -41,6 +41,7 @@ def _subcommands(command: argparse.ArgumentParser) -> list[argparse.ArgumentPars
 def project_file() -> str:
     """What a project file may say, from the table by which it is read."""
     rows = "\n".join(f"| `{key}` | {setting.means} |" for key, setting in PROJECT_KEYS.items())
+    words = " and ".join(f"`{word}` for `{key}`" for word, key in OTHER_WORDS.items())
     return f"""## selfconf.toml
 
 A project says once, in a file `{PROJECT_FILE}`, what its commands would have to be told each time. It is looked for in
@@ -63,6 +64,8 @@ robot = ":Astrid"
 |---|---|
 {rows}
 | `bind.TEMPLATE.PARAMETER` | a value for a parameter, as `--bind PARAMETER=` takes it; numbers may go without quotes |
+
+One may write {words}, as the library calls them.
 
 With `ads` or `endpoint` in the file, `configure`, `partition` and `query` look there, and ask the living ecology where
 `--ecology` or `--connect` is typed or set in the environment. `run` joins the ecology if sites of it are known, and

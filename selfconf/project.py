@@ -121,6 +121,8 @@ PROJECT_KEYS: Mapping[str, ProjectKey] = {
     "seconds": ProjectKey("give up a search after so many seconds", _is_seconds),
 }
 """The keys, in the order in which they are explained; besides them there is the table `bind`."""
+OTHER_WORDS: Mapping[str, str] = {"ontologies": "ontology", "endpoints": "connect"}
+"""Words of the library that may stand for a key, where the file does not have the key itself."""
 
 
 @immutable
@@ -204,7 +206,9 @@ def _examined(name: str, octets: bytes) -> tuple[dict[str, Any], dict[tuple[str,
         return {}, {}, [Diagnostic(name, 1, 1, "SC-P01", "Not TOML that can be read: brackets in brackets.")]
     except ValueError as error:  # of TOML, or of UTF-8
         return {}, {}, [_not_toml(name, octets, str(error))]
-    lines = dict(_lines(text))
+    called = {word: key for word, key in OTHER_WORDS.items() if word in body and key not in body}
+    body = {called.get(key, key): value for key, value in body.items()}
+    lines = {(called.get(keys[0], keys[0]), *keys[1:]): line for keys, line in _lines(text) if keys}
     problems = [_problem(name, octets, lines, *one) for one in _wrong(body)]
     return body, lines, sorted(problems, key=lambda one: one.order)
 

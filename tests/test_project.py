@@ -71,6 +71,17 @@ def test_every_key_has_its_value_with_paths_as_seen_from_the_current_folder(
     ]
 
 
+def test_a_key_may_be_called_as_the_library_calls_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / PROJECT_FILE
+    path.write_text('ecology = "home"\nontologies = ["a.ttl"]\nendpoints = "tcp/10.0.0.2:7447"\n')
+    project = read_project(path)
+    assert project.values == {"ecology": "home", "ontology": [Path("a.ttl")], "connect": ["tcp/10.0.0.2:7447"]}
+    assert project.place("ontology") == f"{PROJECT_FILE}:2"
+    ((line, _, code, _),) = problems('ontology = "."\nontologies = "."\n', tmp_path)
+    assert (line, code) == (2, "SC-P02")
+
+
 def test_the_nearest_file_upward_counts(tmp_path: Path) -> None:
     below = tmp_path / "a" / "b"
     below.mkdir(parents=True)
