@@ -53,6 +53,7 @@ def _nested(depth: int) -> bytes:
     return _TOKEN if depth == 0 else _TOKEN + rb"|\[%b(?:(?:%b)%b)*\]" % (_INNER, _nested(depth - 1), _INNER)
 
 
+# One character at a time: of `\s+` a run could be taken in 2**n ways, all of which are tried where something follows.
 _SPACE = rb"(?:\s|#[^\n\r]*[\n\r])*"
 _SUBJECT = rb"\s" + _SPACE + rb"(?:[^\s#<>\"'\[\]();,\\]+|<[^<>\"{}|^`\\\s]*>)(?=\s)"
 # A subject stands where a statement has just ended. The last alternative takes all that is left, so that the whole
@@ -73,7 +74,7 @@ _DIRECTIVE = rb"@(?:prefix\s+[^\s:<>#]*:|base)\s*<[^<>\s\\]*>\s*\.|(?i:prefix\s+
 _HEAD = re.compile(rb"(?:%b(?:%b))*" % (_SPACE, _DIRECTIVE))
 _HEAD_PARTS = re.compile(rb"#[^\n\r]*|(%b)" % _DIRECTIVE)
 _RELATIVE = re.compile(rb"<(?![A-Za-z][A-Za-z0-9+.-]*:)")
-_BLANK = re.compile(rb"(?:\s+|#[^\n\r]*[\n\r])*")
+_BLANK = re.compile(_SPACE)
 _LABEL = re.compile(
     rb"%b|(?<![^\s,(\0])_:(?P<label>\w(?:[\w.-]*[\w-])?)(?=[\s;,.)\]\0]|\Z)|_(?P<other>:)" % _TOKEN, re.ASCII
 )

@@ -128,7 +128,8 @@ def test_relative_names_mean_something_else_in_each_file() -> None:
     "text",
     ["[" * 50_000, '"""' + "a" * 100_000, "'\\" * 50_000, "[ :p " * 30_000, "<" * 90_000, ":T ; :p :" + "1a" * 50_000,
      ":T ; :p <urn:" + "1/" * 50_000 + "> .", ":T ; :p <http://a/" + "1" * 90_000 + "> .", ':T ; :p "' + '""' * 40_000,
-     ":T" + " ; :p _:x" * 10_000 + " .", ":T ; :p ( " + "1 " * 40_000 + ") .", ":T ; :p ( " + "( " * 40_000],
+     ":T" + " ; :p _:x" * 10_000 + " .", ":T ; :p ( " + "1 " * 40_000 + ") .", ":T ; :p ( " + "( " * 40_000,
+     ":T .\n" + " " * 90_000 + "x", ":T .\n" + "\n" * 90_000 + "x", ":T .\n" + "# #\n" * 20_000 + "x"],
 )  # fmt: skip
 def test_cutting_takes_no_longer_for_what_is_hostile(text: str) -> None:
     began = time.process_time()
