@@ -56,7 +56,7 @@ def run(given: argparse.Namespace) -> int:
     """0 when it is ended by Ctrl-C, SIGTERM or SIGHUP."""
     missing = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
     if missing:
-        raise InstallationError(f"{' and '.join(missing)} is missing; install the extra `serve`")
+        raise InstallationError(f"what serves pages is missing: {' and '.join(missing)}; install the extra `serve`")
     from selfconf import rendezvous
     from selfconf.api.membership import Membership
     from selfconf.serve import ServerOptions, refuse_exposure, serve_ecology

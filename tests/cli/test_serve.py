@@ -155,7 +155,7 @@ def test_without_the_extra_it_says_what_to_install(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    assert run(capsys, "serve").is_one_sentence("install the extra `serve`")
+    assert run(capsys, "serve").is_one_sentence("is missing: starlette and uvicorn; install the extra `serve`")
 
 
 def test_with_keys_it_is_shown_to_other_hosts_only_if_told_so(
