@@ -5,7 +5,8 @@ tasks are Turtle: their lines are shown to their authors, and their text is what
 these in another format is refused, with the command that converts it.
 
 Nothing is fetched: the parser of JSON-LD has no loader for remote contexts, and that of RDF/XML takes no external
-entities. Entities of XML within entities are refused, because their text may grow beyond all memory.
+entities. Entities of XML within entities, and such as stand for much text in many places, are refused: what they stand
+for may grow beyond all memory.
 """
 
 from __future__ import annotations
@@ -65,7 +66,11 @@ many `#`, would be tried in all ways.
 """
 _BEGINS_TURTLE = re.compile(_COMMENTS + rb"(?i:@?prefix|@?base)\s")
 """How Turtle begins, for certain: anything that looks like no other format may be Turtle."""
-_NESTED_ENTITY = re.compile(rb"""<!ENTITY\s+[^>"']*["'][^>"']*&(?!#|amp;|lt;|gt;|quot;|apos;)""")
+_ENTITY = re.compile(rb"""<!ENTITY\s+(?:%\s+)?([^\s"'<>]+)\s+(?:"([^"]*)"?|'([^']*)'?)""")
+"""An entity of XML: its name, and its text up to the quote that it begins with."""
+_REFERENCE = re.compile(rb"&(?!#|(?:amp|lt|gt|quot|apos);)([^\s;&<]*)")
+_LARGEST_GROWTH = 1 << 26
+"""Octets that all references to entities in a text may stand for."""
 
 
 def format_of(name: str, octets: bytes) -> RdfFormat:
@@ -101,8 +106,8 @@ def read_ontology(
     octets = octets.removeprefix(BOM_UTF8)
     check_utf_8(octets, source)
     found = format_of(source, octets)
-    if found is RDF_XML and _NESTED_ENTITY.search(octets):
-        raise TurtleError("an entity within an entity is not expanded; write it out", file=source)
+    if found is RDF_XML:
+        _check_entities(octets, source)
     if found not in (RDF_XML, JSON_LD):
         check_turtle_1_1(octets, source, found.parser)
     lines = _Lines(octets)
@@ -118,6 +123,18 @@ def read_ontology(
         raise _misnamed(octets, source, found) or _refused(error, source, found, lines) from None
     except MemoryError:
         raise TurtleError("a literal in it is larger than can be read", file=source) from None
+
+
+def _check_entities(octets: bytes, source: str) -> None:
+    """Raises TurtleError for entities of XML that refer to entities, or stand for more text than fits into memory."""
+    lengths: dict[bytes, int] = {}
+    for entity in _ENTITY.finditer(octets):
+        name, text = entity[1], entity[2] or entity[3] or b""
+        if _REFERENCE.search(text):
+            raise TurtleError("an entity within an entity is not expanded; write it out", file=source)
+        lengths[name] = max(len(text), lengths.get(name, 0))
+    if lengths and sum(lengths.get(one[1], 0) for one in _REFERENCE.finditer(octets)) > _LARGEST_GROWTH:
+        raise TurtleError("its entities stand for over 64 MiB of text, which is more than can be read", file=source)
 
 
 def _misnamed(octets: bytes, source: str, named: RdfFormat) -> TurtleError | None:

@@ -109,13 +109,24 @@ def test_the_triples_of_every_graph_of_an_ontology_count() -> None:
             (f"a.{form}", "\n# \udce9", f"a.{form}:2:3: this is not UTF-8: the byte 0xE9")
             for form in ("ttl", "nt", "rdf")
         ),
-        ("a.xml", '<!DOCTYPE a [<!ENTITY a "aa"><!ENTITY b "&a;&a;">]><rdf:RDF/>', "an entity within an entity"),
+        *(
+            ("a.xml", f'<!DOCTYPE a [<!ENTITY a "aa"><!ENTITY b {value}>]><rdf:RDF/>', "an entity within an entity")
+            for value in ('"&a;&a;"', "'&a;'", '"it\'s &amp; &a;"', "'a \"b\" &a;'", '"a > &a;"')
+        ),
     ],
 )
 def test_what_is_wrong_in_an_ontology_is_told_with_its_file_and_line(name: str, text: str, said: str) -> None:
     with pytest.raises(TurtleError) as caught:
         read_ontology(text.encode(errors="surrogateescape"), name, "file:///a")
     assert said in str(caught.value)
+
+
+def test_entities_are_expanded_up_to_a_bound() -> None:
+    head = XML.replace("\n", '<!DOCTYPE a [<!ENTITY a "urn:x:' + "x" * 100_000 + '">]>\n')
+    lamp = '<rdf:Description><a:p xmlns:a="urn:a:" rdf:resource="&a;"/></rdf:Description>'
+    assert len(list(read_ontology(f"{head}{lamp * 2}</rdf:RDF>".encode(), "a.rdf").triples())) == 2
+    with pytest.raises(TurtleError, match=r"a.rdf: its entities stand for over 64 MiB of text"):
+        read_ontology(f"{head}{lamp * 700}</rdf:RDF>".encode(), "a.rdf")
 
 
 @pytest.mark.parametrize(
