@@ -88,6 +88,7 @@ class Solutions(Tabular, Sequence[Mapping[str, Term]]):
 class Ecology(ABC):
     """Components that can play in a configuration, wherever their advertisements are: loaded, remote or living.
 
+    >>> home = read("examples/clock")
     >>> home.components
     component  types    inputs  outputs
     ---------  -------  ------  -------
@@ -157,6 +158,7 @@ class Ecology(ABC):
         Runs in a process of its own, which is ended after `seconds`; there are `rows` solutions or triples at most.
         Raises QueryError, and ProgrammerError for what is no text, no time and no number of rows.
 
+        >>> home = read("examples/clock")
         >>> home.query("ASK { ?c a rob:Display }")
         True
         """

@@ -64,6 +64,7 @@ class Wants:
 class Configuration:
     """Which components play which role (in template order), all connections and settings, the bindings by name.
 
+    >>> home = read("examples/clock")
     >>> answer = configure(template("examples/clock/tell-the-time.ttl"), home)
     >>> isinstance(answer, Configuration), answer.components
     (True, (<https://example.org/my-home#clock>, <https://example.org/my-home#display>))

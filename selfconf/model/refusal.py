@@ -254,6 +254,7 @@ Reason = Contradiction | ValueUnknown | TooFewEligible | InputUnfed | TooFewDist
 class Refusal:
     """No configuration: the reasons, the most likely cause first, near misses, relaxations, and a hint.
 
+    >>> home = read("examples/clock")
     >>> refusal = configure(template("examples/clock/tell-the-time.ttl").bind(room=":cellar"), home)
     >>> bool(refusal), str(refusal.reasons[0])
     (False, 'no component is eligible for the role screen')

@@ -34,9 +34,9 @@ LIVING = ("join(", "sites(")
 
 
 def namespace() -> dict[str, Any]:
-    """The names that an example may use: those of selfconf and its `testing`, `Component`, and `home`."""
+    """The names that an example may use: those of selfconf and its `testing`, and `Component`."""
     names = {name: getattr(room, name) for room in (sc, testing) for name in room.__all__}
-    return {**names, "Component": Component, "home": sc.read("examples/clock")}
+    return {**names, "Component": Component}
 
 
 def found_examples(module: ModuleType) -> Iterator[doctest.DocTest]:
