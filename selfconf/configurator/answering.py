@@ -42,9 +42,18 @@ def heed_answer(state: State, event: Answered) -> Reaction:
     if state.phase is Phase.DISMANTLING:
         return phases.released(rest)
     if event.call is Call.RESERVE and state.held[event.component].is_adopted:
-        # What a component says otherwise of its claim, it says again to the apply.
-        return phases.stand_down(rest) if _is_held_elsewhere(state, event) else deploying.proceed(rest)
+        return _answered_claim(rest, event)
     return deploying.confirmed(rest, event) if event.verdict is Verdict.DONE else _declined(rest, event)
+
+
+def _answered_claim(state: State, event: Answered) -> Reaction:
+    """A component that was adopted has answered its claim: what it says otherwise of it, it says again to the apply.
+
+    But one that has obeyed a newer epoch, by a configurator that was repairing, would have let go of the task by then.
+    """
+    if _is_held_elsewhere(state, event):
+        return phases.stand_down(state)
+    return deploying.proceed(state) if event.verdict is not Verdict.STALE else _declined(state, event)
 
 
 def _declined(state: State, event: Answered) -> Reaction:
@@ -68,10 +77,11 @@ def _declined(state: State, event: Answered) -> Reaction:
 
 
 def _told(state: State, event: Answered) -> State:
-    """Note that a component that has declined a reserve is not held by that."""
-    if event.verdict is None or event.call is not Call.RESERVE:
+    """Note that a component that has declined a reserve is not held by that; one that was adopted is to be claimed."""
+    held = state.held[event.component] if event.call is Call.RESERVE else None
+    if held is None or event.verdict is None or held.is_adopted:
         return state
-    return replace(state, held={**state.held, event.component: replace(state.held[event.component], asked=False)})
+    return replace(state, held={**state.held, event.component: replace(held, asked=False)})
 
 
 def _can_catch_up(event: Answered) -> bool:

@@ -84,8 +84,8 @@ def deploy(state: State) -> Reaction:
 
 
 def _unclaimed(state: State) -> list[IRI]:
-    """What was adopted and has heard nothing of this configurator: nothing was deployed since."""
-    return sorted(one for one, mine in state.held.items() if mine.is_adopted) if state.plan is None else []
+    """What was adopted, and has not answered this configurator in any deployment yet."""
+    return sorted(one for one, mine in state.held.items() if mine.is_adopted and mine.asked)
 
 
 def _to_be_confirmed(state: State, plan: Plan) -> dict[IRI, Held]:
@@ -176,14 +176,16 @@ def _may_begin(state: State, component: IRI, plan: Plan) -> bool:
 
 
 def as_claimed(state: State, answer: Answered) -> State:
-    """Note what a component that was adopted answers to its claim: one that is held and does not act starts in turn."""
+    """Note that a component that was adopted obeys its claim: one that is held and does not act starts in turn."""
     held = state.held.get(answer.component)
     if held is None or not held.is_adopted or answer.call is not Call.RESERVE:
         return state
-    if answer.verdict is not Verdict.DONE or answer.acts:
+    if answer.verdict is not Verdict.DONE:
         return state
-    at_rest = replace(held, life=answer.life, active=False, acts=False)
-    return replace(state, held={**state.held, answer.component: at_rest})
+    claimed = replace(held, asked=False)
+    if not answer.acts:
+        claimed = replace(claimed, life=answer.life, active=False, acts=False)
+    return replace(state, held={**state.held, answer.component: claimed})
 
 
 def confirmed(state: State, answer: Answered) -> Reaction:
@@ -295,8 +297,8 @@ def await_release(state: State, component: IRI) -> Reaction:
 
 
 def ask_again(state: State, component: IRI) -> Reaction:
-    """Ask once more for a component that is waited for."""
-    if (component, Call.RESERVE) in state.pending:
+    """Ask once more for a component that is waited for; none is that was adopted, and is being claimed."""
+    if (component, Call.RESERVE) in state.pending and not state.held[component].is_adopted:
         return _reserve(state, component)
     if (component, Call.APPLY) in state.pending and component in state.repeats:
         return apply_to(replace(state, pending=state.pending - {(component, Call.APPLY)}), (component,))

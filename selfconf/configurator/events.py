@@ -11,7 +11,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable
 from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Cause, Verdict
+from selfconf.protocol.messages import Cause, RecordedLoss, Verdict
 
 
 class Call(str, Enum):
@@ -33,10 +33,14 @@ class Accepted:
 
 @immutable
 class Adopted:
-    """A task that runs already is to be gone on with, whose configurator is gone."""
+    """A task that runs already is to be gone on with, whose configurator is gone.
+
+    That had lost some components, which live on, and was perhaps about to do without one that runs.
+    """
 
     epoch: int
     configuration: Configuration
+    lost: tuple[RecordedLoss, ...] = ()
 
 
 @immutable

@@ -104,9 +104,19 @@ def _adopted(state: State, event: Adopted) -> Reaction:
     if state.phase is not Phase.IDLE:
         return state, ()
     wires, values = wiring(event.configuration), parameter_values(event.configuration)
-    held = {c: Held(inputs, values[c], reserved=True, active=True, acts=True) for c, inputs in wires.items()}
-    adopted = replace(state, epoch=event.epoch - 1, target=event.configuration, held=held, watched=frozenset(wires))
-    return then([Watch(component) for component in wires], phases.discover(adopted))
+    held = {
+        c: Held(inputs, values[c], asked=True, reserved=True, active=True, acts=True) for c, inputs in wires.items()
+    }
+    lost = {one.component: Loss(one.cause, one.detail, one.life) for one in event.lost}
+    adopted = replace(
+        state, epoch=event.epoch - 1, target=event.configuration, held=held, watched=frozenset(wires), lost=lost
+    )
+    following = then([Watch(component) for component in wires], phases.discover(adopted))
+    for component in sorted(lost.keys() & held.keys()):
+        known, effects = following
+        # The ecology is news to this configurator: a search before it has answered does not count.
+        following = then(effects, losing.lose(replace(known, news=True), component, lost[component]))
+    return following
 
 
 def _appeared(state: State, event: Appeared) -> Reaction:

@@ -50,7 +50,10 @@ class Held:
     callers: Callers = field(default_factory=dict)
     life: str = ""
     asked: bool = False
-    """Whether it was asked to be held for this task, or no more, and has not answered: it may be held."""
+    """Whether it was asked to be held for this task, or no more, and has not answered: it may be held.
+
+    So is what was adopted, until it has obeyed a claim.
+    """
     reserved: bool = False
     """Whether it has said that it is held for this task."""
     active: bool = False
@@ -86,6 +89,12 @@ class Loss:
     """Whether that is known from the component: else it could not be reached, and may well be able to act."""
     startable: bool = False
     """Whether its process has ended, or is about to, and its site can start it again."""
+
+    @property
+    def lasts(self) -> bool:
+        """Whether it was lost for what is known of a life that goes on: it is lost until it lives anew."""
+        excused = self.busy or self.startable or self.cause is Cause.CRASH
+        return bool(self.life) and self.answered and not excused
 
 
 @immutable

@@ -275,23 +275,23 @@ class Keeper:
         self.runners[record.task], self._revisions[record.task] = runner, record.revision
         if record.configuration:
             try:
-                runner.adopt(recorded_configuration(record.configuration), record.epoch)
+                runner.adopt(recorded_configuration(record.configuration), record.epoch, record.lost)
                 return
             except PeerError as error:
                 log.error("the task %s begins anew, as its configuration is not to be read: %s", record.task, error)
         runner.start()
 
     def _report(self, task: str, event: RunEvent) -> None:
-        """Let every site know what runs, so that the next one can go on with it."""
+        """Let every site know what runs, and what was lost, so that the next one can go on with it."""
         log.info("%s: %s", task, event.act)
         known = self.folder.records.get(task)  # none if it has ended, and was forgotten meanwhile
-        if known is not None and isinstance(event, TaskRunning) and self._revisions.get(task) == known.revision:
-            record = replace(
-                known,
-                revision=known.revision + 1,
-                epoch=event.epoch,
-                configuration=configuration_record(event.configuration),
-            )
+        if known is None or self._revisions.get(task) != known.revision:
+            return
+        record = replace(known, lost=self.runners[task].recorded_losses)
+        if isinstance(event, TaskRunning):
+            record = replace(record, epoch=event.epoch, configuration=configuration_record(event.configuration))
+        if isinstance(event, TaskRunning) or record.lost != known.lost:
+            record = replace(record, revision=known.revision + 1)
             self._revisions[task] = record.revision
             self._learn(record)
             self._tell(record)

@@ -73,7 +73,7 @@ from selfconf.model.run_event import (
 )
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import safe_name, task_identity
-from selfconf.protocol.messages import Status, Wire
+from selfconf.protocol.messages import RecordedLoss, Status, Wire
 
 log = logging.getLogger(__name__)
 
@@ -148,11 +148,14 @@ class TaskRunner:
         self._pulse()
         self._step(Accepted(int(self.clock() * 1000)))
 
-    def adopt(self, configuration: Configuration, epoch: int) -> None:
-        """Go on with a task that runs, in that configuration since that epoch, and whose configurator is gone."""
+    def adopt(self, configuration: Configuration, epoch: int, lost: tuple[RecordedLoss, ...] = ()) -> None:
+        """Go on with a task that runs, in that configuration since that epoch, and whose configurator is gone.
+
+        That had lost some components, as `recorded_losses` of its runner said.
+        """
         self._liveness.audit()
         self._pulse()
-        self._step(Adopted(epoch, configuration))
+        self._step(Adopted(epoch, configuration, lost))
 
     def hand_over(self) -> None:
         """Leave everything as it runs to another configurator of the same task."""
@@ -166,6 +169,15 @@ class TaskRunner:
     def configuration(self) -> Configuration | None:
         """What is deployed, or being deployed."""
         return self.state.target
+
+    @property
+    def recorded_losses(self) -> tuple[RecordedLoss, ...]:
+        """What was lost and lives on as it was, so that another configurator would not find out by itself."""
+        return tuple(
+            RecordedLoss(component, loss.life, loss.cause, loss.detail)
+            for component, loss in sorted(self.state.lost.items())
+            if loss.lasts
+        )
 
     def rewire(self, rests: bool = False) -> None:
         """Tell those inside that are connected to what is outside that it has changed; `rests` as in an `Apply`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from selfconf.configurator import Discovered
+from selfconf.configurator import Appeared, Discovered
 from selfconf.deployment.components import Liveness
 from selfconf.deployment.holders import WithoutConfigurator, ask_holders
 from selfconf.deployment.task_context import TaskContext
@@ -79,6 +79,7 @@ class TaskDiscovery:
         if self._state().ended:
             return
         self._ecology.discovery = discovery
+        first = not self._ecology.followed
         self._liveness.discovered(discovery)
         self._tell(discovery)
         number = self._asked
@@ -86,10 +87,19 @@ class TaskDiscovery:
         held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared)
 
         def known() -> None:
+            if first:
+                self._heed_new_lives()
             if number == self._asked:
                 self._step(held)
 
-        self._liveness.select(self._state().held, known)
+        state = self._state()
+        self._liveness.select((*state.held, *state.lost) if first else state.held, known)
+
+    def _heed_new_lives(self) -> None:
+        """What the configurator before this one has lost may have begun another life before this one followed it."""
+        lives = {one: life for one in self._state().lost if (life := self._ecology.life(one)) is not None}
+        if lives:
+            self._step(Appeared(lives))
 
     def shareable(self, component: IRI) -> bool:
         found = self._ecology.discovery.found.get(component)

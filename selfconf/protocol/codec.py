@@ -32,6 +32,7 @@ from selfconf.protocol.json_values import (
     read_label,
     read_labels,
     read_log_lines,
+    read_losses,
     read_maybe_iri,
     read_moment,
     read_number,
@@ -236,6 +237,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (TaskRecord, "ontologies"): read_texts,
     (TaskRecord, "options"): read_sayable,
     (TaskRecord, "configuration"): read_sayable,
+    (TaskRecord, "lost"): read_losses,
 }
 
 _FIELDS: dict[type, tuple[tuple[str, Any, bool], ...]] = {

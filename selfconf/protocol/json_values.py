@@ -18,7 +18,7 @@ from selfconf.model.log_line import LONGEST_LINE, LogLine
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.model.wording import is_one_line, one_line
 from selfconf.protocol.keys import is_task_identity
-from selfconf.protocol.messages import Cause, SignalEncoding, Verdict, Wire
+from selfconf.protocol.messages import Cause, RecordedLoss, SignalEncoding, Verdict, Wire
 
 MOST_WIRES = 4096
 """How many outputs the inputs of a component can be set to follow in one call."""
@@ -57,6 +57,8 @@ def json_notation(value: object) -> object:
     """A value that JSON has no notation for, as one that it has: what `json` calls for such a value."""
     if isinstance(value, Wire):
         return value.component, value.output, value.period
+    if isinstance(value, RecordedLoss):
+        return value.component, value.life, value.cause, value.detail
     if isinstance(value, Wants):
         return {"inputs": sorted(value.inputs), "values": {name: encode_term(term) for name, term in value.values}}
     if isinstance(value, SignalEncoding):
@@ -262,6 +264,19 @@ def read_cause(value: object) -> Cause:
         return Cause(read_text(value))
     except ValueError:
         raise PeerError(f"{one_line(read_text(value), _QUOTED)!r} is no cause of a failure") from None
+
+
+def read_losses(value: object) -> tuple[RecordedLoss, ...]:
+    """Some components that a task has lost."""
+    return tuple(map(_read_loss, _read_list(value)))
+
+
+def _read_loss(value: object) -> RecordedLoss:
+    parts = _read_list(value)
+    if len(parts) != 4:
+        raise PeerError("a loss is a component, a life, a cause and a detail")
+    component, life, cause, detail = parts
+    return RecordedLoss(read_iri(component), read_label(life), read_cause(cause), read_remark(detail))
 
 
 def read_verdict(value: object) -> Verdict:

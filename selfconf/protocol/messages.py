@@ -385,6 +385,16 @@ class Notice:
 
 
 @immutable
+class RecordedLoss:
+    """A component that a task has lost and that lives on: in which life, and why."""
+
+    component: IRI
+    life: str
+    cause: Cause
+    detail: str = ""
+
+
+@immutable
 class TaskRecord:
     """A task that lives in the ecology: what the sites keep of it, and by which one of them goes on with it."""
 
@@ -411,6 +421,8 @@ class TaskRecord:
     """The newest epoch in which it was deployed; zero: never yet."""
     configuration: Mapping[str, Any] = field(default_factory=dict)
     """What is deployed, as `selfconf configure --format json` prints it; empty if nothing is."""
+    lost: tuple[RecordedLoss, ...] = ()
+    """What has failed and lives on: a site that goes on with the task does without it, until it lives anew."""
 
     def supersedes(self, known: TaskRecord | None) -> bool:
         """Whether this record counts, and not the one that is known of the same task: the end of a task is final."""

@@ -21,16 +21,17 @@ from selfconf.configurator.effects import (
 from selfconf.configurator.events import (
     Adopted,
     Answered,
+    Appeared,
     Call,
     Discovered,
     Failed,
     HandedOver,
 )
 from selfconf.configurator.starting_order import plan_of, wiring
-from selfconf.configurator.state import Held, Phase
+from selfconf.configurator.state import Held, Loss, Phase, Policy
 from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Cause, Verdict, Wire
+from selfconf.protocol.messages import Cause, RecordedLoss, Verdict, Wire
 from tests.configurator.builders import (
     ARM,
     CONTROL,
@@ -179,6 +180,19 @@ def test_a_task_that_is_adopted_goes_on_and_every_component_hears_for_whom() -> 
     assert {effect.epoch for effect in effects if isinstance(effect, ApplyTo)} == {500}
     assert history.all_answer() == [Running(navigation())]
     assert history.hear(Adopted(900, navigation())) == []
+
+
+@pytest.mark.parametrize("policy", Policy)
+def test_what_the_configurator_before_has_lost_does_not_count_until_it_lives_anew(policy: Policy) -> None:
+    lost = RecordedLoss(TRACKER, "1", Cause.FAIL, "lost Astrid")
+    history = History(replace(TASK, policy=policy, patient=True))
+    history.hear(Adopted(500, navigation(), (lost,)))
+    assert history.state.lost == {TRACKER: Loss(Cause.FAIL, "lost Astrid", "1")}
+    assert TRACKER not in history.state.held
+    history.hear(Appeared({TRACKER: "1"}))
+    assert history.state.lost.keys() == {TRACKER}
+    history.hear(Appeared({TRACKER: "2"}))
+    assert not history.state.lost
 
 
 @pytest.mark.parametrize("acts", [True, False])

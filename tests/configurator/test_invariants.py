@@ -53,7 +53,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Cause, Verdict
+from selfconf.protocol.messages import Cause, RecordedLoss, Verdict
 from tests.configurator.builders import (
     CONTROL,
     DRIVE,
@@ -74,6 +74,7 @@ SELF = Holder("go~1", 0, 0.0, "c3")
 ONE_OF_EACH: list[Event] = [
     Accepted(500),
     Adopted(500, navigation()),
+    Adopted(500, navigation(), (RecordedLoss(TRACKER, "1", Cause.FAIL), RecordedLoss(ODOMETRY, "1", Cause.HUNG))),
     HandedOver(),
     Discovered(),
     Discovered({TRACKER: HOLDERS[1], CONTROL: HOLDERS[5]}),
@@ -202,7 +203,7 @@ class Ledger:
                 assert component in self.watched
                 assert (epoch, state.phase) == (state.epoch, Phase.RESERVING)
                 if state.held[component].is_adopted:  # as it is
-                    assert before.plan is None
+                    assert before.held[component].asked
                     assert (inputs, values) == (before.held[component].inputs, before.held[component].values)
                     return
                 waking = any(call is Call.WAKE for _, call in state.pending)
@@ -345,12 +346,13 @@ def _names_a_loss(state: State, event: Composed) -> bool:
     return isinstance(event.outcome, Configuration) and bool(set(event.outcome.components) & set(state.lost))
 
 
-@given(histories(), st.sampled_from(Policy), st.booleans(), st.booleans())
+@given(histories(), st.sampled_from(Policy), st.booleans(), st.booleans(), st.sets(st.sampled_from((TRACKER, DRIVE))))
 def test_the_invariants_hold_in_every_history(
-    numbers: list[tuple[int, ...]], policy: Policy, patient: bool, adopted: bool
+    numbers: list[tuple[int, ...]], policy: Policy, patient: bool, adopted: bool, failed: set[IRI]
 ) -> None:
     ledger = Ledger(State(policy=policy, patient=patient, task="go~1"))
-    ledger.hear(Adopted(10, navigation()) if adopted else Accepted(10))
+    lost = tuple(RecordedLoss(component, "1", Cause.FAIL) for component in failed)
+    ledger.hear(Adopted(10, navigation(), lost) if adopted else Accepted(10))
     for drawn in numbers:
         event = event_of(ledger.state, drawn)
         if not (isinstance(event, Composed) and _names_a_loss(ledger.state, event)):

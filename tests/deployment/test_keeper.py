@@ -181,6 +181,39 @@ def test_nothing_else_stops_while_the_next_site_wakes_what_takes_the_place_of_an
     assert lab.active() == TASK | {"tracker"}
 
 
+@pytest.mark.parametrize("lives_anew", [False, True])
+def test_the_next_site_does_without_what_had_failed_until_it_lives_anew(tmp_path: Path, lives_anew: bool) -> None:
+    """The site ends in the midst of the repair, while what takes the place of the failed one is being started."""
+    lab = home(tmp_path)
+    lab.site("cellar", "odometry")
+    lab.component("odometry")
+    keepers = Keepers(lab, tmp_path / "disks")
+    keepers.hand_over(RECORD)
+    assert lab.until(lambda: bool(keepers.running()))
+    (keeper,) = keepers.running()
+    woken: list[MemoryBus] = []
+
+    def wake(node: MemoryBus) -> None:
+        if not woken:
+            node.later(GRACE + 1.0, lambda: lab.component("tracker"))
+        woken.append(node)
+
+    living_room(lab, "1", wake)
+    lab.let_pass(1.0)
+    failed = lab.components["odometry"]
+    failed.fail("lost")
+    lab.let_pass(0.5)
+    keepers.end(keeper)
+    if lives_anew:
+        lab.crash("odometry")
+        lab.component("odometry")
+    awaited = "odometry" if lives_anew else "tracker"
+    assert lab.until(lambda: lab.active() == TASK | {awaited}, 10.0)
+    lab.let_pass(3.0)
+    assert lab.active() == TASK | {awaited}
+    assert failed.said.count(("started",)) == 1
+
+
 def test_the_next_site_goes_on_though_its_clock_is_behind(keepers: Keepers) -> None:
     first = keeper_of(RECORD.task, "abc")
     keepers.end(first)

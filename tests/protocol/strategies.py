@@ -24,6 +24,7 @@ from selfconf.protocol.messages import (
     Moved,
     Notice,
     Page,
+    RecordedLoss,
     RefusedAttempt,
     Release,
     Reserve,
@@ -167,6 +168,7 @@ by_kind: dict[type, st.SearchStrategy[Any]] = {
         st.dictionaries(texts, plain, max_size=2),
         numbers,
         st.dictionaries(texts, plain, max_size=2),
+        st.lists(st.builds(RecordedLoss, iris, texts, st.sampled_from(Cause), texts), max_size=2).map(tuple),
     ),
 }
 """For each kind of message, any one of it."""
