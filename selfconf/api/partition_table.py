@@ -87,10 +87,9 @@ class RolePartition(Tabular):
         return "component", "eligible", "what keeps it out"
 
     def _cells(self) -> Iterator[list[str]]:
-        names = self._inquiry.task.names
+        names, held = self._inquiry.task.names, self.held
         for number, component in enumerate(self.eligible, 1):
-            held = self.held.get(component)
-            yield [names(component), str(number), "" if held is None else holder_text(held)]
+            yield [names(component), str(number), holder_text(held[component]) if component in held else ""]
         yield from ([names(one.component), "no", ", ".join(map(str, one.obstacles))] for one in self.excluded)
 
 
