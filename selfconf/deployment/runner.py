@@ -79,8 +79,10 @@ log = logging.getLogger(__name__)
 
 AT_LEISURE = 0.01
 """Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
-RETURN = 2.0
-"""Seconds for which a task that does not wait is not refused for lack of what has gone without a word: two leases."""
+RETURN = 3.0
+"""Seconds for which a task that does not wait is not refused for lack of what has gone without a word.
+
+By then that has turned itself off (`selfconf.deployment.components.calls.GONE`), so the refusal need not doubt it."""
 PULSE = 0.25
 """How often, in seconds, a configurator looks whether it has been suspended."""
 SUSPENDED = 1.0

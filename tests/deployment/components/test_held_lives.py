@@ -8,6 +8,7 @@ import pytest
 
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Urgency
+from selfconf.configurator import Phase
 from selfconf.deployment.components.calls import GONE
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail
@@ -53,6 +54,7 @@ def test_a_component_that_lives_may_be_out_of_control_though_a_process_of_it_has
     ended = encode(Fail(drive, "", 0, Cause.CRASH, "its process has ended with code 2"))
     lab.network.node().publisher(lab.keys.fail(drive), Urgency.EVENT).put(ended)
     assert lab.until(lambda: agent.status().owed == (drive,), 1.0)
+    assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
     lab.let_pass(2 * GONE)
     assert agent.status().owed == (drive,)
 

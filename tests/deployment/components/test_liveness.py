@@ -90,7 +90,7 @@ def test_a_component_that_is_restarted_while_it_acts_is_activated_and_set_anew(l
     assert lab.components["control"].said == [("goal", "(AT BEDROOM)"), ("started",)]
 
 
-@pytest.mark.parametrize("seconds", [0.3, 1.5])
+@pytest.mark.parametrize("seconds", [0.3, 1.5, 2.5])
 def test_components_that_are_out_of_sight_for_a_moment_do_not_end_a_task_that_does_not_wait(
     lab: Lab, seconds: float
 ) -> None:
