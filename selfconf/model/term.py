@@ -75,7 +75,7 @@ STRING = IRI(XSD_NAMESPACE + "string")
 _BARE = {
     XSD_NAMESPACE + "integer": re.compile(r"[+-]?[0-9]+"),
     XSD_NAMESPACE + "decimal": re.compile(r"[+-]?[0-9]*\.[0-9]+"),
-    XSD_NAMESPACE + "double": re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][+-]?[0-9]+"),
+    XSD_NAMESPACE + "double": re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)[eE][+-]?[0-9]+"),
     XSD_NAMESPACE + "boolean": re.compile("true|false"),
 }
 """What Turtle takes for a literal of a datatype as it stands."""

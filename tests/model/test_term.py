@@ -91,6 +91,11 @@ def test_a_literal_is_bare_in_turtle_only_where_turtle_reads_it_as_its_datatype(
     assert Literal(lexical, IRI(XSD_NAMESPACE + datatype)).turtle(lambda iri: iri.short) == written
 
 
+def test_a_double_of_many_digits_is_written_in_linear_time() -> None:
+    digits = "1" * 1_000_000  # hours, where two parts of a pattern could take each digit
+    assert Literal(digits, IRI(XSD_NAMESPACE + "double")).turtle(lambda iri: iri.short) == f'"{digits}"^^double'
+
+
 def test_a_literal_with_a_language_has_it_as_its_tag() -> None:
     assert Literal("hello", IRI("urn:langString"), "en").turtle(str) == '"hello"@en'
     assert str(Literal("hello", IRI("urn:langString"), "en")) == "hello"
