@@ -108,6 +108,8 @@ class State:
     """The identity of the task."""
     alone: bool = False
     """Whether no other configurator can go on with the task: this one has begun it, and it ends with this one."""
+    inside: bool = False
+    """Whether the task is the inside of a composite: where it is refused, the whole may do without the composite."""
     priority: int = 0
     phase: Phase = Phase.IDLE
     epoch: int = 0
@@ -192,7 +194,7 @@ class State:
     def may_await_return(self) -> bool:
         """Whether the end of the task waits for what has gone without a word: it may have been cut off for a moment."""
         gone = any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
-        return gone and not self.patient and self.put_off < MOST_PUT_OFF
+        return gone and not (self.patient or self.inside) and self.put_off < MOST_PUT_OFF
 
     @property
     def waits_for_news(self) -> bool:

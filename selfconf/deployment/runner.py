@@ -114,7 +114,12 @@ class TaskRunner:
         self.identity = TaskIdentity(task, request.priority, clock() if beginning is None else beginning)
         self.supervisor = self.keys.configurator_life(self.name, secrets.token_hex(4))
         self.state = State(
-            policy=request.policy, patient=request.patient, task=task, alone=alone, priority=self.identity.priority
+            policy=request.policy,
+            patient=request.patient,
+            task=task,
+            alone=alone,
+            inside=request.outside is not None,
+            priority=self.identity.priority,
         )
         self.since = clock()
         self.trouble: SelfconfError | None = None

@@ -86,8 +86,11 @@ def test_what_comes_and_goes_is_not_waited_for_for_ever() -> None:
     assert history.state.phase is Phase.DISMANTLING
 
 
-def test_a_task_that_waits_lets_go_of_what_it_holds_meanwhile() -> None:
-    history = lost(startable=False, patient=True)
+@pytest.mark.parametrize("state", [State(patient=True), State(inside=True)])
+def test_where_a_refusal_is_no_end_it_is_not_put_off(state: State) -> None:
+    """A task that waits lets go of what it holds meanwhile, and what a composite is part of may do without it."""
+    history = History(state).running()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH, "it is gone"))
     history.composed(REFUSAL)
     history.all_answer()
     assert history.state.phase is Phase.REFUSED
