@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from selfconf.api.task import template
+from selfconf.composites import InsideOfComposite
+from selfconf.deployment.components.liveness import AUDIT
 from selfconf.discovery import EcologyView
 from selfconf.model.run_event import ComponentActivated, ComponentLost, InputConnected
 from selfconf.model.term import IRI
@@ -57,6 +59,16 @@ def test_who_follows_a_composite_is_told_when_another_component_stands_behind_it
     assert (house.navigator.pose, house.navigator.source) == (["t2", "c1", "h1"], "t2")
     assert lost(run) == []
     assert house.navigator.active
+
+
+def test_who_has_not_been_told_finds_out_when_the_composite_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    house = House()
+    run = house.run(SERVICE)
+    monkeypatch.setattr(InsideOfComposite, "_tell_moved", lambda inside: None)  # the notice is lost
+    house.crash("t1")
+    house.ecology.advance(AUDIT)
+    assert (house.navigator.pose, house.navigator.source) == (["t2", "c1", "h1"], "t2")
+    assert lost(run) == []
 
 
 def test_an_output_that_falls_silent_inside_is_repaired_inside() -> None:

@@ -187,11 +187,15 @@ class Calls:
         self._report(ActivationSent(effect.component))
 
     def _acts(self, component: IRI, answer: CallAnswer) -> None:
-        """A component acts: connect others to what stands behind it, if that was not known before."""
-        if self._ends.moved(component, answer.outputs, answer.callers):
-            self._step(Rewired(component))  # before the answer: those that it calls hear of it, then all is complete
+        """A component acts: connect others to what stands behind it."""
+        self.heed_ends(component, answer)  # before the answer: those that it calls hear of it, then all is complete
         if not any(map(self._is_to_wait, self._held_back)):
             self._apply_held_back()
+
+    def heed_ends(self, component: IRI, answer: CallAnswer) -> None:
+        """Connect others to what stands behind a component by an answer of it, if that was not known before."""
+        if self._ends.moved(component, answer.outputs, answer.callers):
+            self._step(Rewired(component))
 
     def _fails_as_ended(self, component: IRI, call: Call) -> bool:
         """Whether a component that is to be called has ended; then it fails, and its site may start it again."""

@@ -36,7 +36,7 @@ ASK_SITE_AGAIN = 5.0
 NEWS_TOGETHER = 0.05
 """Seconds for which news of lives that no call waits for are collected: after a lost link there may be thousands."""
 AUDIT = 1.0
-"""Seconds between two looks at what runs: a component may have let go of its task, or have failed, unnoticed."""
+"""Seconds between two looks at what runs: a component may have let go of its task, failed or changed, unnoticed."""
 AUDITED = 20
 """How many components are looked at in one of them; they take turns."""
 SILENT_AUDITS = 3
@@ -211,6 +211,8 @@ class Liveness:
         elif answer.supervisor == self._calls.supervisor:
             if not answer.active:
                 self._step(Failed(component, life, Cause.FAIL, "it failed while it was cut off"))
+            else:
+                self._calls.heed_ends(component, answer)
         elif held is not None and held.confirmed and (answer.supervisor or not answer.active):
             self._reconnected()
 
@@ -234,7 +236,10 @@ class Liveness:
         self._audited = (self._audited + AUDITED) % len(held)
 
     def _audit(self, component: IRI, epoch: int, answer: CallAnswer | None) -> None:
-        """Judge a component that should act: one that has failed is lost, one that has let go is applied to anew."""
+        """Judge a component that should act: one that has failed is lost, one that has let go is applied to anew.
+
+        To one behind which others stand than was known, the rest is connected anew.
+        """
         held = self._state().held.get(component)
         if held is None or not self._runs_undisturbed(epoch):
             return
@@ -252,6 +257,8 @@ class Liveness:
             self._step(Reconnected())
         elif not answer.active:
             self._step(Failed(component, answer.life, Cause.FAIL, "it does not act any more"))
+        else:
+            self._calls.heed_ends(component, answer)  # its notice that others stand behind it may have been lost
 
     def _runs_undisturbed(self, epoch: int) -> bool:
         """Whether the configuration of an epoch runs, and this node is not, and was not just now, cut off."""
