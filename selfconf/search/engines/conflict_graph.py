@@ -3,7 +3,8 @@
 Where a need can be fed by one role alone, which has one slot, an option with the need excludes the options of that role
 which do not support it. So do two options that are one component, and two of a role that has one slot.
 
-A need that many options do not support, or that comes after many others, is left out: it stays a need.
+A need that many options do not support, or that comes after many others, is left out: it stays a need. So do all needs
+that a role alone feeds where most of them are such ones, as in a net of components that want what few others issue.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from selfconf.search.reduction import Option, ReducedProblem
 
 SHARE_UNFIT = 2
 """A need says little if at most one in this number of the options that could feed it do not."""
+SHARE_OFTEN = 2
+"""Of the needs that one role alone feeds one in this number has to be often supported, or none of them is looked at."""
 CONFLICTS_PER_OPTION = 200
 """How many conflicts are looked at, for each option."""
 
@@ -40,13 +43,12 @@ class ConflictGraph:
             self._by_needs(needs)
 
     def _by_needs(self, fed_by: Mapping[int, set[int]]) -> None:
-        fed_by = {source: often for source, needs in fed_by.items() if (often := self._often_supported(source, needs))}
         having = self._having(set[int]().union(*fed_by.values()))
         left = CONFLICTS_PER_OPTION * len(self.options)
         across = self.across
         for source, needs in fed_by.items():
             lacking = self._lacking(source, needs)
-            few = self._few(source)
+            few = _few(self.reduced.options[source])
             self.stated |= needs - lacking.keys()
             for need, numbers in lacking.items():
                 left -= len(numbers)
@@ -70,19 +72,6 @@ class ConflictGraph:
                 if need in having:
                     having[need].append(number)
         return having
-
-    def _few(self, source: int) -> int:
-        """Return how many options of a role do not support a need, at most, if it is to say much."""
-        return max(1, len(self.reduced.options[source]) // SHARE_UNFIT)
-
-    def _often_supported(self, source: int, needs: set[int]) -> set[int]:
-        """Return the needs that enough options of a role support to say much; all, where counting takes too long."""
-        supports = [option.kind.supports for option in self.reduced.options[source]]
-        if SHARE_UNFIT * sum(map(len, supports)) >= len(supports) * len(needs):
-            return needs
-        enough = len(supports) - self._few(source)
-        counted = Counter(chain.from_iterable(supports))
-        return {need for need in needs if counted[need] >= enough}
 
     def _lacking(self, source: int, needs: set[int]) -> dict[int, list[int]]:
         """Return for each need that is not supported by all options of a role those that do not support it."""
@@ -134,6 +123,28 @@ class ConflictGraph:
                 group.append((fitting & -fitting).bit_length() - 1)
                 common &= whole[group[-1]]
         return sorted(group)
+
+
+def often_supported(options: Sequence[Option], needs: set[int]) -> set[int]:
+    """Return the needs that enough options of a role support to say much; all, where counting takes too long.
+
+    None are returned if they are few: what few options issue is wanted of a role, and no conflict with all others.
+    """
+    supports = [option.kind.supports for option in options]
+    enough = len(supports) - _few(options)
+    most = sum(map(len, supports))
+    if SHARE_UNFIT * most >= len(supports) * len(needs):
+        return needs
+    if most * SHARE_OFTEN < enough * len(needs):
+        return set()
+    counted = Counter(chain.from_iterable(supports))
+    often = {need for need in needs if counted[need] >= enough}
+    return often if len(often) * SHARE_OFTEN >= len(needs) else set()
+
+
+def _few(options: Sequence[Option]) -> int:
+    """Return how many options of a role do not support a need, at most, if it is to say much."""
+    return max(1, len(options) // SHARE_UNFIT)
 
 
 def mask_of(numbers: Sequence[int]) -> int:

@@ -23,12 +23,12 @@ from operator import or_
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
-from selfconf.search.engines.conflict_graph import ConflictGraph
+from selfconf.search.engines.conflict_graph import ConflictGraph, often_supported
 from selfconf.search.engines.group_counting import ExclusiveGroups, GroupCounting
 from selfconf.search.reduction import NeedScope, ReducedProblem
 
-SHARE_FED_BY_ONE = 8
-"""One in this number of the needs at least has to be fed by one role alone, or they are not looked at."""
+SHARE_EXCLUDING = 16
+"""One in this number of all needs at least has to be fed by one role alone, and often, or none is looked at."""
 SHARE_APART = 2
 """The first options of roles have to differ in one in this number of the variables, or values are not looked at."""
 
@@ -143,7 +143,10 @@ def _connected(roles_of: Mapping[IRI, Sequence[int]]) -> Iterator[tuple[set[int]
 
 
 def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
-    """Return for each role with one slot the needs of other roles that it alone can feed, if these are many."""
+    """Return for each role with one slot the needs of other roles that it alone feeds, mostly by many of its options.
+
+    None are returned if these are few.
+    """
     scopes = reduced.needs.scopes
     asked = Counter(reduced.slots)
     alone: dict[NeedScope, int] = {}
@@ -158,4 +161,5 @@ def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
     for number in used:
         if scopes[number] in alone:
             found[alone[scopes[number]]].add(number)
-    return found if sum(map(len, found.values())) * SHARE_FED_BY_ONE >= len(used) else {}
+    often = {role: some for role, needs in found.items() if (some := often_supported(reduced.options[role], needs))}
+    return often if sum(map(len, often.values())) * SHARE_EXCLUDING >= len(used) else {}

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import combinations, pairwise
+from operator import eq, ne
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.search.families import distinct, iri, profile
-from benchmarks.search.further_families import colouring, counted
+from benchmarks.search.further_families import colouring, counted, in_pairs
 from selfconf.model.partition import ANY_VALUE, Candidate, Variable
 from selfconf.search.budget import Budget
 from selfconf.search.engines.encoding import Encoding
@@ -55,6 +58,23 @@ def test_groups_take_the_place_of_the_needs_that_they_state() -> None:
     given_ = pruned(reduced(colouring(12, 3, 4.0, 1)))
     used = {need for options in given_.options for option in options for need in option.kind.needs}
     assert exclusive_groups(given_).stated == used
+
+
+def in_step(excluding: int, following: int) -> ReducedProblem:
+    """Roles of seven components: some that are to differ pair by pair, and others, each of which follows the last."""
+    last = excluding + following
+    alike = dict.fromkeys(pairwise(range(excluding, last)), eq)
+    return reduced(in_pairs([range(7)] * last, {**dict.fromkeys(combinations(range(excluding), 2), ne), **alike}))
+
+
+def test_few_conflicts_among_many_needs_that_few_options_meet_stay_needs() -> None:
+    assert exclusive_groups(in_step(2, 0)).stated
+    found = exclusive_groups(in_step(2, 30))
+    assert (found.groups, found.stated) == ((), frozenset())
+
+
+def test_pigeonholes_are_counted_beside_many_needs_that_few_options_meet() -> None:
+    assert exclusive_groups(in_step(8, 100)).crowded == {*range(8)}
 
 
 def lectures(number: int, asked: int = 1) -> ReducedProblem:
