@@ -66,7 +66,7 @@ class MemoryBus:
         late = [*((action, True) for action in self._late_timers), *((action, False) for action in self._late_arrivals)]
         self._late_timers, self._late_arrivals = [], []
         for action, timer in late:
-            self.network.at_time(self.network.time, _again(self, action, timer))
+            self.network.before_all_else(_again(self, action, timer))  # what is due by now comes after it
 
     def spend(self, seconds: float) -> None:
         """Keep the thread of this node busy, as slow code in a callback does; its lives go on meanwhile."""

@@ -68,6 +68,8 @@ class Network:
         self._chance = random.Random(seed)
         self._events: list[tuple[float, int, Callable[[], None]]] = []
         self._count = itertools.count()
+        self._overdue = itertools.count(-(1 << 62))
+        """Numbers of events that come before all others of their time."""
         self._undone: set[int] = set()
         """The numbers of events that do not happen any more, though they are still among the others."""
         self._cut: set[tuple[int, int]] = set()
@@ -273,6 +275,10 @@ class Network:
         number = next(self._count)
         heapq.heappush(self._events, (time, number, action))
         return number
+
+    def before_all_else(self, action: Callable[[], None]) -> None:
+        """Have something happen before all that is due now, and after what was put there likewise."""
+        heapq.heappush(self._events, (self.time, next(self._overdue), action))
 
     def undo(self, number: int) -> None:
         """Have something not happen that has not happened yet: its time passes, but `stepped` is not called."""

@@ -117,6 +117,21 @@ def test_a_paused_node_handles_what_has_arrived_late_and_its_timers_first() -> N
     assert here.lives == [True]
 
 
+def test_what_a_node_has_missed_comes_before_what_happens_as_it_goes_on() -> None:
+    here = Watched()
+    here.network.pause(here.one)
+    here.put("missed")
+    here.let_pass(0.5)
+
+    def put_and_go_on() -> None:
+        here.one.wake_up(lambda: here.heard.append("new"))
+        here.network.resume(here.one)
+
+    here.network.after(0.0, put_and_go_on)
+    here.let_pass(0.1)
+    assert here.heard == ["missed", "new"]
+
+
 def test_a_node_that_is_paused_for_longer_than_the_lease_is_gone_and_comes_back() -> None:
     here = Watched()
     here.network.pause(here.one)
