@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from itertools import accumulate
+from typing import Any
 
 from selfconf.errors import QueryError
 
@@ -15,13 +16,15 @@ LONGEST_QUERY = 20_000
 """Characters of the query of a shape."""
 DEEPEST_QUERY = 100
 """How deep its brackets may nest."""
+# A string without an end is one up to where it has to end: to look for others in it would take quadratic time.
 _STRINGS_IRIS_COMMENTS = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*"""'
-    r"|'''(?:[^'\\]|\\.|'(?!''))*'''"
-    r'|"(?:[^"\\\n]|\\.)*"'
-    r"|'(?:[^'\\\n]|\\.)*'"
+    r'"""(?:[^"\\]|\\.|"(?!""))*(?:""")?'
+    r"|'''(?:[^'\\]|\\.|'(?!''))*(?:''')?"
+    r'|"(?:[^"\\\n]|\\.)*"?'
+    r"|'(?:[^'\\\n]|\\.)*'?"
     r"|<[^<>\"{}|^`\\\s]*>"
     r"|\#[^\n]*"
+    r"|\\."  # in a name, as `:a\#b`: what it escapes begins nothing
 )
 
 
@@ -37,9 +40,35 @@ def without(text: str, *marks: str) -> str:
 
 
 def only_reads(text: str) -> None:
-    """Raises QueryError for a query of a user that asks others, however that is spelt."""
-    if says(text, "SERVICE") or says(_expanded(text), "SERVICE"):
+    """Raises QueryError for a query of a user that asks others, however that is spelt.
+
+    Only a parser knows whether `<` begins an IRI or compares, and so what is a string or a comment behind it. So what
+    has the word anywhere is parsed, too.
+    """
+    expanded = _expanded(text)
+    asks = says(text, "SERVICE") or says(expanded, "SERVICE")
+    if not asks and "service" in expanded.lower():
+        from pyparsing import ParseBaseException
+        from rdflib.plugins.sparql.parser import parseQuery
+
+        try:
+            asks = _has_service(parseQuery(expanded))
+        except (ParseBaseException, RecursionError):
+            raise QueryError(
+                "this is no query that can be read, and it may ask others: it has the word SERVICE"
+            ) from None
+    if asks:
         raise QueryError("SERVICE is not allowed: a query reads the ecology and nothing else")
+
+
+def _has_service(parsed: Any) -> bool:
+    """Whether a part of a query, as rdflib parses it, asks others."""
+    from pyparsing import ParseResults
+
+    if getattr(parsed, "name", None) == "ServiceGraphPattern":
+        return True
+    parts = parsed.values() if isinstance(parsed, dict) else parsed if isinstance(parsed, list | ParseResults) else ()
+    return any(map(_has_service, parts))
 
 
 def fault(text: str) -> str | None:
