@@ -54,5 +54,8 @@ def test_strings_without_an_end_are_found_in_linear_time(marks: str) -> None:
 
 
 def test_the_query_of_a_shape_names_no_graph() -> None:
+    hidden = 'SELECT $this { $this ?p ?o FILTER(1<2)#>"""\n GRAPH <urn:x> { ?s ?p ?o } #"""\n }'
+    assert fault(hidden) == "The query of a role reads the advertisements and nothing else: leave out GRAPH."
+    assert fault("SELECT $this { $this ?p 'a graph from a service' }") is None
     assert fault("SELECT $this FROM <file:///etc/passwd> { $this ?p ?o }") is not None
     assert fault("SELECT $this { $this ?p ?o }") is None
