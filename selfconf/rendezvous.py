@@ -46,7 +46,8 @@ def usual_endpoints(ecology: str, secure: bool = False) -> list[str]:
     They depend on the ecology and the runtime folder alone, so that a site that takes the place of another is where
     the clients of the one before look for it. With keys they are `secure`, and others than without.
     """
-    digest = hashlib.blake2s(f"{runtime_folder()} {ecology}{' with keys' * secure}".encode(), digest_size=8).digest()
+    named = os.fsencode(runtime_folder()) + f" {ecology}{' with keys' * secure}".encode()  # the same in each locale
+    digest = hashlib.blake2s(named, digest_size=8).digest()
     first = int.from_bytes(digest, "big")
     protocol = "tls" if secure else "tcp"
     return [

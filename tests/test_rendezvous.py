@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -40,6 +42,16 @@ def test_the_usual_endpoints_of_an_ecology_are_the_same_each_time_and_its_own() 
         assert len(set(usual_endpoints(name))) == rendezvous.PLACES
         for endpoint in usual_endpoints(name):
             assert 1024 < int(endpoint.rpartition(":")[2]) < 32768
+
+
+def test_the_usual_endpoints_are_the_same_where_a_locale_cannot_say_how_the_folder_is_called(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", "/tmp/Häuser ☃")
+    plain = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    program = "from selfconf.rendezvous import usual_endpoints; print(*usual_endpoints('home'))"
+    said = subprocess.run([sys.executable, "-c", program], env=plain, capture_output=True, text=True, check=True)
+    assert said.stdout.split() == usual_endpoints("home")
 
 
 def test_an_endpoint_that_several_sites_share_is_found_once() -> None:

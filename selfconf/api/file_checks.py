@@ -68,7 +68,7 @@ class Remembered:
     def __init__(self, folder: Path, paths: Iterable[str], each: CheckEach = shared) -> None:
         """`paths` are what is validated: each selection of files has a memory of its own."""
         absolute = "\n".join(str(Path(path).absolute()) for path in paths)
-        self._file = folder / "validate" / f"{hashlib.blake2s(absolute.encode(), digest_size=8).hexdigest()}.json"
+        self._file = folder / "validate" / f"{hashlib.blake2s(os.fsencode(absolute), digest_size=8).hexdigest()}.json"
         self._each, self._versions = each, {"selfconf": _own_version(), **{name: version(name) for name in PROGRAMS}}
 
     def __call__(self, checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
