@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Return 0 once every configurator has answered, also if there is no task; else as `code_of_tasks`."""
-    from selfconf.render import table
+    from selfconf.render import duration, table
 
     with joined(given) as ecology:
         found = ecology.all_tasks()
@@ -38,7 +38,7 @@ def run(given: argparse.Namespace) -> int:
                 task.name,
                 str(task.priority),
                 task.phase,
-                f"{max(0.0, time.time() - task.beginning):.0f} s",
+                duration(time.time() - task.beginning),
                 task.configurator or "-",
                 task.lives_in,
                 ", ".join(component.short for component in task.components),

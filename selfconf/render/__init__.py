@@ -3,7 +3,8 @@
 Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`, `count`;
 `disobedience_text` names components that are out of control, and `disobedience` says that of one;
 `Names` shortens IRIs by prefixes, `short` without, `ecology_names` makes
-them for an ecology; `duration` is how long something has lasted. JSON: the functions that end in `_body`. Diagrams:
+them for an ecology; `duration` is how long something has lasted, `clock_time` when something was. JSON: the functions
+that end in `_body`. Diagrams:
 `mermaid`, and `diagram` for notebooks, whose tables and texts are `html_table`, `html_text`, `html_sections`.
 Two doors of their own are loaded where they are needed: `selfconf.render.run_events` words the events of a run, and
 `selfconf.render.why` what a history says of a moment.
@@ -23,7 +24,7 @@ from selfconf.render.bodies import (
 from selfconf.render.html import diagram, html_sections, html_table, html_text
 from selfconf.render.mermaid_diagram import mermaid
 from selfconf.render.names import Names, ecology_names, short
-from selfconf.render.tables import count, duration, table
+from selfconf.render.tables import clock_time, count, duration, table
 from selfconf.render.text import (
     Name,
     alternative_text,
@@ -42,6 +43,7 @@ __all__ = [
     "Names",
     "alternative_body",
     "alternative_text",
+    "clock_time",
     "configuration_body",
     "configuration_text",
     "consequences_body",

@@ -1,8 +1,9 @@
-"""Tables and counts in plain text."""
+"""Tables, counts and times in plain text."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from datetime import datetime
 
 
 def count(number: int, thing: str) -> str:
@@ -21,6 +22,19 @@ def duration(seconds: float) -> str:
         if count_of or not said:
             said.append(f"{count_of} {unit}")
     return " ".join(said)
+
+
+def clock_time(seconds: float) -> str:
+    """A moment, in seconds of the Unix epoch, as the clock here shows it: with the date, unless that is today's.
+
+    What a stranger says may be beyond any date; then the seconds are shown.
+    """
+    try:
+        moment = datetime.fromtimestamp(seconds).astimezone()
+    except (OverflowError, OSError, ValueError):
+        return f"{seconds:g} s"
+    today = moment.date() == datetime.now().astimezone().date()
+    return moment.strftime("%H:%M:%S" if today else "%Y-%m-%d %H:%M:%S")
 
 
 def table(

@@ -5,7 +5,6 @@ The names of ports and parameters are any text that strangers wrote: what would 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
@@ -19,6 +18,7 @@ from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import one_line
+from selfconf.render.tables import clock_time
 
 Name = Callable[[Term], str]
 """How a term is written: `Names` of a document, or `short`."""
@@ -180,7 +180,7 @@ def _missing(sites: Sequence[str]) -> list[str]:
 
 def holder_text(holder: Holder) -> str:
     """The holder of a component, and since when."""
-    return f"{holder} since {time.strftime('%H:%M:%S', time.localtime(holder.beginning))}"
+    return f"{holder} since {clock_time(holder.beginning)}"
 
 
 def _placed(sentence: str, fact: Reason | Relaxation | NearMiss) -> str:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
 from typing import Any
 
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.render.names import short
+from selfconf.render.tables import clock_time
 
 EventBody = Mapping[str, Any]
 
@@ -206,7 +206,7 @@ def _refused(found: TaskStory, term: str) -> list[str]:
     told = (found.task, *roles, *(str(miss.get("component")) for miss in near), *found.lost)
     if not any(_means(term, one) for one in (*told, *map(str, _bindings(found)))):
         return []
-    sentences = [f"{found.task} has no configuration, since {_clock(found.since)}"]
+    sentences = [f"{found.task} has no configuration, since {clock_time(found.since)}"]
     sentences += [f"  {reason.get('message')}" for reason in refusal.get("reasons", ())]
     sentences += [f"  {_name(component)}: {_loss(event)}" for component, event in found.lost.items()]
     sentences += [
@@ -264,7 +264,7 @@ def _name(thing: object) -> str:
 
 def _loss(event: EventBody) -> str:
     detail = f", {event['detail']}" if event.get("detail") else ""
-    return f"lost at {_clock(_time(event))} ({event.get('cause')}{detail})"
+    return f"lost at {clock_time(_time(event))} ({event.get('cause')}{detail})"
 
 
 def _time(event: EventBody) -> float:
@@ -274,10 +274,6 @@ def _time(event: EventBody) -> float:
 
 def _while(found: TaskStory, one: str) -> str:
     """Since when a role or a recruit has been what it is, and until when it was."""
-    return f"since {_clock(found.unchanged[one])}{'' if found.ended is None else f', until {_clock(found.ended)}'}"
-
-
-def _clock(seconds: float) -> str:
-    moment = datetime.fromtimestamp(seconds).astimezone()
-    today = moment.date() == datetime.now().astimezone().date()
-    return moment.strftime("%H:%M:%S" if today else "%Y-%m-%d %H:%M:%S")
+    return (
+        f"since {clock_time(found.unchanged[one])}{'' if found.ended is None else f', until {clock_time(found.ended)}'}"
+    )

@@ -1,10 +1,12 @@
-"""Tables and counts in plain text."""
+"""Tables, counts and times in plain text."""
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
+
 import pytest
 
-from selfconf.render import count, duration, table
+from selfconf.render import clock_time, count, duration, table
 
 
 def test_the_columns_of_a_table_are_as_wide_as_their_widest_cell() -> None:
@@ -48,6 +50,14 @@ def test_one_is_one(number: int, words: str) -> None:
 )
 def test_a_duration_has_its_two_largest_units(seconds: float, words: str) -> None:
     assert duration(seconds) == words
+
+
+def test_a_moment_of_another_day_has_its_date_and_one_beyond_any_date_its_seconds() -> None:
+    now = datetime.now().astimezone()
+    assert clock_time(now.timestamp()) in (now.strftime("%H:%M:%S"), now.strftime("%Y-%m-%d %H:%M:%S"))
+    before = now - timedelta(days=3)
+    assert clock_time(before.timestamp()) == before.strftime("%Y-%m-%d %H:%M:%S")
+    assert clock_time(1e300) == "1e+300 s"
 
 
 def test_cells_may_be_styled_without_a_change_of_their_widths() -> None:
