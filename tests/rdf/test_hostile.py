@@ -20,7 +20,7 @@ from selfconf.errors import AuthorError, QueryError
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Report
 from selfconf.model.wording import LONGEST_REMARK
-from selfconf.protocol import activation, codec, json_values
+from selfconf.protocol import activation, codec, json_values, task_queue
 from selfconf.query import process as asking
 from selfconf.query.endpoint import ENDPOINT_PATIENCE
 from selfconf.rdf import conformance as shacl
@@ -34,6 +34,7 @@ from selfconf.rdf.sparql import read_only as queries
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.turtle import formats
 from selfconf.rdf.validation import checking, file_check
 from selfconf.rdf.validation.checking import SourceText, validate_texts
 from selfconf.sdk import operations, payloads
@@ -275,6 +276,7 @@ LIMITS = (
     f"{shacl.SHARE_SECONDS:g} s, or twice what the slowest takes that conforms | the component is left out",
     f"{shacl.FAILURE_SECONDS:g} s for those left out, {shacl.SLOW_SECONDS:g} s for others",
     f"{shacl.SHAPE_SECONDS:g} s | `configure` says which shape",
+    f"entities of XML of one ontology stand for, of which none may refer to another | {formats.LARGEST_GROWTH >> 20} MiB",
     f"{entailment.LIMIT:g} s, `SELFCONF_OWL_RL_SECONDS`",
     f"{asking.ANSWER_SECONDS:g} s, `--seconds`",
     f"{asking.MOST_ROWS:,}, `--rows`",
@@ -307,5 +309,5 @@ def test_the_page_on_limits_names_the_limits_there_are() -> None:
         assert any(words in row for row in rows), words
     for row in rows:
         assert any(words in row for words in (*LIMITS, *WITHOUT_A_CONSTANT)), row
-    assert activation.MOST_HOLDING == activation.MOST_WAITING
+    assert activation.MOST_HOLDING == task_queue.MOST_WAITING
     assert f"{LONGEST_REMARK:,} characters at most" in page

@@ -69,7 +69,7 @@ _BEGINS_TURTLE = re.compile(_COMMENTS + rb"(?i:@?prefix|@?base)\s")
 _ENTITY = re.compile(rb"""<!ENTITY\s+(?:%\s+)?([^\s"'<>]+)\s+(?:"([^"]*)"?|'([^']*)'?)""")
 """An entity of XML: its name, and its text up to the quote that it begins with."""
 _REFERENCE = re.compile(rb"&(?!#|(?:amp|lt|gt|quot|apos);)([^\s;&<]*)")
-_LARGEST_GROWTH = 1 << 26
+LARGEST_GROWTH = 1 << 26
 """Octets that all references to entities in a text may stand for."""
 
 
@@ -133,8 +133,11 @@ def _check_entities(octets: bytes, source: str) -> None:
         if _REFERENCE.search(text):
             raise TurtleError("an entity within an entity is not expanded; write it out", file=source)
         lengths[name] = max(len(text), lengths.get(name, 0))
-    if lengths and sum(lengths.get(one[1], 0) for one in _REFERENCE.finditer(octets)) > _LARGEST_GROWTH:
-        raise TurtleError("its entities stand for over 64 MiB of text, which is more than can be read", file=source)
+    if lengths and sum(lengths.get(one[1], 0) for one in _REFERENCE.finditer(octets)) > LARGEST_GROWTH:
+        raise TurtleError(
+            f"its entities stand for over {LARGEST_GROWTH >> 20} MiB of text, which is more than can be read",
+            file=source,
+        )
 
 
 def _misnamed(octets: bytes, source: str, named: RdfFormat) -> TurtleError | None:
