@@ -276,7 +276,7 @@ LIMITS = (
     f"{shacl.SHARE_SECONDS:g} s, or twice what the slowest takes that conforms | the component is left out",
     f"{shacl.FAILURE_SECONDS:g} s for those left out, {shacl.SLOW_SECONDS:g} s for others",
     f"{shacl.SHAPE_SECONDS:g} s | `configure` says which shape",
-    f"entities of XML of one ontology stand for, of which none may refer to another | {formats.LARGEST_GROWTH >> 20} MiB",
+    f"of one ontology stand for, of which none may refer to another | {formats.LARGEST_GROWTH >> 20} MiB",
     f"{entailment.LIMIT:g} s, `SELFCONF_OWL_RL_SECONDS`",
     f"{asking.ANSWER_SECONDS:g} s, `--seconds`",
     f"{asking.MOST_ROWS:,}, `--rows`",
