@@ -205,6 +205,7 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
     budget = oracle.budget.part(SMALLEST_STEPS)
     with ClauseSolver(given, guarded=True) as clauses:
         constraint_of = {clauses.guards[one]: one for one in all_of(given) if one in clauses.guards}
+        irreducible = [clauses.guards[one] for one in known]
         clauses.prefer(clauses.guards.values())
 
         def held(wanted: Collection[int]) -> Collection[int] | Undecided | None:
@@ -213,7 +214,13 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
             for one in (None, *constraint_of):
                 if one in together:
                     continue
-                answer = clauses.solve([guard for guard in constraint_of if guard in together or guard == one], budget)
+                asked = [guard for guard in constraint_of if guard in together or guard == one]
+                left = set(irreducible).difference(asked)
+                if not left:
+                    continue
+                if len(left) == 1:  # it cannot hold with the others, which may be hard to find out anew
+                    asked.append(-left.pop())
+                answer = clauses.solve(asked, budget)
                 if isinstance(answer, Undecided):
                     return answer
                 if answer:
@@ -222,7 +229,7 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
                     return None
             return together
 
-        found, proved = smallest_core([clauses.guards[one] for one in known], [*constraint_of], held, budget)
+        found, proved = smallest_core(irreducible, [*constraint_of], held, budget)
         return tuple(constraint_of[guard] for guard in found), proved
 
 

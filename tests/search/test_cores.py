@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from benchmarks.search.families import distinct
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.requirement import InputFed
 from selfconf.search.budget import Budget
@@ -56,3 +57,11 @@ def test_once_enough_was_read_a_question_stays_open_even_where_no_search_would_b
     assert oracle.feasible(all_of(given_)) is False
     oracle.readings.steps = 0
     assert isinstance(oracle.feasible(all_of(given_)), Undecided)
+
+
+def test_that_roles_outnumber_their_components_is_not_found_out_anew_to_prove_a_reason_smallest() -> None:
+    found = refusal(LazyReduction(distinct(20, 19)))
+    assert isinstance(found, Refusal)
+    (reason,) = found.reasons
+    assert found.smallest, "pigeonholes are hard for a solver, but that one role fewer has components enough is not"
+    assert len(reason.roles) == 20

@@ -9,6 +9,8 @@ is left out is a further correction set. An irreducible set that is known bounds
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from functools import reduce
+from operator import or_
 from typing import TypeVar
 
 from selfconf.model.refusal import Undecided
@@ -28,8 +30,10 @@ def smallest_core(
     `held` returns a set that can hold together and that nothing can join, with the members asked for; None if these
     cannot.
     """
-    place = {one: number for number, one in enumerate(universe)}
-    corrections: list[frozenset[int]] = []
+    bit_of = {one: 1 << number for number, one in enumerate(universe)}
+    everything = (1 << len(universe)) - 1
+    corrections: list[int] = []
+    """Each as a bit mask of the members that are left out."""
     size = 1
     while size < len(known):
         hitting = _hitting_set(corrections, size, budget)
@@ -38,50 +42,52 @@ def smallest_core(
         if hitting is None:
             size += 1
             continue
-        answer = held([universe[number] for number in hitting])
+        members = [one for one, bit in bit_of.items() if bit & hitting]
+        answer = held(members)
         if isinstance(answer, Undecided):
             return known, False
         if answer is None:
-            return [universe[number] for number in sorted(hitting)], True
-        corrections.append(frozenset(range(len(universe))) - {place[one] for one in answer})
-        corrections.sort(key=len)
+            return members, True
+        corrections.append(everything & ~sum(bit_of[one] for one in answer))
+        corrections.sort(key=int.bit_count)
     return known, True
 
 
-def _hitting_set(sets: Sequence[frozenset[int]], size: int, budget: Budget) -> set[int] | Undecided | None:
+def _hitting_set(sets: Sequence[int], size: int, budget: Budget) -> int | Undecided | None:
     """Return a set of at most this size that has a member of each set, depth first; None if there is none.
 
-    The sets are sorted by size, so those of one member come first: these members are in every such set.
+    All of them are bit masks. The sets are sorted by size, so those of one member come first: these members are in
+    every such set.
     """
-    chosen = set[int]().union(*(some for some in sets if len(some) == 1))
-    rest = [some for some in sets if some.isdisjoint(chosen)]
-    if len(chosen) + _disjoint(rest) > size:
+    chosen = reduce(or_, (some for some in sets if some.bit_count() == 1), 0)
+    rest = [some for some in sets if not some & chosen]
+    if chosen.bit_count() + _disjoint(rest) > size:
         return None
-    trying: list[tuple[int, list[int]]] = []
-    """For each set that was open: its member that is chosen, and those to be tried after it, the next one last."""
+    trying: list[tuple[int, int, int]] = []
+    """For each set that was open: its place, its members that are yet to be tried, and what was chosen before."""
+    place = 0
     while True:
         if budget.steps == 0:
             return Undecided(0)
         budget.spend(1)
-        open_ = next((some for some in rest if some.isdisjoint(chosen)), None)
-        if open_ is None:
+        while place < len(rest) and rest[place] & chosen:
+            place += 1
+        if place == len(rest):
             return chosen
-        left = sorted(open_, reverse=True) if len(chosen) < size else []
+        left = rest[place] if chosen.bit_count() < size else 0
         while not left:
             if not trying:
                 return None
-            member, left = trying.pop()
-            chosen.discard(member)
-        chosen.add(left[-1])
-        trying.append((left.pop(), left))
+            place, left, chosen = trying.pop()
+        trying.append((place, left & (left - 1), chosen))
+        chosen |= left & -left
 
 
-def _disjoint(sets: Sequence[frozenset[int]]) -> int:
+def _disjoint(sets: Sequence[int]) -> int:
     """Return how many sets have no member in common, taken one after the other: so many members hit them at least."""
-    met: set[int] = set()
-    found = 0
+    met = found = 0
     for some in sets:
-        if met.isdisjoint(some):
+        if not met & some:
             met |= some
             found += 1
     return found
