@@ -82,10 +82,10 @@ def _all_declared(advertisement: Advertisement) -> bool:
     """Whether the text of an advertisement names no term that there is not: most are spared a closer look."""
     return isinstance(advertisement, LoadedAdvertisement) and all(
         _declared(term, base)
-        for statement in advertisement.statements
+        for text in (statement.text for statement in advertisement.statements)
         for base, named in _NAMED.items()
-        if base in statement.text
-        for term in named.findall(statement.text)
+        if base in text
+        for term in named.findall(text)
     )
 
 
