@@ -20,7 +20,11 @@ from selfconf.ros2 import MessageError
 
 CHANGE, STATE, EVENT = "change_state", "get_state", "transition_event"
 """The names of the services and of the topic, below that of the node."""
-LIFECYCLE_TYPES = {CHANGE: "lifecycle_msgs/srv/ChangeState", STATE: "lifecycle_msgs/srv/GetState"}
+LIFECYCLE_TYPES = {
+    CHANGE: "lifecycle_msgs/srv/ChangeState",
+    STATE: "lifecycle_msgs/srv/GetState",
+    EVENT: "lifecycle_msgs/msg/TransitionEvent",
+}
 INACTIVE, ACTIVE = 2, 3
 STEPS = {1: (1, "configure"), INACTIVE: (3, "activate")}
 """The transition towards the active state from unconfigured and inactive, by the number of the state."""
@@ -46,14 +50,15 @@ def lifecycle_of(
 ) -> LifecycleEndpoints | None:
     """By what a node of a full name is a lifecycle node; None if it is none."""
     below = name.strip("/")
-    change, state = (services.get(f"{below}/{service}") for service in (CHANGE, STATE))
-    if (
-        change is None
-        or state is None
-        or (change.type.name, state.type.name) != (LIFECYCLE_TYPES[CHANGE], LIFECYCLE_TYPES[STATE])
-    ):
+
+    def endpoint(part: str, among: Mapping[str, RosEndpoint]) -> RosEndpoint | None:
+        found = among.get(f"{below}/{part}")
+        return found if found is not None and found.type.name == LIFECYCLE_TYPES[part] else None
+
+    change, state = endpoint(CHANGE, services), endpoint(STATE, services)
+    if change is None or state is None:
         return None
-    return LifecycleEndpoints(change, state, topics.get(f"{below}/{EVENT}"))
+    return LifecycleEndpoints(change, state, endpoint(EVENT, topics))
 
 
 class NodeLifecycle:

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from selfconf import ros2
+from selfconf.bridging.ros2.lifecycle import LIFECYCLE_TYPES, lifecycle_of
+from selfconf.bridging.ros2.tokens import RosEndpoint
 from selfconf.bus.port import Urgency
 from selfconf.protocol.messages import Apply, Release, Reserve
 from tests.bridging.ros2.nodes import DOMAIN, BridgedDomain, StandIn, bridging_domain, node
@@ -151,3 +153,19 @@ def test_a_node_that_leaves_the_active_state_by_itself_has_failed(living: Living
 
         assert until(fails)
         assert found.causes() == ["the lifecycle node /map has become unconfigured"]
+
+
+@pytest.mark.parametrize("part", LIFECYCLE_TYPES)
+def test_what_is_only_called_like_a_part_of_a_lifecycle_node_is_none(part: str) -> None:
+    """A text on a topic of that name says nothing of transitions."""
+
+    def parts(types: dict[str, str]) -> dict[str, RosEndpoint]:
+        kinds = {name: ros2.usual_type(kind) for name, kind in types.items()}
+        return {f"map/{name}": RosEndpoint(1, "", f"/map/{name}", kind) for name, kind in kinds.items() if kind}
+
+    whole, strange = parts(LIFECYCLE_TYPES), parts({**LIFECYCLE_TYPES, part: "std_msgs/msg/String"})
+    found = lifecycle_of("/map", whole, whole)
+    assert found is not None
+    assert found.event is not None
+    odd = lifecycle_of("/map", strange, strange)
+    assert odd == (found._replace(event=None) if part == "transition_event" else None)
