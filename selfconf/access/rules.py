@@ -194,8 +194,8 @@ def _other_site(keys: Keys, principal: Principal, components: Collection[IRI], s
     asks = (*keys.all_but_operations(), *map(keys.any_operation, vouched), any_ecology())
     return Access(
         principal.common_name,
-        f"another site: speaks for itself, the {len(vouched)} components that it advertises, and the configurators that"
-        " are connected to it; hears everything, and asks for operations as these components",
+        f"another site: speaks for itself, the components that it advertises ({len(vouched)}), and the configurators"
+        " that are connected to it; hears everything, and asks for operations as these components",
         says=tuple(said),
         asked=(*keys.everything(), any_ecology()),
         hears=asks,
