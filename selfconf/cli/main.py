@@ -94,12 +94,16 @@ class Parser(argparse.ArgumentParser):
             self.exit(2, f"{self.prog}: {reason(error)}\n")
 
 
-class Listed(Parser):
-    """Stands for the commands that are listed, but not loaded: to make a parser for each takes longer than to parse."""
+class CommandLine(Parser):
+    """Takes a command, whose own parser takes what stands after it."""
 
-    def parse_known_args(self, *_: object, **__: object) -> NoReturn:
-        """End with exit code 2: only what is typed before a command keeps it from being loaded."""
-        self.error("the first word is the command, and options stand after it")
+    def parse_known_args(  # type: ignore[override]  # of its overloads one is used here
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse the arguments; an option before the command is none, for its value would be taken for the command."""
+        if args and args[0].startswith("-") and args[0] not in self._option_string_actions:
+            self.error("the first word is the command, and options stand after it")
+        return super().parse_known_args(args, namespace)
 
 
 class Version(argparse.Action):
@@ -136,7 +140,7 @@ def command_parser(name: str, subparsers: argparse._SubParsersAction[Parser], se
 def parser(names: Collection[str] = tuple(COMMANDS), settings: Settings | None = None) -> Parser:
     """The parser of the command line; commands that are not among the names are listed, but not loaded."""
     settings = settings or Settings()
-    top = Parser(
+    top = CommandLine(
         prog="selfconf",
         description="Robots, sensors and home devices that wire themselves.",
         epilog="example:\n  selfconf configure examples/navigate.ttl --ads examples/peis-home"
@@ -145,8 +149,8 @@ def parser(names: Collection[str] = tuple(COMMANDS), settings: Settings | None =
         allow_abbrev=False,
     )
     top.add_argument("--version", action=Version, nargs=0, help="show the version and exit")
-    subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    listed = Listed(prog="selfconf")
+    subparsers = top.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=Parser)
+    listed = Parser(prog="selfconf")  # of what is not loaded: a parser for each takes longer than to parse
     for name, does in COMMANDS.items():
         if name in names:
             command_parser(name, subparsers, settings)

@@ -71,6 +71,7 @@ def test_a_command_that_there_is_not_is_misuse(capsys: pytest.CaptureFixture[str
         ([], "COMMAND"),
         (["validate", "--formt"], "see `selfconf validate --help`"),
         (["--debug", "validate", "t.ttl"], "the first word is the command, and options stand after it"),
+        (["--ads", "t.ttl", "validate"], "the first word is the command, and options stand after it"),
         (["configure", "t.ttl", "--strategy", "worst"], "'worst'"),
         (["run", "t.ttl", "--priority", "9" * 23], "a whole number from -1000000 to 1000000"),
         (["run", "t.ttl", "--priority", "high"], "'high' is no priority"),
