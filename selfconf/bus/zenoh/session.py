@@ -35,6 +35,8 @@ from selfconf.protocol.endpoints import (
     with_settings,
 )
 
+PANIC = "PanicException"
+"""The class of a panic of Zenoh, which no module exports."""
 LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
 ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
@@ -102,6 +104,12 @@ def open_session(
             raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
         what = "no site answers at" if mode == "client" else "cannot listen on"
         raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
+    except BaseException as error:  # a panic of Zenoh is no Exception
+        if type(error).__name__ != PANIC:
+            raise
+        raise NetworkError(
+            f"Zenoh cannot begin ({error}); may this program open enough files (`ulimit -n`), and start threads?"
+        ) from None
 
 
 def with_port(endpoint: str) -> str:

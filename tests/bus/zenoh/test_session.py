@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import socket
+import subprocess
+import sys
 import time
 from contextlib import ExitStack
 from pathlib import Path
@@ -75,3 +77,21 @@ def test_two_routers_cannot_listen_on_one_endpoint() -> None:
             open_session("router", listen=[endpoint])
     finally:
         first.close()
+
+
+@pytest.mark.process
+def test_a_panic_of_zenoh_is_said_in_a_sentence() -> None:
+    """With so few descriptors its threads cannot begin."""
+    few = (
+        "import resource\n"
+        "from selfconf.bus.zenoh.session import open_session\n"
+        "from selfconf.errors import NetworkError\n"
+        "resource.setrlimit(resource.RLIMIT_NOFILE, (8, 8))\n"
+        "try:\n"
+        "    open_session('router', ['tcp/127.0.0.1:0'])\n"
+        "except NetworkError as error:\n"
+        "    print(error)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", few], capture_output=True, text=True, timeout=60, check=False)
+    assert "Zenoh cannot begin" in done.stdout, done.stderr[-500:]
+    assert "ulimit -n" in done.stdout
