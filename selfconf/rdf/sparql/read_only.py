@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import re
+import sys
 from collections.abc import Iterable
 from itertools import accumulate
 from typing import Any
@@ -18,6 +19,8 @@ LONGEST_QUERY = 20_000
 """Characters of the query of a shape."""
 DEEPEST_QUERY = 100
 """How deep its brackets may nest."""
+CALLS = 20_000
+"""How deep the calls of the parser may nest: for each triple after another it takes some ten."""
 _PARTS = {"SERVICE": "ServiceGraphPattern", "FROM": "DatasetClause", "GRAPH": "GraphGraphPattern"}
 """What rdflib calls the parts of a query that begin with a keyword."""
 # A string without an end is one up to where it has to end: to look for others in it would take quadratic time.
@@ -49,7 +52,9 @@ def only_reads(text: str) -> None:
     try:
         asks = any(says(each, "SERVICE") for each in (text, expanded)) or "SERVICE" in _hidden(expanded, ("SERVICE",))
     except ValueError:
-        raise QueryError("this is no query that can be read, and it may ask others: it has the word SERVICE") from None
+        raise QueryError(
+            "this query cannot be parsed, or not so deep, and it may ask others: it has the word SERVICE"
+        ) from None
     if asks:
         raise QueryError("SERVICE is not allowed: a query reads the ecology and nothing else")
 
@@ -74,10 +79,14 @@ def _hidden(expanded: str, words: Iterable[str]) -> set[str]:
             for part in parsed.values() if isinstance(parsed, dict) else parsed:
                 visit(part)
 
+    before = sys.getrecursionlimit()
     try:
+        sys.setrecursionlimit(max(before, CALLS))
         visit(parseQuery(expanded))
     except (ParseBaseException, RecursionError):
         raise ValueError("no query") from None
+    finally:
+        sys.setrecursionlimit(before)
     return {word for word in mentioned if _PARTS[word] in found}
 
 

@@ -43,8 +43,18 @@ def test_a_query_that_has_the_word_and_asks_no_other_machine_is_answered(said: s
     only_reads(f"PREFIX : <urn:> SELECT * {{ ?s ?p {said}\n }}")
 
 
+def test_a_long_query_that_has_the_word_is_parsed_to_its_end() -> None:
+    """The parser nests its calls with each triple."""
+    many = "?s a <urn:Room> . " * 300
+    only_reads(f"SELECT * {{ {many} ?s a <urn:CustomerService> }}")
+    with pytest.raises(QueryError, match="SERVICE is not allowed"):
+        only_reads(f"SELECT * {{ {many} FILTER(1<2)#>\nSERVICE <urn:x> {{}} }}")
+    with pytest.raises(QueryError, match="not so deep"):
+        only_reads("ASK " + "{" * 100_000 + "}" * 100_000 + " # service")
+
+
 def test_what_has_the_word_and_cannot_be_parsed_is_refused() -> None:
-    with pytest.raises(QueryError, match="no query that can be read"):
+    with pytest.raises(QueryError, match="cannot be parsed"):
         only_reads("SELECT * { ?s ?p <urn:x#Service>")
 
 
