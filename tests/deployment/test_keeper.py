@@ -145,9 +145,11 @@ def test_a_site_that_was_away_goes_on_again_without_stopping_anything(
     assert keepers.lab.active() == TASK | {"odometry" if repaired else "tracker"}
 
 
-@pytest.mark.parametrize("how", ["ended", "frozen"])
-def test_nothing_else_stops_while_the_next_site_wakes_what_takes_the_place_of_another(tmp_path: Path, how: str) -> None:
-    """That takes longer than the grace of the components; and the first site may be back before it is done."""
+def kept_beside_a_slow_tracker(tmp_path: Path) -> tuple[Keepers, str, Bus]:
+    """A task that runs with odometry, the site that keeps it, and that of odometry.
+
+    The tracker, which can take its place, is dormant, and takes longer to start than the grace of the components.
+    """
     lab = home(tmp_path)
     cellar = lab.site("cellar", "odometry").bus
     lab.component("odometry")
@@ -164,6 +166,14 @@ def test_nothing_else_stops_while_the_next_site_wakes_what_takes_the_place_of_an
 
     living_room(lab, "1", wake)
     lab.let_pass(1.0)
+    return keepers, keeper, cellar
+
+
+@pytest.mark.parametrize("how", ["ended", "frozen"])
+def test_nothing_else_stops_while_the_next_site_wakes_what_takes_the_place_of_another(tmp_path: Path, how: str) -> None:
+    """That takes longer than the grace of the components; and the first site may be back before it is done."""
+    keepers, keeper, cellar = kept_beside_a_slow_tracker(tmp_path)
+    lab = keepers.lab
     said = {name: list(lab.components[name].said) for name in ("sonar", "encoder")}
     node = keepers.buses[keeper]
     assert isinstance(node, MemoryBus)
@@ -184,22 +194,8 @@ def test_nothing_else_stops_while_the_next_site_wakes_what_takes_the_place_of_an
 @pytest.mark.parametrize("lives_anew", [False, True])
 def test_the_next_site_does_without_what_had_failed_until_it_lives_anew(tmp_path: Path, lives_anew: bool) -> None:
     """The site ends in the midst of the repair, while what takes the place of the failed one is being started."""
-    lab = home(tmp_path)
-    lab.site("cellar", "odometry")
-    lab.component("odometry")
-    keepers = Keepers(lab, tmp_path / "disks")
-    keepers.hand_over(RECORD)
-    assert lab.until(lambda: bool(keepers.running()))
-    (keeper,) = keepers.running()
-    woken: list[MemoryBus] = []
-
-    def wake(node: MemoryBus) -> None:
-        if not woken:
-            node.later(GRACE + 1.0, lambda: lab.component("tracker"))
-        woken.append(node)
-
-    living_room(lab, "1", wake)
-    lab.let_pass(1.0)
+    keepers, keeper, _ = kept_beside_a_slow_tracker(tmp_path)
+    lab = keepers.lab
     failed = lab.components["odometry"]
     failed.fail("lost")
     lab.let_pass(0.5)
