@@ -15,6 +15,7 @@ import errno
 import json
 import os
 import random
+import resource
 import socket
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,6 +24,7 @@ from typing import Any
 import zenoh
 
 from selfconf.bus.credentials import Credentials
+from selfconf.bus.zenoh.descriptors import open_descriptors
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
@@ -48,6 +50,9 @@ opens a hundred connections and stays silent would have all the time."""
 SHARED_FROM = 1 << 15
 """From how many bytes on a payload goes through shared memory; smaller ones are as fast through a socket."""
 SHARED_MEMORY = Path("/dev/shm")
+FREE_DESCRIPTORS = 32
+"""How many files a program must still be free to open: a session takes about twenty, and some for its first links.
+With fewer Zenoh does not fail: it may hang, or abort the process."""
 _PORTS_TRIED = 100
 ENOUGH_SHARED = 256_000_000
 """Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
@@ -88,12 +93,15 @@ def open_session(
 ) -> Any:
     """Open a session. Raises NetworkError for an endpoint that is none or taken, and where no router answers a client.
 
+    It is raised as well where this program may not open enough files.
+
     With `connect_seconds` a client tries for that long, otherwise each endpoint once. A router does not wait for those
     that it connects to. With `shared_memory` large payloads go through that to others on this machine that have it too.
     With `security` all links are mutual TLS.
     """
     for endpoint in (*listen, *connect):
         _check_endpoint(endpoint, security)
+    _check_descriptors()
     begin_log()
     config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory(), security)
     try:
@@ -107,9 +115,7 @@ def open_session(
     except BaseException as error:  # a panic of Zenoh is no Exception
         if type(error).__name__ != PANIC:
             raise
-        raise NetworkError(
-            f"Zenoh cannot begin ({error}); may this program open enough files (`ulimit -n`), and start threads?"
-        ) from None
+        raise NetworkError(f"Zenoh cannot begin ({error}); may this program start threads (`ulimit -u`)?") from None
 
 
 def with_port(endpoint: str) -> str:
@@ -213,6 +219,15 @@ def _check_endpoint(endpoint: str, security: Security | None) -> None:
         raise NetworkError(f"{endpoint} is reached with keys only; give {setting('keys', 'DIR')}, or set SELFCONF_KEYS")
     if security is not None and protocol == "tcp":
         raise NetworkError(f"{endpoint} is without keys, and keys are given; write tls/{endpoint.partition('/')[2]}")
+
+
+def _check_descriptors() -> None:
+    most, opened = resource.getrlimit(resource.RLIMIT_NOFILE)[0], open_descriptors()
+    if most != resource.RLIM_INFINITY and most - opened < FREE_DESCRIPTORS:
+        raise NetworkError(
+            f"Zenoh cannot begin: this program may open {most} files, has opened {opened}, and needs "
+            f"{FREE_DESCRIPTORS} more; allow more with `ulimit -n`"
+        )
 
 
 def _no_endpoint(said: str) -> NetworkError:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, open_session, with_port
-from selfconf.bus.zenoh.session import HANDSHAKE_MS
+from selfconf.bus.zenoh.session import FREE_DESCRIPTORS, HANDSHAKE_MS
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import LISTENING_PORTS, endpoint_port
 
@@ -79,19 +79,37 @@ def test_two_routers_cannot_listen_on_one_endpoint() -> None:
         first.close()
 
 
+OPENED_WITH_FEW_FILES = (
+    "import resource, sys\n"
+    "from selfconf.bus.zenoh import session\n"
+    "from selfconf.errors import NetworkError\n"
+    "most, session.FREE_DESCRIPTORS = map(int, sys.argv[1:])\n"
+    "resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))\n"
+    "try:\n"
+    "    session.open_session('router', ['tcp/127.0.0.1:0'])\n"
+    "except NetworkError as error:\n"
+    "    print(error)\n"
+)
+
+
+def opened_with_few_files(most: int, needed: int) -> subprocess.CompletedProcess[str]:
+    """What a program says that opens a session though it may open so few files."""
+    command = [sys.executable, "-c", OPENED_WITH_FEW_FILES, str(most), str(needed)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("most", [12, 15, 17, 24, 32])
+def test_no_session_begins_where_too_few_files_may_be_opened(most: int) -> None:
+    """Zenoh would hang, abort the process, or panic."""
+    done = opened_with_few_files(most, FREE_DESCRIPTORS)
+    assert done.stdout.startswith(f"Zenoh cannot begin: this program may open {most} files"), done.stderr[-500:]
+    assert "ulimit -n" in done.stdout
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.process
 def test_a_panic_of_zenoh_is_said_in_a_sentence() -> None:
     """With so few descriptors its threads cannot begin."""
-    few = (
-        "import resource\n"
-        "from selfconf.bus.zenoh.session import open_session\n"
-        "from selfconf.errors import NetworkError\n"
-        "resource.setrlimit(resource.RLIMIT_NOFILE, (8, 8))\n"
-        "try:\n"
-        "    open_session('router', ['tcp/127.0.0.1:0'])\n"
-        "except NetworkError as error:\n"
-        "    print(error)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", few], capture_output=True, text=True, timeout=60, check=False)
-    assert "Zenoh cannot begin" in done.stdout, done.stderr[-500:]
-    assert "ulimit -n" in done.stdout
+    done = opened_with_few_files(8, 0)
+    assert "Zenoh cannot begin (" in done.stdout, done.stderr[-500:]
