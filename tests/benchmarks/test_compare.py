@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks import failover
+from benchmarks.compare import __main__ as compare
 from benchmarks.compare import inputs, report
 from benchmarks.compare.report import Row
 from benchmarks.compare.trees import both
@@ -65,3 +67,10 @@ def test_different_answers_are_named() -> None:
     assert "| tree | search | 100.00 | 103.00 | 1.03 |" in text
     assert "different answers to:**\n\n* search: tree\n" in text
     assert "the same answer to every command" in report.page(rows[:1], ["v1", "the tree as it is"])
+
+
+def test_a_failover_is_compared_with_the_search_too() -> None:
+    parts = {"round trip": [0.001], "detect": [0.001], "decide": [0.002], "deploy": [0.001], "undecided": [0.005]}
+    printed = failover.report(parts)
+    found = dict(compare.medians(printed))
+    assert found["FAIL to first message"] == pytest.approx(found["decide"] + 5.0) == pytest.approx(7.0)
