@@ -23,6 +23,7 @@ import pyoxigraph as ox
 from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import in_command, options_named, setting
+from selfconf.query.limits import ENGINE_DOWN, too_large, too_slow
 from selfconf.query.results import shown
 from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, only_reads, says
 from selfconf.render import Names
@@ -65,9 +66,7 @@ def answer(dataset: Dataset, question: Question) -> Shown:
     try:
         done = subprocess.run(command, input=given, capture_output=True, timeout=question.seconds, check=False)
     except subprocess.TimeoutExpired:
-        raise QueryError(
-            f"the query takes more than {question.seconds:g} s; ask for less, or give it longer by {setting('seconds')}"
-        ) from None
+        raise QueryError(f"{too_slow(question.seconds)}, or give it longer by {setting('seconds')}") from None
     said = done.stderr.decode().strip()
     if done.returncode in (0, _CUT):
         return Shown(done.stdout.decode(), done.returncode == _CUT, said)
@@ -76,9 +75,9 @@ def answer(dataset: Dataset, question: Question) -> Shown:
     if done.returncode == _UNREACHED:
         raise NetworkError(said)
     if done.returncode == -signal.SIGSEGV:
-        raise QueryError("the query is nested too deeply")
+        raise QueryError(ENGINE_DOWN)
     if done.returncode in (_EXHAUSTED, -signal.SIGABRT, -signal.SIGKILL):
-        raise QueryError(f"the query takes more than {question.memory / (1 << 30):.1f} GiB of memory; ask for less")
+        raise QueryError(too_large(question.memory))
     raise ProgrammerError(
         f"the process that answers queries has broken: {said.splitlines()[-1] if said else 'no word'}"
     )

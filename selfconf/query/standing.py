@@ -17,6 +17,7 @@ from dataclasses import asdict
 from selfconf.errors import NetworkError, NotAcceptableError, ProgrammerError, QueryError, QueryTimeoutError
 from selfconf.model.immutable import immutable
 from selfconf.query import standing_process as endings
+from selfconf.query.limits import ENGINE_DOWN, too_large, too_slow
 
 STANDING_SECONDS = 30.0
 """How long an answer of a standing dataset may take by default."""
@@ -147,11 +148,9 @@ def outcome(received: bytes, question: StandingQuestion) -> tuple[str, bytes]:
     if ending == endings.NO_TYPE:
         raise NotAcceptableError(body.decode() or "the answer can be had in none of the media types that Accept names")
     if ending == endings.NO_TIME:
-        raise QueryTimeoutError(f"the query takes more than {question.seconds:g} s; ask for less")
+        raise QueryTimeoutError(too_slow(question.seconds))
     if ending == endings.NO_MEMORY:
-        raise QueryTimeoutError(
-            f"the query takes more than {question.memory / (1 << 30):.1f} GiB of memory; ask for less"
-        )
-    if ending == endings.TOO_DEEP:
-        raise QueryError("the query is nested too deeply")
+        raise QueryTimeoutError(too_large(question.memory))
+    if ending == endings.ENGINE_DOWN:
+        raise QueryError(ENGINE_DOWN)
     raise ProgrammerError("the process that answers queries has broken")

@@ -45,11 +45,11 @@ TRIPLE_TYPES = {
     "application/ld+json": ox.RdfFormat.JSON_LD,
 }
 """The media types of triples."""
-DONE, REFUSED, NO_TYPE, NO_TIME, NO_MEMORY, TOO_DEEP, BROKEN = (bytes([number]) for number in range(7))
+DONE, REFUSED, NO_TYPE, NO_TIME, NO_MEMORY, ENGINE_DOWN, BROKEN = (bytes([number]) for number in range(7))
 """How a copy has ended, as its last byte says."""
 NICENESS = 5
 """Questions give way to the programs of the ecology on the same processors."""
-_ENDINGS = {signal.SIGALRM: NO_TIME, signal.SIGKILL: NO_MEMORY, signal.SIGABRT: NO_MEMORY, signal.SIGSEGV: TOO_DEEP}
+_ENDINGS = {signal.SIGALRM: NO_TIME, signal.SIGKILL: NO_MEMORY, signal.SIGABRT: NO_MEMORY, signal.SIGSEGV: ENGINE_DOWN}
 _EXIT = {REFUSED: 2, NO_TYPE: 3, NO_MEMORY: 4}
 
 

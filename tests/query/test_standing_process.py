@@ -19,7 +19,7 @@ from selfconf.query import standing_process as process
         (1 << 8, process.BROKEN),
         (signal.SIGALRM, process.NO_TIME),
         (signal.SIGKILL, process.NO_MEMORY),
-        (signal.SIGSEGV, process.TOO_DEEP),
+        (signal.SIGSEGV, process.ENGINE_DOWN),
         (signal.SIGTERM, process.BROKEN),
     ],
 )
