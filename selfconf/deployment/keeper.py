@@ -77,8 +77,8 @@ class Keeper:
         self.bus, self.ecology, self.keys, self.site = bus, ecology, Keys(ecology), site
         self.folder, self._request_for, self._clock = folder, request_for, clock
         self.runners: dict[str, TaskRunner] = {}
-        self._revisions: dict[str, int] = {}
-        """The revision of the record that each runner has begun with, or that was written of it last."""
+        self._versions: dict[str, tuple[bool, int, int]] = {}
+        """The version of the record that each runner has begun with, or that was written of it last."""
         self._requests: dict[str, RunRequest | None] = {}
         self._respites: dict[str, float] = {}
         """Until when each task is left alone that has given trouble."""
@@ -207,7 +207,11 @@ class Keeper:
         self._assign()
 
     def _assign(self) -> None:
-        """Run the tasks that this site is to run, and no others."""
+        """Run the tasks that this site is to run, and no others.
+
+        Cut off it begins with none: to it all other sites seem gone, and it would find that nothing is there.
+        """
+        linked = bool(self.bus.link)
         for task, record in list(self.folder.records.items()):
             mine = keeper_of(task, self._living) == self.site
             runner = self.runners.get(task)
@@ -215,12 +219,12 @@ class Keeper:
                 runner.stop()
             elif runner is not None and self._is_to_leave(runner, record, mine):
                 runner.hand_over()
-            if task not in self.runners and mine and not record.ended and not self._has_respite(task):
+            if task not in self.runners and mine and linked and not record.ended and not self._has_respite(task):
                 self._run(record)
 
     def _is_to_leave(self, runner: TaskRunner, record: TaskRecord, mine: bool) -> bool:
         """Whether a task is another site's by now: by a newer record, or as that has come; then once it is settled."""
-        if record.revision != self._revisions[record.task]:
+        if record.version != self._versions[record.task]:
             return True
         return not mine and runner.state.phase in (Phase.RUNNING, Phase.REFUSED)
 
@@ -254,7 +258,7 @@ class Keeper:
 
         def ended(_: object) -> None:
             runner = self.runners.pop(record.task, None)
-            self._revisions.pop(record.task, None)
+            self._versions.pop(record.task, None)
             self.bus.later(KEEPER_AGAIN, self._assign)
             if runner is not None and runner.trouble is not None:
                 log.error("%s: %s; trying again in %.0f s", record.task, runner.trouble, RESPITE)
@@ -272,7 +276,7 @@ class Keeper:
             task=record.task,
             beginning=record.beginning,
         )
-        self.runners[record.task], self._revisions[record.task] = runner, record.revision
+        self.runners[record.task], self._versions[record.task] = runner, record.version
         if record.configuration:
             try:
                 runner.adopt(recorded_configuration(record.configuration), record.epoch, record.lost)
@@ -285,14 +289,14 @@ class Keeper:
         """Let every site know what runs, and what was lost, so that the next one can go on with it."""
         log.info("%s: %s", task, event.act)
         known = self.folder.records.get(task)  # none if it has ended, and was forgotten meanwhile
-        if known is None or self._revisions.get(task) != known.revision:
+        if known is None or self._versions.get(task) != known.version:
             return
         record = replace(known, lost=self.runners[task].recorded_losses)
         if isinstance(event, TaskRunning):
             record = replace(record, epoch=event.epoch, configuration=configuration_record(event.configuration))
         if isinstance(event, TaskRunning) or record.lost != known.lost:
             record = replace(record, revision=known.revision + 1)
-            self._revisions[task] = record.revision
+            self._versions[task] = record.version
             self._learn(record)
             self._tell(record)
 

@@ -143,7 +143,7 @@ class TaskRunner:
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
-        self._messages = ComponentMessages(context, task, self._lives, self._ends)
+        self._messages = ComponentMessages(context, task, self._lives, self._ends, self._heed)
         self._subscriptions = [
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
             bus.subscribe(self.keys.reopens(), lambda _: self._liveness.reopens(), Urgency.EVENT),
@@ -268,15 +268,23 @@ class TaskRunner:
                 self._events.append(Stopped())
 
     def _pulse(self) -> None:
+        """Look from time to time whether this program was suspended, for as long as the task goes on."""
+        if not self.state.ended:
+            self.bus.later(PULSE, self._pulse)
+            self._look_whether_suspended()
+
+    def _look_whether_suspended(self) -> None:
         """Notice that this program was suspended: whatever has not been answered meanwhile says nothing."""
         now = self.bus.now()
         late, self._last_pulse = now - self._last_pulse - PULSE, now
-        if self.state.ended:
-            return
-        self.bus.later(PULSE, self._pulse)
         if late > SUSPENDED:
             log.warning("this program was suspended for %.1f s; looking at what has become of the ecology", late)
             self._liveness.suspended()
+
+    def _heed(self, failed: Failed) -> None:
+        """Take in a failure that was heard of, perhaps before the first pulse after a suspension."""
+        self._look_whether_suspended()
+        self._liveness.heed(failed)
 
     def _stand_by(self, configuration: Configuration) -> None:
         lost, epoch = frozenset(self.state.lost), self.state.epoch

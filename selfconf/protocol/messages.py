@@ -424,9 +424,17 @@ class TaskRecord:
     lost: tuple[RecordedLoss, ...] = ()
     """What has failed and lives on: a site that goes on with the task does without it, until it lives anew."""
 
+    @property
+    def version(self) -> tuple[bool, int, int]:
+        """Of two records of one task the one of the greater version counts: the end of a task is final.
+
+        Two sites may make one revision, where one of them was frozen or cut off: what runs is of the newer epoch.
+        """
+        return self.ended, self.revision, self.epoch
+
     def supersedes(self, known: TaskRecord | None) -> bool:
-        """Whether this record counts, and not the one that is known of the same task: the end of a task is final."""
-        return known is None or (self.ended, self.revision) > (known.ended, known.revision)
+        """Whether this record counts, and not the one that is known of the same task."""
+        return known is None or self.version > known.version
 
 
 Message = (

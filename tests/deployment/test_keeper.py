@@ -145,6 +145,65 @@ def test_a_site_that_was_away_goes_on_again_without_stopping_anything(
     assert keepers.lab.active() == TASK | {"odometry" if repaired else "tracker"}
 
 
+@pytest.mark.parametrize("seconds", [1.05, 1.5, 2.0, 4.0])
+def test_a_site_that_hears_of_a_failure_as_it_wakes_gives_up_nothing_that_the_next_one_runs(
+    keepers: Keepers, seconds: float
+) -> None:
+    """The FAIL came while it was frozen, and lies before it now, when nothing else reaches it yet."""
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    (keeper,) = keepers.running()
+    network, node = keepers.lab.network, keepers.buses[keeper]
+    assert isinstance(node, MemoryBus)
+    said = {name: list(keepers.lab.components[name].said) for name in TASK}
+    network.pause(node)
+    keepers.lab.let_pass(0.3)
+    keepers.lab.components["tracker"].fail("lost")
+    keepers.lab.let_pass(seconds - 0.3)
+    network.resume(node)
+    keepers.lab.let_pass(5.0)
+    assert {name: list(keepers.lab.components[name].said) for name in TASK} == said
+    assert (keepers.running(), keepers.lab.active()) == ([keeper], TASK | {"odometry"})
+    assert len({encode(one.folder.records[RECORD.task]) for one in keepers.keepers.values()}) == 1
+
+
+def test_a_site_that_wakes_goes_on_with_a_task_if_the_one_that_runs_it_ends_in_that_moment(keepers: Keepers) -> None:
+    """As long as it is cut off it seems to be the only site, and would find that nothing is there."""
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    (keeper,) = keepers.running()
+    woken = keeper_of(RECORD.task, {*"abc"} - {keeper})
+    keepers.end(*({*"abc"} - {keeper, woken}))
+    said = {name: list(recorder.said) for name, recorder in keepers.lab.components.items()}
+    node = keepers.buses[woken]
+    assert isinstance(node, MemoryBus)
+    keepers.lab.network.pause(node)
+    keepers.lab.let_pass(5.0)
+    keepers.lab.network.resume(node)
+    keepers.lab.let_pass(0.3)
+    keepers.end(keeper)
+    assert keepers.lab.until(lambda: keepers.running() == [woken], 0.9)
+    keepers.lab.let_pass(5.0)
+    assert {name: list(recorder.said) for name, recorder in keepers.lab.components.items()} == said
+
+
+def test_of_two_records_of_one_revision_that_counts_by_which_the_components_act(keepers: Keepers) -> None:
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    (keeper,) = keepers.running()
+    record, runner = keepers.keepers[keeper].folder.records[RECORD.task], keepers.keepers[keeper].runners[RECORD.task]
+    keepers.hand_over(replace(record, epoch=record.epoch - 1, lost=()))
+    keepers.lab.let_pass(1.0)
+    assert keepers.keepers[keeper].runners[RECORD.task] is runner
+    keepers.hand_over(replace(record, epoch=record.epoch + 1))
+    assert keepers.lab.until(lambda: keepers.keepers[keeper].runners.get(RECORD.task) not in (None, runner))
+    assert keepers.lab.until(lambda: keepers.running() == [keeper])
+    assert keepers.lab.active() == TASK | {"tracker"}
+
+
 def kept_beside_a_slow_tracker(tmp_path: Path) -> tuple[Keepers, str, Bus]:
     """A task that runs with odometry, the site that keeps it, and that of odometry.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 
 from selfconf.bus.port import Sample, Urgency
 from selfconf.configurator import Failed, Freed, Rewired, WaitedLong
@@ -27,10 +28,12 @@ class ComponentMessages:
         identity: str,
         lives: HeldLives,
         ends: PortEnds,
+        heed: Callable[[Failed], None],
     ) -> None:
-        """`identity` is that of the task."""
+        """`identity` is that of the task; `heed` receives each failure that is about it."""
         self._keys, self._task = task.ecology.keys, identity
         self._lives, self._ends, self._state, self._step = lives, ends, task.state, task.step
+        self._heed = heed
         self._watched: set[IRI] = set()
         bus = task.ecology.bus
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
@@ -72,7 +75,7 @@ class ComponentMessages:
         if fail.cause is Cause.LET_GO and fail.component in self._state().held:
             log.warning("%s has let go of this task: %s", fail.component.short, fail.detail)
         if fail.component in self._watched and (own or reported):
-            self._step(Failed(fail.component, fail.life, fail.cause, fail.detail))
+            self._heed(Failed(fail.component, fail.life, fail.cause, fail.detail))
 
     def _may_report(self, reporter: str, silent: IRI) -> bool:
         """Whether a component, given by its chunk, may say that another one is silent: one that may follow it.

@@ -86,6 +86,8 @@ class Liveness:
         """Whether this node was found to be cut off, and has not been connected again for long enough since."""
         self.unsure = False
         """Whether it was cut off or suspended, and does not know yet what has become of its components meanwhile."""
+        self._withheld: dict[tuple[IRI, str], Failed] = {}
+        """The latest failure of each life of a component that was heard of while this node was unsure."""
         self._ask_again: Undo = lambda: None
         self._reopenings: list[float] = []
         """When a site has last said that its hub is about to be opened anew."""
@@ -303,6 +305,18 @@ class Liveness:
             self._reopenings.append(now)
             self._await_link()
 
+    def heed(self, failed: Failed) -> None:
+        """Feed the machine with a failure that was heard of; while this node is unsure, that waits.
+
+        A repair would find that nothing answers, and give up what another configurator may have repaired long since.
+        """
+        if self.bus.link != self._link:
+            self._await_link()
+        if self.unsure:
+            self._withheld[failed.component, failed.life] = failed
+        else:
+            self._step(failed)
+
     def suspended(self) -> None:
         """This program stood still for a while, as if it had been cut off: so it was, or nearly."""
         if self.ecology.followed:
@@ -325,6 +339,9 @@ class Liveness:
                 return
             self._link, self.cut_off, self.unsure = self.bus.link, False, False
             self._reconnected()
+            withheld, self._withheld = self._withheld, {}
+            for failed in withheld.values():
+                self._step(failed)
 
         if not self.cut_off:
             self.cut_off = True
