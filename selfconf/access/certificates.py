@@ -217,7 +217,7 @@ def new_authority(name: str) -> tuple[Certificate, Key]:
         encipher_only=False,
         decipher_only=False,
     )
-    begun = _begun(subject, subject, key.public_key(), AUTHORITY_DAYS)
+    begun = _begun(subject, subject, key.public_key(), key.public_key(), AUTHORITY_DAYS)
     begun = begun.add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
     return Certificate(begun.add_extension(usage, critical=True).sign(key, hashes.SHA256())), key
 
@@ -237,7 +237,7 @@ def issue(
     """
     names = [_host(host) for host in dict.fromkeys((*EVERY_HOST, *hosts))]
     names += [x509.UniformResourceIdentifier(_ALSO + principal.common_name) for principal in also]
-    begun = _begun(_subject(principal.common_name), authority.x509.subject, key, days)
+    begun = _begun(_subject(principal.common_name), authority.x509.subject, key, authority_key.public_key(), days)
     for extension, critical in (
         (x509.BasicConstraints(ca=False, path_length=None), True),
         (x509.SubjectAlternativeName(names), False),
@@ -271,8 +271,13 @@ def read_revocations(pem: bytes, authority: Certificate) -> frozenset[int]:
 
 
 def _begun(
-    subject: x509.Name, issuer: x509.Name, key: ec.EllipticCurvePublicKey, days: float
+    subject: x509.Name,
+    issuer: x509.Name,
+    key: ec.EllipticCurvePublicKey,
+    issuer_key: ec.EllipticCurvePublicKey,
+    days: float,
 ) -> x509.CertificateBuilder:
+    """A certificate with what all have, the identifiers of both keys among it (RFC 5280, section 4.2.1.1)."""
     now = _now()
     try:
         ends = now + timedelta(days=days)
@@ -280,6 +285,11 @@ def _begun(
         raise AuthorError(f"{days} days are too many") from None
     builder = x509.CertificateBuilder().subject_name(subject).issuer_name(issuer).public_key(key)
     builder = builder.serial_number(x509.random_serial_number())
+    for identifier in (
+        x509.SubjectKeyIdentifier.from_public_key(key),
+        x509.AuthorityKeyIdentifier.from_issuer_public_key(issuer_key),
+    ):
+        builder = builder.add_extension(identifier, critical=False)
     return builder.not_valid_before(now - CLOCKS_DIFFER).not_valid_after(ends)
 
 

@@ -36,6 +36,7 @@ def why_refused(endpoint: str, credentials: Credentials) -> str:
     if port is None:
         return ""
     context = ssl.create_default_context(cafile=str(credentials.authorities))
+    context.verify_flags &= ~ssl.VERIFY_X509_STRICT  # Python 3.13 is stricter than Zenoh, whose refusal is explained
     context.load_cert_chain(credentials.certificate, credentials.key)
     try:
         with (
@@ -63,4 +64,6 @@ def _distrust(error: ssl.SSLCertVerificationError, host: str) -> str:
         return "its certificate is not valid yet; is the clock of this host right?"
     if "mismatch" in said or "not valid for" in said:
         return f"its certificate is not good for {host}; issue it with `{setting('host', host)}`"
-    return "its certificate was issued by another authority"
+    if "issuer certificate" in said or "self-signed" in said or "self signed" in said:
+        return "its certificate was issued by another authority"
+    return f"of its certificate it is said: {said}"

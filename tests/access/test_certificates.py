@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ssl
+from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
 
@@ -62,15 +63,24 @@ def test_what_is_no_host_is_refused(host: str) -> None:
         issued(hosts=(host,))
 
 
-def test_openssl_believes_what_an_authority_has_issued(tmp_path: Path) -> None:
+def test_openssl_believes_what_an_authority_has_issued_though_it_is_strict(tmp_path: Path) -> None:
+    """Python 3.13 asks for all that RFC 5280 does, as other programs may that look at these certificates."""
     key = new_key()
     certificate = issue(AUTHORITY, AUTHORITY_KEY, KITCHEN, key.public_key(), (), 1.0)
     (tmp_path / "c.pem").write_bytes(certificate.pem)
     (tmp_path / "k.pem").write_bytes(certificates.key_pem(key))
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    context.load_cert_chain(tmp_path / "c.pem", tmp_path / "k.pem")
     assert certificate.belongs_to(read_key((tmp_path / "k.pem").read_bytes()))
     assert not certificate.belongs_to(new_key())
+    offers = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    offers.load_cert_chain(tmp_path / "c.pem", tmp_path / "k.pem")
+    believes = ssl.create_default_context(cadata=AUTHORITY.pem.decode())
+    believes.verify_flags |= ssl.VERIFY_X509_STRICT
+    there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
+    ends = offers.wrap_bio(there, back, server_side=True), believes.wrap_bio(back, there, server_hostname="127.0.0.1")
+    for end in (*reversed(ends), *reversed(ends)):
+        with suppress(ssl.SSLWantReadError):  # the other end has to say something first
+            end.do_handshake()
+    assert ends[1].getpeercert()
 
 
 def test_revoked_serials_are_read_from_a_list_that_the_authority_has_signed() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import Authority, Principal, PrincipalKind
+from selfconf.access import Authority, Principal, PrincipalKind, certificates
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.handshake import why_refused
 
@@ -96,6 +96,14 @@ def test_a_host_that_the_certificate_does_not_name_is_named(authority: Authority
         real = socket.create_connection
         patch.setattr(socket, "create_connection", lambda place, wait: real(("127.0.0.1", place[1]), wait))
         assert "host='10.0.0.7'" in why_refused(endpoint.replace("127.0.0.1", "10.0.0.7"), shown(authority))
+
+
+def test_what_else_is_wrong_with_a_certificate_is_told_as_it_was_found(
+    authority: Authority, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(certificates.ExtendedKeyUsageOID, "SERVER_AUTH", certificates.ExtendedKeyUsageOID.TIME_STAMPING)
+    with server(site_of(authority)) as endpoint:
+        assert "of its certificate it is said: uns" in why_refused(endpoint, shown(authority))  # uitable, or upported
 
 
 def test_what_speaks_no_tls_is_named(authority: Authority) -> None:

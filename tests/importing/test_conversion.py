@@ -37,7 +37,7 @@ def test_other_files_in_the_folder_are_left_alone(workshop: Workshop) -> None:
 
 
 def test_what_cannot_be_read_is_in_the_report_and_the_rest_is_imported(workshop: Workshop) -> None:
-    report = workshop.imported("wot", {"lamp.json": LAMP, "bad.json": '{\n "a": [1,]}'})
+    report = workshop.imported("wot", {"lamp.json": LAMP, "bad.json": '{\n "a": [1 :]}'})
     assert [file.path.name for file in report.files] == ["lamp.ttl"]
     (error,) = report.unreadable
     assert (error.file, error.line, error.column) == (str(workshop.sources / "bad.json"), 2, 10)

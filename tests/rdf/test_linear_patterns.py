@@ -41,6 +41,7 @@ def conforms(text: str, pattern: str, flags: str = "") -> bool:
         ('REPLACE("lamp", "(l)(a)", "$2$1") = "almp"', True),
     ],
 )
+@pytest.mark.filterwarnings("ignore:'count' is passed as positional:DeprecationWarning")  # by rdflib, to Python 3.13
 def test_sparql_answers_the_same_in_the_block_and_outside_of_it(condition: str, holds: bool) -> None:
     with linear_patterns():
         assert ask(condition) == holds

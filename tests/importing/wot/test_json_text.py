@@ -22,7 +22,7 @@ def test_the_value_and_the_names_that_occur_twice() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('{\n  "a": 1,\n}', r"x\.json:3:1: this is not JSON"),
+        ('{\n  "a": 1\n:}', r"x\.json:3:1: this is not JSON"),
         ("", r"x\.json:1:1: this is not JSON"),
         ('{\n "NaN": [1, NaN]}', r"x\.json:2:13: this is not JSON: NaN is no number of JSON"),
         ("[-Infinity]", r"x\.json:1:2: this is not JSON: -Infinity is no number of JSON"),
