@@ -8,6 +8,9 @@ see at once that it leaves too few.
 *What is kept.* Every solution is one of some case, and every solution of a case is one of the problem: so the least
 solution of all is the least among those of the cases.
 
+*When.* Where most combinations leave enough components, nothing is gained by looking at them one by one: there are no
+cases then, and clause learning gets the parameters as they are.
+
 *Cost.* A pass over all needs and supports, and a matching, for each value or combination that is tried, while there are
 few of these.
 """
@@ -25,6 +28,8 @@ from selfconf.search.reduction import ReducedProblem, pruned
 
 MOST_CASES = 256
 """How many combinations of values are looked at at most."""
+MARGIN = 16
+"""By how many those that leave enough components may outnumber the others, at any time, if there are to be cases."""
 MOST_COUNTED = 1_000_000
 """How many needs, supports and options are counted for that at most, some tenths of a second."""
 
@@ -33,7 +38,7 @@ def value_cases(given: ReducedProblem) -> list[ReducedProblem] | None:
     """Return the problem once for each combination of values that leaves all slots enough components.
 
     Where there would be too many combinations, those with the most values stay free. None if no parameter has a choice
-    among few enough values.
+    among few enough values, or if too many combinations leave enough.
     """
     size = sum(1 + len(kind.needs) + len(kind.supports) for kind in given.kinds()) + sum(map(len, given.options))
     most, chosen = min(MOST_CASES, MOST_COUNTED // max(1, size)), list[int]()
@@ -41,10 +46,22 @@ def value_cases(given: ReducedProblem) -> list[ReducedProblem] | None:
     for count, variable in choices:
         if count > 1 and (most := most // count) > 0:
             chosen.append(variable)
-    return list(_cases(given, chosen)) if chosen else None
+    if not chosen:
+        return None
+    cases: list[ReducedProblem] = []
+    refuted = 0
+    for case in _cases(given, chosen):
+        if case is None:
+            refuted += 1
+            continue
+        cases.append(case)
+        if len(cases) > refuted + MARGIN:
+            return None
+    return cases
 
 
-def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProblem]:
+def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProblem | None]:
+    """Yield the case of each combination of values, and None for all that begin with values which leave too few."""
     if not variables:
         yield given
         return
@@ -52,6 +69,8 @@ def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProbl
         case = pruned(_with_value(given, variables[0], value))
         if case.wiped_out() is None and hall_set(case.slots, case.components()) is None:
             yield from _cases(case, variables[1:])
+        else:
+            yield None
 
 
 def _values(given: ReducedProblem, variable: int) -> list[int]:

@@ -154,11 +154,15 @@ def _prefix_impossible(problem: Problem, roles: int, budget: Budget) -> bool:
 
 
 def least_of(
-    given: ReducedProblem, budget: Budget, by_clauses: Engine = least_by_clauses, probing: bool = True
+    given: ReducedProblem,
+    budget: Budget,
+    by_clauses: Engine = least_by_clauses,
+    probing: bool = True,
+    dividing: bool = True,
 ) -> list[Option] | Undecided | None:
     """Return the least solution of a reduced problem, by the first engine that finds it; None if there is none.
 
-    Options are tried alone only with `probing`.
+    Options are tried alone only with `probing`, values of parameters only with `dividing`.
     """
     remaining = pruned(given)
     if remaining.wiped_out() is not None:
@@ -180,7 +184,7 @@ def least_of(
             return chosen
         remaining = replace(remaining, limits=limits(remaining, counted))
     if matching is not None:
-        return _least_of_sharing(remaining, budget, by_clauses, probing)
+        return _least_of_sharing(remaining, budget, by_clauses, probing, dividing)
     return _by_clauses(remaining, budget, by_clauses)
 
 
@@ -212,7 +216,7 @@ def _matching(given: ReducedProblem) -> MaintainedMatching[IRI] | None:
 
 
 def _least_of_sharing(
-    given: ReducedProblem, budget: Budget, by_clauses: Engine, probing: bool
+    given: ReducedProblem, budget: Budget, by_clauses: Engine, probing: bool, dividing: bool
 ) -> list[Option] | Undecided | None:
     """Return the least solution of a problem whose roles share components, given that these can be matched.
 
@@ -224,8 +228,8 @@ def _least_of_sharing(
     remaining = _without(given, excluded)
     fewer = probed(remaining) if probing else remaining
     if fewer is not remaining:
-        return least_of(fewer, budget, by_clauses, probing=False)
-    cases = value_cases(remaining)
+        return least_of(fewer, budget, by_clauses, False, dividing)
+    cases = value_cases(remaining) if dividing else None
     if cases is not None:
         return _least_of_cases(cases, budget, by_clauses)
     return _by_clauses(remaining, budget, by_clauses)
@@ -245,12 +249,13 @@ def _least_of_cases(cases: list[ReducedProblem], budget: Budget, by_clauses: Eng
     """Return the least solution of a problem, given all its cases by the values of free parameters.
 
     Cases that only clause learning decides are decided together: what it learns in one of them it knows in the others,
-    and where one has a solution, of the others only lesser ones matter.
+    and where one has a solution, of the others only lesser ones matter. A case is not divided again: cases of cases of
+    many parameters would be too many.
     """
     found: list[list[Option]] = []
     left: list[ReducedProblem] = []
     for case in cases:
-        chosen = least_of(case, budget, _left_open if solver_available() else by_clauses)
+        chosen = least_of(case, budget, _left_open if solver_available() else by_clauses, dividing=False)
         if chosen is not None and not isinstance(chosen, Undecided):
             found.append(chosen)
             if by_clauses is any_by_clauses:
@@ -261,7 +266,9 @@ def _least_of_cases(cases: list[ReducedProblem], budget: Budget, by_clauses: Eng
                 return chosen
     if left:
         several = len(left) > 1
-        chosen = by_clauses(_together(left), budget) if several else least_of(left[0], budget, by_clauses)
+        chosen = (
+            by_clauses(_together(left), budget) if several else least_of(left[0], budget, by_clauses, dividing=False)
+        )
         if isinstance(chosen, Undecided):
             return chosen
         found += [] if chosen is None else [chosen]

@@ -165,6 +165,35 @@ def test_what_has_too_many_values_is_left_as_it_is(monkeypatch: pytest.MonkeyPat
     assert value_cases(before) is None
 
 
+def test_there_are_no_cases_where_most_values_leave_enough_components() -> None:
+    before = pruned(reduced(depots(4, 1, 20, 40, 0.9, 1)))
+    assert value_cases(before) is None
+
+
+def test_values_that_mostly_leave_too_few_components_have_cases() -> None:
+    cases = value_cases(pruned(reduced(depots(6, 4, 60, 40, 0.4, 2))))
+    assert cases is not None
+    assert 8 < len(cases) < 20
+
+
+@pytest.mark.parametrize("seed", [1, 2, 4])
+def test_a_case_is_not_divided_again(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    """Of six parameters four have cases; cases of cases, and of these, took longer than anybody waits."""
+    monkeypatch.setattr(first, "CANDIDATE_STEPS", 0)
+    monkeypatch.setattr(first, "REDUCED_PACE", 0.0)
+    divided: list[ReducedProblem] = []
+
+    def noted(given: ReducedProblem) -> list[ReducedProblem] | None:
+        divided.append(given)
+        assert len(divided) == 1
+        return value_cases(given)
+
+    monkeypatch.setattr(first, "value_cases", noted)
+    problem = depots(6, 1, 12, 4, 0.7, seed, parameters=6)
+    assert isinstance(solution(LazyReduction(problem), Budget(None)), list)
+    assert divided
+
+
 def test_all_values_that_no_option_states_are_one_case() -> None:
     variable = Variable(iri("site"), (iri("s"), iri("t")))
     pool = [Candidate(profile(f"p{number}"), (ANY_VALUE if number else ~1,)) for number in range(4)]
