@@ -2,7 +2,8 @@
 
 All of this happens on the thread of the bus that is connected to the router of ROS 2. The tokens of a node come one
 after the other, so a node is advertised once no more have come for a moment. A node that has gone is FAIL; one that
-offers more than before is advertised anew when no task holds it, and one that offers less at once.
+offers more than before is advertised anew when no task holds it, and one that offers less at once. A node that another
+bridge stands for lives here when that one has gone.
 """
 
 from __future__ import annotations
@@ -14,7 +15,14 @@ from dataclasses import dataclass, field
 
 from selfconf import ros2
 from selfconf.bridging.bridge import Bridge
-from selfconf.bridging.ros2.described_nodes import OF_EVERY_NODE, described_node, is_bridged, node_iri, ports_of
+from selfconf.bridging.ros2.described_nodes import (
+    OF_EVERY_NODE,
+    NodePorts,
+    described_node,
+    is_bridged,
+    node_iri,
+    ports_of,
+)
 from selfconf.bridging.ros2.domain import RosDomain, bridge_token
 from selfconf.bridging.ros2.node_component import NodeComponent
 from selfconf.bridging.ros2.tokens import (
@@ -36,6 +44,8 @@ TOKENS_COMPLETE = 0.3
 """Seconds without a new token after which those of a node are complete."""
 LOOK_WHETHER_FREE = 1.0
 """Seconds after which it is looked again whether a node may be advertised anew."""
+LOOK_WHETHER_IT_LIVES = 2.0
+"""Seconds after which it is looked again whether a node lives, or may live by now: another bridge may have ended."""
 RELEASING = 0.5
 """Seconds from the FAIL of a node that has gone to the end of its life, in which it can still be released."""
 MOST_NODES = 2000
@@ -173,8 +183,26 @@ class RosWorld:
         ports = ports_of(endpoints)
         component = described_node(node.token, ports)
         self._bridge.advertise(iri, ImportedDocument("", _place(node.token), (component.described(),), {}))
+        self._live(node, ports)
+
+    def _live(self, node: RosNode, ports: NodePorts) -> None:
+        """Have a node that is advertised live here."""
         code = node.code = NodeComponent(self._domain, node.token, ports)
-        self._bridge.begin_life(iri, code).add_done_callback(lambda outcome: self._begun(node, outcome))
+
+        def look() -> None:
+            if node.code is not code or self._by_name.get(iri) != node.token.identity:
+                return  # it was advertised anew, or has gone
+            if self._bridge.lives(iri):
+                self._bus.later(LOOK_WHETHER_IT_LIVES, look)
+            else:
+                self._live(node, ports)
+
+        def begun(outcome: Future[str | None]) -> None:
+            self._begun(node, outcome)
+            self._bus.later(LOOK_WHETHER_IT_LIVES, look)
+
+        iri = node_iri(node.token)
+        self._bridge.begin_life(iri, code).add_done_callback(begun)
 
     def _begun(self, node: RosNode, outcome: Future[str | None]) -> None:
         """Say whether a node lives here; on the thread of the components' code."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from selfconf.bridging.ros2.ros_world import RosWorld
 from selfconf.bus.zenoh import client
 from selfconf.errors import NetworkError
 from selfconf.protocol.messages import Release
-from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, bridging_domain, node
+from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node
 from tests.sdk.living import LivingStage, until
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
@@ -79,6 +80,23 @@ def test_of_two_nodes_of_one_name_the_first_counts(living: LivingStage, tmp_path
         assert 'sc:name "two"' not in found.advertised()
         first.close()
         assert until(lambda: 'sc:name "two"' in found.advertised() and found.lives("talker"))
+
+
+@pytest.mark.slow
+def test_a_node_that_another_bridge_stands_for_lives_here_when_that_has_gone(
+    living: LivingStage, tmp_path: Path
+) -> None:
+    talker = StandIn(living.endpoint, "talker", "a" * 32)
+    talker.publishes("/chatter")
+    with ExitStack() as stack:
+        stack.callback(talker.close)
+        with bridging_domain(living, tmp_path / "first") as first:
+            assert until(lambda: first.lives("talker"))
+            second = stack.enter_context(bridging_domain(living, tmp_path / "second"))
+            assert until(lambda: second.complained("/talker: urn:selfconf:ros2:42/talker is alive already"))
+        assert until(lambda: second.lives("talker"))
+        second.activate("talker")
+        assert second.causes() == []
 
 
 def test_qualities_that_ros_does_not_connect_are_named(living: LivingStage, tmp_path: Path) -> None:
