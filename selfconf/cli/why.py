@@ -9,6 +9,7 @@ from datetime import datetime
 from pathlib import Path
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
+from selfconf.model.moments import parsed_moment
 
 EXAMPLE = """  selfconf why position
   selfconf why position --format json
@@ -80,6 +81,6 @@ def _written(text: str) -> datetime:
             continue
         return datetime.combine(datetime.now().date(), moment)
     try:
-        return datetime.fromisoformat(text)
+        return parsed_moment(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes HH:MM, HH:MM:SS, or ISO 8601") from None

@@ -11,7 +11,6 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ import pyoxigraph as ox
 from selfconf.api.living.deployed import deployed_body
 from selfconf.errors import AuthorError
 from selfconf.model.immutable import immutable
+from selfconf.model.moments import parsed_moment
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
@@ -156,6 +156,6 @@ def _text(term: Term | None) -> str:
 
 def _moment(term: Term | None) -> float | None:
     try:
-        return datetime.fromisoformat(_text(term).replace("Z", "+00:00")).timestamp()
+        return parsed_moment(_text(term)).timestamp()
     except ValueError:
         return None

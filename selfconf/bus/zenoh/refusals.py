@@ -32,10 +32,10 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from datetime import datetime
 from functools import cache
 
 from selfconf.bus.zenoh.session import begin_log
+from selfconf.model.moments import parsed_moment
 from selfconf.protocol.messages import RefusedAttempt
 
 FILTER = "zenoh::net::routing::interceptor=trace,zenoh_link_tls::unicast=warn"
@@ -136,7 +136,7 @@ class RefusalLog:
     def _at(self, line: str) -> float:
         """When a line was written, as it says itself; now, where it does not."""
         try:
-            return datetime.fromisoformat(line.partition(" ")[0].replace("Z", "+00:00")).timestamp()
+            return parsed_moment(line.partition(" ")[0]).timestamp()
         except ValueError:
             return self._clock()
 

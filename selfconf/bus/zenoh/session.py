@@ -152,7 +152,7 @@ def _config(
     shared_memory: bool,
     security: Security | None,
 ) -> zenoh.Config:
-    config = zenoh.Config()
+    config: zenoh.Config = zenoh.Config()  # which Python 3.10 cannot tell from the stubs
     settings: dict[str, Any] = {
         "mode": mode,
         "scouting/multicast/enabled": False,

@@ -106,9 +106,10 @@ def shacl_pattern(expression: str, flags: str) -> Pattern:
     x drops white space, but in classes of characters, and knows no comments, so it is not `re.VERBOSE`.
     """
     asked = flags.lower()  # as pySHACL reads them
-    options = re.NOFLAG
+    options = re.RegexFlag(0)
     for letter, option in (("i", re.IGNORECASE), ("m", re.MULTILINE), ("s", re.DOTALL)):
-        options |= option if letter in asked else re.NOFLAG
+        if letter in asked:
+            options |= option
     if "q" in asked:
         expression = re.escape(expression)
     elif "x" in asked:

@@ -19,8 +19,11 @@ LONGEST_QUERY = 20_000
 """Characters of the query of a shape."""
 DEEPEST_QUERY = 100
 """How deep its brackets may nest."""
-CALLS = 20_000
-"""How deep the calls of the parser may nest: for each triple after another it takes some ten."""
+CALLS = 20_000 if sys.version_info >= (3, 11) else 10_000
+"""How deep the calls of the parser may nest: for each triple after another it takes some ten.
+
+Before Python 3.11 each call takes some of the stack of its thread, which holds 16,000 where it has 8 MiB.
+"""
 _PARTS = {"SERVICE": "ServiceGraphPattern", "FROM": "DatasetClause", "GRAPH": "GraphGraphPattern"}
 """What rdflib calls the parts of a query that begin with a keyword."""
 # A string without an end is one up to where it has to end: to look for others in it would take quadratic time.
