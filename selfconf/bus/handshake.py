@@ -20,7 +20,9 @@ HANDSHAKE = 1.5
 _SAID = {
     "UNKNOWN_CA": "it does not know the authority that has issued {name}",
     "DECRYPT_ERROR": "it does not know the authority that has issued {name}",
-    "CERTIFICATE_EXPIRED": "for it, the certificate of {name} has expired; renew it, or are the clocks different?",
+    # The TLS of Zenoh says so of one that is not valid yet, too.
+    "CERTIFICATE_EXPIRED": "by its clock, the certificate of {name} has expired or is not valid yet; "
+    "renew it, or are the clocks different?",
     "CERTIFICATE_REQUIRED": "it wants a certificate, and got none",
     "BAD_CERTIFICATE": "it does not believe the certificate of {name}",
     "CERTIFICATE_UNKNOWN": "it does not believe the certificate of {name}",

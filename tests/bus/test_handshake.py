@@ -7,6 +7,7 @@ import ssl
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ import pytest
 from selfconf.access import Authority, Principal, PrincipalKind, certificates
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.handshake import why_refused
+from selfconf.bus.zenoh import Security, open_session, with_port
 
 
 @contextmanager
@@ -89,6 +91,26 @@ def test_an_expired_certificate_is_named_at_either_end(authority: Authority, tmp
     mine = Credentials("site.old", old / "certificate.pem", old / "certificate.key", old / "authority.pem", old)
     with server(site_of(authority)) as endpoint:
         assert "the certificate of site.old has expired" in why_refused(endpoint, mine)
+
+
+def test_a_hub_says_of_a_certificate_that_is_not_valid_yet_the_same_as_of_an_expired_one(
+    authority: Authority, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site_of(authority)
+    hub = authority.credentials((PrincipalKind.SITE,), "home")
+    ahead = datetime.now(timezone.utc) + timedelta(days=1)
+    monkeypatch.setattr(certificates, "_now", lambda: ahead)
+    authority.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice")
+    monkeypatch.undo()
+    early = tmp_path / "alice"
+    mine = Credentials("read.alice", early / "certificate.pem", early / "certificate.key", hub.authorities, early)
+    endpoint = with_port("tls/127.0.0.1:0")
+    session = open_session("router", listen=[endpoint], security=Security(hub))
+    try:
+        said = why_refused(endpoint, mine)
+    finally:
+        session.close()
+    assert "by its clock, the certificate of read.alice has expired or is not valid yet" in said
 
 
 def test_a_host_that_the_certificate_does_not_name_is_named(authority: Authority) -> None:

@@ -59,7 +59,8 @@ _DENIED = re.compile(
     r"(?:Using cached result: )?(\w+) (?:on (\S+) )?is unauthorized to ([\w/ ]+?) \((\w+)\) on (.*)", re.DOTALL
 )
 _NAME = re.compile(r"CertCommonName\(([^)]*)\)")
-_HINT = ". Hint: "
+_DETAIL = re.compile(r"\. Hint: .*|: verification time .*", re.DOTALL)
+"""What is left out of a warning of the TLS link: an advice, and seconds by which each would be another attempt."""
 _TLS = "zenoh_link_tls::unicast"
 _REFUSING = b" is unauthorized to ", b"Msg intercepted!", _TLS.encode()
 """What stands in every line that counts; the line that says no names the peer, the first time with its certificate."""
@@ -100,7 +101,7 @@ class RefusalLog:
         thread, target, text = parts.groups()
         denied = _DENIED.fullmatch(text)
         if target == _TLS:
-            self._count("", text.partition(_HINT)[0][:LONGEST_KEY], "", line)
+            self._count("", _DETAIL.sub("", text)[:LONGEST_KEY], "", line)
         elif denied is not None:
             self._denied[thread] = self._note(*denied.groups())
         elif text == "Msg intercepted!" and thread in self._denied:

@@ -60,6 +60,15 @@ def test_who_knocks_without_a_good_certificate_is_counted() -> None:
     }
 
 
+def test_who_knocks_again_and_again_by_another_clock_has_made_one_attempt() -> None:
+    line = (
+        "2026Z  WARN acc-0 ThreadId(06) zenoh_link_tls::unicast: invalid peer certificate: certificate not valid yet: "
+        "verification time {} (UNIX), but certificate is not valid before 1795873165 (86084 seconds in future)"
+    )
+    log = log_of(line.format(1795787081), line.format(1795787082))
+    assert found(log) == [("", "invalid peer certificate: certificate not valid yet", "", 2)]
+
+
 def coloured(*lines: str) -> bytes:
     """Lines as Zenoh writes them, of which the time, the level and the target have colours."""
     return "\n".join(
