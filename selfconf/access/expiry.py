@@ -12,13 +12,14 @@ from collections.abc import Callable
 from datetime import datetime, timezone
 
 from selfconf.access.authority import open_keys
-from selfconf.access.certificate_files import REVOKED
+from selfconf.access.certificate_files import REVOKED, read_pair
 from selfconf.access.certificates import Certificate
 from selfconf.access.introduction import ANSWER
 from selfconf.access.principal import Principal
+from selfconf.access.private_files import check_private
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
-from selfconf.errors import PeerError, SelfconfError
+from selfconf.errors import AuthorError, PeerError, SelfconfError, reason
 from selfconf.model.wording import utc_text
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
@@ -69,15 +70,26 @@ class CertificateWatch:
             self._renew_own()
             changed, link = self._modified(), self._bus.link
             if changed != self._changed_at:
-                self._certificate = Certificate.read(self._credentials.certificate.read_bytes())
+                self._certificate = self._read()
             if (changed, link) != (self._changed_at, self._link) and link:  # by another link, another site may hear it
                 self._changed_at, self._link = changed, link
                 self._show()
             self._look_at_list()
-        except (OSError, PeerError, SelfconfError) as error:
-            self._tell(f"{self._whose} cannot be renewed: {error}")
-            return
-        self._tell(self._sentence())
+            sentence = self._sentence()
+            if not sentence:
+                check_private(self._credentials.key)  # else it cannot be renewed, nor this program begin again
+        except (OSError, SelfconfError) as error:
+            why = reason(error) if isinstance(error, OSError) else str(error)
+            sentence = f"{self._whose} cannot be renewed: {why}"
+        self._tell(sentence)
+
+    def _read(self) -> Certificate:
+        """The certificate as it lies in its file now. Raises AuthorError where it is of another key or holder."""
+        path = self._credentials.certificate
+        certificate, _ = read_pair(path.with_suffix(""))
+        if certificate.common_name != self._credentials.name:
+            raise AuthorError(f"{path} is that of {certificate.common_name} now")
+        return certificate
 
     def _renew_own(self) -> None:
         """A program that is given the folder of an authority renews its certificate by itself."""
@@ -109,6 +121,8 @@ class CertificateWatch:
         )
         if self._revoked:
             return f"{self._whose} was revoked: it is not trusted any more; have another name issued to you"
+        if now < self._certificate.begins:
+            return f"{self._whose} {self._certificate.untimely(now)}"
         if ends < now:
             return f"{self._whose} has expired at {utc_text(ends)}: it is not trusted any more; {renew}"
         if ends - now < (ends - self._certificate.issued) / LAST_PART:

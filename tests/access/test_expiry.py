@@ -96,14 +96,39 @@ def test_a_certificate_is_in_time_from_its_beginning_to_its_end(tmp_path: Path) 
     assert not is_in_time(replace(shown, certificate=tmp_path / "none.pem"))
 
 
-def test_a_certificate_that_cannot_be_read_any_more_is_told_of_once(tmp_path: Path) -> None:
-    Authority.init(tmp_path / "keys").issue(ALICE, tmp_path / "alice")
+def test_what_is_wrong_with_the_files_of_a_certificate_is_told_of_once(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "keys")
+    for holder, name in ((ALICE, "alice"), (BOB, "bob"), (ALICE, "again")):
+        authority.issue(holder, tmp_path / name)
     watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
-    (tmp_path / "alice/certificate.pem").write_text("nonsense")
-    watched.pass_days(0.0)
-    (tmp_path / "alice/certificate.pem").unlink()
-    watched.pass_days(0.0)
-    assert ["cannot be renewed" in one for one in watched.said] == [True, True]
+    certificate, key = (tmp_path / f"alice/certificate.{ending}" for ending in ("pem", "key"))
+    good, mine = certificate.read_bytes(), key.read_bytes()
+
+    def said() -> str:
+        before = len(watched.said)
+        watched.pass_days(0.0)
+        (sentence,) = watched.said[before:]
+        return sentence.replace(f"{tmp_path}/", "")
+
+    cannot = "the certificate of conf.alice cannot be renewed: "
+    certificate.write_text("nonsense")
+    assert said() == cannot + "alice/certificate.pem: that is no certificate in PEM"
+    certificate.unlink()
+    assert said() == cannot + "alice/certificate.pem: No such file or directory"
+    certificate.write_bytes((tmp_path / "again/certificate.pem").read_bytes())
+    assert said() == cannot + "alice/certificate.key is not the key of certificate.pem beside it"
+    certificate.write_bytes((tmp_path / "bob/certificate.pem").read_bytes())
+    key.write_bytes((tmp_path / "bob/certificate.key").read_bytes())
+    assert said() == cannot + "alice/certificate.pem is that of conf.bob now"
+    certificate.write_bytes(good)
+    key.write_bytes(mine)
+    assert "the certificate of conf.alice is good until " in said()
+    key.chmod(0o644)
+    assert said().startswith(cannot + "others may read alice/certificate.key, so it is no secret; ")
+    key.chmod(0o600)
+    assert "the certificate of conf.alice is good until " in said()
+    watched.now -= timedelta(days=2)
+    assert "the certificate of conf.alice is not valid before " in said()
 
 
 def test_a_program_that_has_the_folder_of_an_authority_renews_its_certificate_by_itself(tmp_path: Path) -> None:
