@@ -51,8 +51,9 @@ class Terminal(io.TextIOBase):
         self.flush()
 
     def flush(self) -> None:
-        """Let the terminal have it."""
-        self._stream.flush()
+        """Let the terminal have it; as Python ends, that may be gone first."""
+        if not self._stream.closed:
+            self._stream.flush()
 
     def fileno(self) -> int:
         """The number of the stream."""

@@ -38,6 +38,15 @@ def test_only_a_terminal_is_guarded_and_only_once(monkeypatch: pytest.MonkeyPatc
         assert screen.read(100) == b"red \\x1b[31m\r\n"
 
 
+def test_a_terminal_that_is_gone_is_let_go_of() -> None:
+    """As Python ends, what stands for the terminal may be the last to be closed."""
+    there = StringIO()
+    terminal = Terminal(there)
+    there.close()
+    terminal.close()
+    assert terminal.closed
+
+
 def test_what_nobody_reads_ends_nothing_and_what_cannot_be_encoded_is_escaped(monkeypatch: pytest.MonkeyPatch) -> None:
     ours, theirs = os.pipe()
     with os.fdopen(theirs, "w", encoding="utf-8", errors="strict") as pipe:
