@@ -17,6 +17,9 @@ literal is the negation of the other.
 *Both ways.* That an option plays only if those that it feeds can do with it is said by clauses of their own
 (`support_clauses`), which are added (`Encoding.support`) when the clauses turn out to be hard without.
 
+*Probing.* Options that turn out to be in no solution when they are tried alone (`probing`) are ruled out
+(`Encoding.probe`) when the clauses turn out to be hard: to try them takes longer than most problems take.
+
 *Groups.* Where options exclude each other (`exclusion`), one bound for each group says so, in place of the needs from
 which that follows; and what counting the groups has proved is added. With patience, counting may be left, to be gone on
 with (`Encoding.count`) when the clauses turn out to be hard without.
@@ -44,6 +47,7 @@ from selfconf.search.engines.counting_order import counting_order
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.group_counting import ExclusiveGroups
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
+from selfconf.search.engines.probing import probed
 from selfconf.search.engines.support_clauses import clauses_of_needs, clauses_of_values
 from selfconf.search.engines.symmetry import interchangeable
 from selfconf.search.reduction import Constraint, Distinct, Fed, Limit, Played, ReducedProblem, Shared
@@ -348,6 +352,13 @@ class Encoding:
                 self.statements += clauses_of_values(self.plays[role], masks, values)
         return self.statements[before:]
 
+    def probe(self) -> list[list[int] | Implied]:
+        """Rule out options that were tried alone, where roles share components, and return the clauses."""
+        before = len(self.statements)
+        if self.reduced.shares_components():
+            self._rule_out(probed(self.reduced))
+        return self.statements[before:]
+
     def count(self) -> list[list[int]]:
         """Add what follows from counting groups and needs that have not been counted yet, and return the clauses."""
         before, after = len(self.statements), self._exclusive.all_counted()
@@ -364,14 +375,19 @@ class Encoding:
         if isinstance(left, Undersupply):
             self.statements += [[self.literal()], [-self.top]]
             return
-        for literals, options, kept in zip(self.plays, self.reduced.options, left.options, strict=True):
-            numbers = {option.number for option in kept} if len(kept) < len(options) else None
-            self.statements += [
-                [-literal]
-                for literal, option in zip(literals, options, strict=True)
-                if numbers is not None and option.number not in numbers
-            ]
+        self._rule_out(left)
         self._limits(limits(self.reduced, counted))
+
+    def _rule_out(self, left: ReducedProblem) -> None:
+        """Rule out the options that are not left of the problem."""
+        for literals, options, kept in zip(self.plays, self.reduced.options, left.options, strict=True):
+            if len(kept) < len(options):
+                numbers = {option.number for option in kept}
+                self.statements += [
+                    [-literal]
+                    for literal, option in zip(literals, options, strict=True)
+                    if option.number not in numbers
+                ]
 
     def _limits(self, known: Iterable[Limit]) -> None:
         """Write how many of some options may play."""

@@ -8,8 +8,8 @@ with it.
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
-begins. It soon gets support clauses, from which more propagates (`support_clauses`), and, where roles ask for many, the
-counting as clauses too. After `BRIEF` steps clasp works beside it;
+begins. It soon gets support clauses, from which more propagates (`support_clauses`), what trying options alone rules
+out (`probing`), and, where roles ask for many, the counting as clauses too. After `BRIEF` steps clasp works beside it;
 where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
 would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and takes the place of clasp; if
 no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take turns on the other processor. Where there is one
@@ -33,7 +33,7 @@ from selfconf.search.engines.turn import Turn
 from selfconf.search.reduction import Option, ReducedProblem
 
 UNSUPPORTED = 100
-"""Conflicts and questions of the first solver before it gets support clauses."""
+"""Conflicts and questions of the first solver before it gets support clauses, and options are tried alone."""
 BRIEF = 1_000
 """Conflicts and questions of the first solver before it has company."""
 BRIEF_COUNTING = 250
@@ -113,7 +113,7 @@ class _Descent:
             first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
             self.advance(first, UNSUPPORTED)
             if not self.finished:
-                first.clauses.extend(encoding.support(), encoding.top)
+                first.clauses.extend([*encoding.support(), *encoding.probe()], encoding.top)
             if any(bound.worth_counting for bound in encoding.bounds):
                 self.advance(first, BRIEF_COUNTING)
                 if not self.finished:

@@ -120,6 +120,11 @@ class ReducedProblem:
         """Return for each role the components of its options, in order: what matching works on."""
         return [[option.component for option in options] for options in self.options]
 
+    def shares_components(self) -> bool:
+        """Return whether some component is an option of two roles; if not, every choice is a matching."""
+        components = self.components()
+        return len(set[IRI]().union(*components)) < sum(map(len, components))
+
 
 def in_order(given: ReducedProblem) -> ReducedProblem:
     """Return a problem with the options of each role in the order of the candidates."""

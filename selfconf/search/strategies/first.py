@@ -154,15 +154,11 @@ def _prefix_impossible(problem: Problem, roles: int, budget: Budget) -> bool:
 
 
 def least_of(
-    given: ReducedProblem,
-    budget: Budget,
-    by_clauses: Engine = least_by_clauses,
-    probing: bool = True,
-    dividing: bool = True,
+    given: ReducedProblem, budget: Budget, by_clauses: Engine = least_by_clauses, dividing: bool = True
 ) -> list[Option] | Undecided | None:
     """Return the least solution of a reduced problem, by the first engine that finds it; None if there is none.
 
-    Options are tried alone only with `probing`, values of parameters only with `dividing`.
+    It is divided by the values of parameters only with `dividing`.
     """
     remaining = pruned(given)
     if remaining.wiped_out() is not None:
@@ -184,7 +180,7 @@ def least_of(
             return chosen
         remaining = replace(remaining, limits=limits(remaining, counted))
     if matching is not None:
-        return _least_of_sharing(remaining, budget, by_clauses, probing, dividing)
+        return _least_of_sharing(remaining, budget, by_clauses, dividing)
     return _by_clauses(remaining, budget, by_clauses)
 
 
@@ -206,17 +202,12 @@ def _supplying(given: ReducedProblem) -> tuple[ReducedProblem, list[CountedNeeds
 
 
 def _matching(given: ReducedProblem) -> MaintainedMatching[IRI] | None:
-    """Return a matching of slots and components; None where no component is an option of two roles.
-
-    There every choice is a matching.
-    """
-    components = given.components()
-    shared = len(set[IRI]().union(*components)) < sum(map(len, components))
-    return MaintainedMatching(given.slots, components) if shared else None
+    """Return a matching of slots and components; None where no component is an option of two roles."""
+    return MaintainedMatching(given.slots, given.components()) if given.shares_components() else None
 
 
 def _least_of_sharing(
-    given: ReducedProblem, budget: Budget, by_clauses: Engine, probing: bool, dividing: bool
+    given: ReducedProblem, budget: Budget, by_clauses: Engine, dividing: bool
 ) -> list[Option] | Undecided | None:
     """Return the least solution of a problem whose roles share components, given that these can be matched.
 
@@ -226,9 +217,6 @@ def _least_of_sharing(
     excluded = unmatchable(given.slots, given.components())
     assert not isinstance(excluded, HallSet)
     remaining = _without(given, excluded)
-    fewer = probed(remaining) if probing else remaining
-    if fewer is not remaining:
-        return least_of(fewer, budget, by_clauses, False, dividing)
     cases = value_cases(remaining) if dividing else None
     if cases is not None:
         return _least_of_cases(cases, budget, by_clauses)
@@ -239,6 +227,10 @@ def _by_clauses(given: ReducedProblem, budget: Budget, by_clauses: Engine) -> li
     """Return a solution by clause learning, or by depth-first search without an end where there is no solver."""
     if solver_available():
         return by_clauses(given, budget)
+    if given.shares_components():
+        given = probed(given)
+        if given.wiped_out() is not None or hall_set(given.slots, given.components()) is not None:
+            return None
     matching = _matching(given)
     if exclusive_groups(given).impossible:
         return None

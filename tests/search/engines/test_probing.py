@@ -12,11 +12,13 @@ from benchmarks.search.families import profile
 from benchmarks.search.further_families import counted
 from selfconf.model.partition import Candidate
 from selfconf.search.budget import Budget
-from selfconf.search.engines import hall_set, probed, probing
+from selfconf.search.engines import encoding, hall_set, probed, probing
+from selfconf.search.engines.encoding import Encoding
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
 from selfconf.search.strategies import solution
 from tests.search.oracle import World
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, problems, rivalries
 
 
@@ -63,3 +65,29 @@ def test_a_choice_that_leaves_too_few_is_found_without_counting_by_cases() -> No
     """Clause learning alone has needed more than a minute."""
     budget = Budget(20_000)
     assert isinstance(solution(LazyReduction(licences(7, 44, 4, 12)), budget), list)
+
+
+@pytest.mark.parametrize("seed", [0, 4, 7, 17])
+def test_without_solvers_options_are_tried_alone_before_depth_first_search_goes_on(seed: int) -> None:
+    """Without that these are undecided after as many steps."""
+    with without_solvers():
+        assert solution(LazyReduction(licences(5, 20, 3, seed)), Budget(3_000)) is None
+
+
+def test_what_trying_options_alone_rules_out_is_added_to_the_clauses() -> None:
+    before = pruned(reduced(licences(7, 44, 4, 12)))
+    removed = pairs(before) - pairs(probed(before))
+    written = Encoding(before)
+    literals = {
+        literal: (role, option.number)
+        for role, (some, options) in enumerate(zip(written.plays, before.options, strict=True))
+        for literal, option in zip(some, options, strict=True)
+    }
+    clauses = [clause for clause in written.probe() if isinstance(clause, list)]
+    assert {literals[-literal] for (literal,) in clauses} == removed
+
+
+def test_options_are_not_tried_alone_where_roles_share_no_component(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = counted([[Candidate(profile(f"{role}{k}")) for k in range(2)] for role in range(2)], [1, 1], [])
+    monkeypatch.setattr(encoding, "probed", lambda _: pytest.fail("options were tried"))
+    assert Encoding(reduced(problem)).probe() == []
