@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, joined
@@ -52,8 +51,9 @@ def _json(signal: HeardSignal) -> str:
 
 
 def _text(signal: HeardSignal) -> str:
-    stamp = signal.stamp
-    moment = time.strftime("%H:%M:%S", time.localtime(stamp.time)) + f".{int(stamp.time % 1 * 1000):03}"
+    from selfconf.render import clock_time
+
+    moment = clock_time(signal.stamp.time, exact=True)
     missed = f" ({signal.passed_over} passed over)" if signal.passed_over else ""
     return f"{paint(moment, 'dim')}  {signal.rate:6.1f}/s  {signal.worded()}{missed}"
 

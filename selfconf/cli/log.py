@@ -72,8 +72,11 @@ def _json(line: LogLine) -> str:
 
 
 def _text(line: LogLine) -> str:
+    from selfconf.render import clock_time
+
     names = ",".join(component.short for component in line.components)
-    return f"{paint(line.local_time, 'dim')} {names}: {paint(line.text, _COLOURS.get(line.stream, ''))}"
+    moment = line.time if line.moment is None else clock_time(line.moment, exact=True)
+    return f"{paint(moment, 'dim')} {names}: {paint(line.text, _COLOURS.get(line.stream, ''))}"
 
 
 def _number(text: str) -> int:

@@ -27,13 +27,13 @@ class LogLine(NamedTuple):
         return not component or any(component in (one, one.short) for one in self.components)
 
     @property
-    def local_time(self) -> str:
-        """The time of day here, for people."""
+    def moment(self) -> float | None:
+        """When it was printed, in seconds of the Unix epoch; None where the time is none."""
         try:
-            moment = datetime.strptime(self.time, "%Y-%m-%dT%H:%M:%S.%fZ").replace(tzinfo=timezone.utc)
+            printed = datetime.strptime(self.time, "%Y-%m-%dT%H:%M:%S.%fZ")
         except ValueError:
-            return self.time
-        return moment.astimezone().strftime("%H:%M:%S.%f")[:-3]
+            return None
+        return printed.replace(tzinfo=timezone.utc).timestamp()
 
     def body(self) -> dict[str, object]:
         """The line as JSON."""

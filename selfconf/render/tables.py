@@ -24,17 +24,18 @@ def duration(seconds: float) -> str:
     return " ".join(said)
 
 
-def clock_time(seconds: float) -> str:
+def clock_time(seconds: float, *, exact: bool = False) -> str:
     """A moment, in seconds of the Unix epoch, as the clock here shows it: with the date, unless that is today's.
 
-    What a stranger says may be beyond any date; then the seconds are shown.
+    `exact`: to the millisecond. What a stranger says may be beyond any date; then the seconds are shown.
     """
     try:
         moment = datetime.fromtimestamp(seconds).astimezone()
     except (OverflowError, OSError, ValueError):
         return f"{seconds:g} s"
     today = moment.date() == datetime.now().astimezone().date()
-    return moment.strftime("%H:%M:%S" if today else "%Y-%m-%d %H:%M:%S")
+    shown = moment.strftime("%H:%M:%S" if today else "%Y-%m-%d %H:%M:%S")
+    return f"{shown}.{moment.microsecond // 1000:03}" if exact else shown
 
 
 def table(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import signal
+from dataclasses import replace
+from datetime import datetime
 
 import pytest
 
@@ -79,3 +81,9 @@ def test_values_are_shortened_and_bytes_described() -> None:
     image = Stamp(IRI("urn:c"), "life", 1, 0.25, SignalEncoding("image/x-raw", "uint8", (2, 3)))
     assert echo._text(HeardSignal(image, 2.0, 6, True)).endswith("<image/x-raw of uint8 2 x 3, 6 bytes>")
     assert echo._text(HeardSignal(STAMP, 2.0, 6, True)).endswith("2.0/s  <6 bytes>")
+
+
+def test_the_time_of_a_clock_of_its_own_is_shown_with_its_date_or_as_it_is() -> None:
+    own = echo._text(HeardSignal(replace(STAMP, time=86_400.25), 2.0, 6, True))
+    assert own.startswith(f"{datetime.fromtimestamp(86_400).astimezone():%Y-%m-%d %H:%M:%S}.250  ")
+    assert echo._text(HeardSignal(replace(STAMP, time=1e300), 2.0, 6, True)).startswith("1e+300 s  ")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import signal
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
 
 import pytest
 
@@ -80,3 +82,14 @@ def test_where_no_log_is_kept_there_is_one_sentence(
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
     assert run(capsys, "log").is_one_sentence("no site has kept a log")
     assert run(capsys, "log", "--lines", "x").is_one_sentence("is no number of lines")
+
+
+def test_lines_of_another_day_have_its_date(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    now = datetime.now(timezone.utc)
+    before = now - timedelta(days=2)
+    (tmp_path / "e@home.log").write_text(
+        "".join(f"{when:%Y-%m-%dT%H:%M:%S.123Z} stdout {iri('talker')} said\n" for when in (before, now))
+    )
+    shown = run(capsys, "log", "--log", str(tmp_path), "--ecology", "e").out.splitlines()
+    assert shown[0] == f"{before.astimezone():%Y-%m-%d %H:%M:%S}.123 talker: said"
+    assert shown[1].endswith(f"{now.astimezone():%H:%M:%S}.123 talker: said")

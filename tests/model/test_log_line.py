@@ -1,6 +1,8 @@
-"""A line of a log: whom it concerns, and its time for people."""
+"""A line of a log: whom it concerns, and when it was printed."""
 
 from __future__ import annotations
+
+from datetime import datetime, timezone
 
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI
@@ -15,6 +17,6 @@ def test_a_line_concerns_each_component_of_its_process_by_iri_or_local_name() ->
     assert LINE.body()["components"] == [CLOCK, LAMP]
 
 
-def test_its_time_is_shown_as_it_is_here_and_what_is_no_time_as_it_stands() -> None:
-    assert len(LINE.local_time) == len("06:30:01.000")
-    assert LINE._replace(time="torn").local_time == "torn"
+def test_its_moment_is_in_seconds_of_the_unix_epoch_and_what_is_no_time_has_none() -> None:
+    assert LINE.moment == datetime(2026, 11, 22, 6, 30, 1, tzinfo=timezone.utc).timestamp()
+    assert LINE._replace(time="torn").moment is None

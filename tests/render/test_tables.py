@@ -57,7 +57,11 @@ def test_a_moment_of_another_day_has_its_date_and_one_beyond_any_date_its_second
     assert clock_time(now.timestamp()) in (now.strftime("%H:%M:%S"), now.strftime("%Y-%m-%d %H:%M:%S"))
     before = now - timedelta(days=3)
     assert clock_time(before.timestamp()) == before.strftime("%Y-%m-%d %H:%M:%S")
-    assert clock_time(1e300) == "1e+300 s"
+    assert (
+        clock_time(before.timestamp(), exact=True)
+        == f"{clock_time(before.timestamp())}.{before.microsecond // 1000:03}"
+    )
+    assert clock_time(1e300) == clock_time(1e300, exact=True) == "1e+300 s"
 
 
 def test_cells_may_be_styled_without_a_change_of_their_widths() -> None:
