@@ -5,8 +5,8 @@ lease of one second: what is stopped or cut off counts as dead after about that 
 
 Hubs offer shared memory to the clients of their host, and the sessions of components take it: a large payload is then
 copied into it once, and only a reference goes through the sockets (`docs/benchmarks/signals.md`). Where the other end
-cannot see that memory, or all of it is in use, the payload itself goes through the socket, as it always does for small
-ones. A hub has room for 350 such clients; others cost it nothing.
+cannot see that memory, or all of it is in use, or a program may not lock as much memory as it likes, the payload itself
+goes through the socket, as it always does for small ones. A hub has room for 350 such clients; others cost it nothing.
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ import errno
 import json
 import os
 import random
+import re
 import resource
 import socket
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +56,11 @@ FREE_DESCRIPTORS = 32
 """How many files a program must still be free to open: a session takes about twenty, and some for its first links.
 With fewer Zenoh does not fail: it may hang, or abort the process."""
 _PORTS_TRIED = 100
+STATUS = Path("/proc/self/status")
+"""What Linux says of this process (proc_pid_status(5))."""
+CAP_IPC_LOCK = 14
+"""The number of the capability to lock memory without a limit (capabilities(7))."""
+_EFFECTIVE = re.compile(r"^CapEff:\s*([0-9a-f]+)$", re.MULTILINE)
 ENOUGH_SHARED = 256_000_000
 """Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
 _RETRY = {
@@ -141,7 +148,21 @@ def _has_shared_memory() -> bool:
         there = os.statvfs(SHARED_MEMORY)
     except OSError:
         return False
-    return there.f_bavail * there.f_frsize >= ENOUGH_SHARED
+    return there.f_bavail * there.f_frsize >= ENOUGH_SHARED and _locks_any_memory()
+
+
+def _locks_any_memory() -> bool:
+    """Whether this process may lock as much memory as it likes: by its limit, or as it has CAP_IPC_LOCK.
+
+    Zenoh locks 16 MiB for what a program sends and as much for each other that it hears; a signal in memory that cannot
+    be locked is lost.
+    """
+    if resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY:
+        return True
+    with suppress(OSError):
+        may = _EFFECTIVE.search(STATUS.read_text())
+        return may is not None and bool(int(may[1], 16) >> CAP_IPC_LOCK & 1)
+    return False
 
 
 def _config(

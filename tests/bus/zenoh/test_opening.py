@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import resource
 import socket
 import threading
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -58,20 +60,65 @@ def shared(source: Any, sink: Any, size: int) -> bool:
     return any(came)
 
 
+def limited(monkeypatch: pytest.MonkeyPatch, folder: Path, capabilities: int = 0, limit: int = 8 << 20) -> None:
+    """Make this process one with some capabilities, that may lock so many bytes."""
+    status = folder / "status"
+    status.write_text(f"Name:\tpython\nCapPrm:\tffff\nCapEff:\t{capabilities:016x}\nSeccomp:\t0\n")
+    monkeypatch.setattr(session_setup, "STATUS", status)
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (limit, limit))
+
+
+@pytest.mark.parametrize(
+    ("capabilities", "limit", "may"),
+    [
+        (0, 8 << 20, False),
+        (0x1FF & ~(1 << 14), 8 << 20, False),
+        (1 << 14, 8 << 20, True),
+        (0x1FFFFFFFFFF, 1 << 16, True),
+        (0, resource.RLIM_INFINITY, True),
+    ],
+)
+def test_any_memory_is_locked_without_a_limit_or_by_the_capability(
+    capabilities: int, limit: int, may: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    limited(monkeypatch, tmp_path, capabilities, limit)
+    assert session_setup._locks_any_memory() == may
+
+
+def test_where_no_capabilities_are_told_memory_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    limited(monkeypatch, tmp_path)
+    for status in (tmp_path / "none", tmp_path):
+        monkeypatch.setattr(session_setup, "STATUS", status)
+        assert not session_setup._locks_any_memory()
+
+
+@pytest.fixture
+def may_lock_memory() -> None:
+    """A process that Zenoh's shared memory is for."""
+    if not session_setup._locks_any_memory():
+        pytest.skip("this user may lock too little memory for shared memory; `ulimit -l unlimited`")
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("may_lock_memory")
 def test_large_payloads_of_clients_that_want_it_go_through_shared_memory(
-    zenoh_router: ZenohBus, monkeypatch: pytest.MonkeyPatch
+    zenoh_router: ZenohBus, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     wants = [client([zenoh_router.endpoint], shared_memory=True) for _ in range(2)]
     plain = client([zenoh_router.endpoint])
-    monkeypatch.setattr(session_setup, "ENOUGH_SHARED", 1 << 62)
-    in_a_small_container = client([zenoh_router.endpoint], shared_memory=True)
+    with monkeypatch.context() as small:
+        small.setattr(session_setup, "ENOUGH_SHARED", 1 << 62)
+        in_a_small_container = client([zenoh_router.endpoint], shared_memory=True)
+    with monkeypatch.context() as locking_little:
+        limited(locking_little, tmp_path)
+        of_a_user = client([zenoh_router.endpoint], shared_memory=True)
     source, sink = (bus._session for bus in wants)
     assert shared(source, sink, 2 * session_setup.SHARED_FROM)
     assert not shared(source, sink, session_setup.SHARED_FROM // 2)
     assert not shared(source, plain._session, 2 * session_setup.SHARED_FROM)
     assert not shared(in_a_small_container._session, sink, 2 * session_setup.SHARED_FROM)
-    for bus in (*wants, plain, in_a_small_container):
+    assert not shared(source, of_a_user._session, 2 * session_setup.SHARED_FROM)
+    for bus in (*wants, plain, in_a_small_container, of_a_user):
         bus.close()
 
 
