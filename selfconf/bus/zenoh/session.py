@@ -56,7 +56,7 @@ FREE_DESCRIPTORS = 32
 """How many files a program must still be free to open: a session takes about twenty, and some for its first links.
 With fewer Zenoh does not fail: it may hang, or abort the process."""
 _PORTS_TRIED = 100
-STATUS = Path("/proc/self/status")
+PROCESS_STATUS = Path("/proc/self/status")
 """What Linux says of this process (proc_pid_status(5))."""
 CAP_IPC_LOCK = 14
 """The number of the capability to lock memory without a limit (capabilities(7))."""
@@ -160,7 +160,7 @@ def _locks_any_memory() -> bool:
     if resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY:
         return True
     with suppress(OSError):
-        may = _EFFECTIVE.search(STATUS.read_text())
+        may = _EFFECTIVE.search(PROCESS_STATUS.read_text())
         return may is not None and bool(int(may[1], 16) >> CAP_IPC_LOCK & 1)
     return False
 

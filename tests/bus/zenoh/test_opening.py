@@ -64,7 +64,7 @@ def limited(monkeypatch: pytest.MonkeyPatch, folder: Path, capabilities: int = 0
     """Make this process one with some capabilities, that may lock so many bytes."""
     status = folder / "status"
     status.write_text(f"Name:\tpython\nCapPrm:\tffff\nCapEff:\t{capabilities:016x}\nSeccomp:\t0\n")
-    monkeypatch.setattr(session_setup, "STATUS", status)
+    monkeypatch.setattr(session_setup, "PROCESS_STATUS", status)
     monkeypatch.setattr(resource, "getrlimit", lambda _: (limit, limit))
 
 
@@ -88,7 +88,7 @@ def test_any_memory_is_locked_without_a_limit_or_by_the_capability(
 def test_where_no_capabilities_are_told_memory_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     limited(monkeypatch, tmp_path)
     for status in (tmp_path / "none", tmp_path):
-        monkeypatch.setattr(session_setup, "STATUS", status)
+        monkeypatch.setattr(session_setup, "PROCESS_STATUS", status)
         assert not session_setup._locks_any_memory()
 
 
