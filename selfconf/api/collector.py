@@ -14,6 +14,8 @@ MANY_VALUES = 10_000
 """From how many new values on it is worth asking what is frozen, which takes longer the more that is."""
 MANY_COMPONENTS = 1_000
 """From how many components on it is worth asking what is frozen."""
+FROZEN_BY_PYTHON = 1_000
+"""How many values may be frozen that no program has frozen: Python 3.12 does so with 375 as it starts."""
 SELDOM = 100_000
 """After how many new values there is a look at them, while many are made of which most are kept."""
 
@@ -27,7 +29,7 @@ def collector_at_rest() -> Iterator[None]:
     try:
         yield
     finally:
-        if gc.get_count()[0] - before >= MANY_VALUES and not gc.get_freeze_count():
+        if gc.get_count()[0] - before >= MANY_VALUES and not _program_has_frozen():
             gc.freeze()
             gc.unfreeze()  # moves everything to the oldest generation, without a look at it
         if collecting:
@@ -37,7 +39,7 @@ def collector_at_rest() -> Iterator[None]:
 @contextmanager
 def collector_looking_at_new(components: int) -> Iterator[None]:
     """Garbage collection of what is made meanwhile alone, and seldom, where many components are there."""
-    if components < MANY_COMPONENTS or gc.get_freeze_count():
+    if components < MANY_COMPONENTS or _program_has_frozen():
         yield
         return
     often, *rounds = gc.get_threshold()
@@ -48,3 +50,7 @@ def collector_looking_at_new(components: int) -> Iterator[None]:
     finally:
         gc.unfreeze()
         gc.set_threshold(often, *rounds)
+
+
+def _program_has_frozen() -> bool:
+    return gc.get_freeze_count() > FROZEN_BY_PYTHON

@@ -11,7 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.api.collector import MANY_COMPONENTS, MANY_VALUES, SELDOM, collector_at_rest, collector_looking_at_new
+from selfconf.api.collector import (
+    FROZEN_BY_PYTHON,
+    MANY_COMPONENTS,
+    MANY_VALUES,
+    SELDOM,
+    collector_at_rest,
+    collector_looking_at_new,
+)
 
 ROOT = Path(__file__).parents[2]
 
@@ -59,7 +66,7 @@ def look_once_all_is_over() -> None:
         assert gone() is not None
     gc.collect()
     assert gone() is None
-    assert not gc.get_freeze_count()
+    assert gc.get_freeze_count() <= FROZEN_BY_PYTHON
     assert gc.get_threshold() == often
 
 
