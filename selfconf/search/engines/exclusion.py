@@ -7,6 +7,9 @@ constraint with many options propagates like all of its pairs, in a fraction of 
 Where each role that constrains a free parameter admits other values of it than all other roles, the options that
 constrain it are a group too: "who has the room at nine" lets one lecture have it.
 
+Where no three roles have conflicts with each other, as between items and the bins that take some of them, groups would
+be of two roles each, which say no more than the needs do, and are not counted: there needs stay needs.
+
 Which options exclude each other is read by a `ConflictGraph`, and what follows from the groups found by a
 `GroupCounting`. Where nothing but components exclude each other, the groups are the components: matching has counted
 all but the sets of roles that need each of their components.
@@ -23,7 +26,7 @@ from operator import or_
 
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
-from selfconf.search.engines.conflict_graph import ConflictGraph, often_supported
+from selfconf.search.engines.conflict_graph import ConflictGraph, numbers_of, often_supported
 from selfconf.search.engines.group_counting import ExclusiveGroups, GroupCounting
 from selfconf.search.reduction import NeedScope, ReducedProblem
 
@@ -39,9 +42,9 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True, patience: i
     If components need not be distinct, one component in two roles is no conflict. With patience, counting is left after
     so many groups from which nothing followed, if nothing has followed from any; `all_counted` then goes on.
     """
-    needs = _fed_by_one(reduced)
     names = [option.component for options in reduced.options for option in options if option.component]
     shared = distinct and len(set(names)) < len(names)
+    needs = _fed_by_one(reduced, shared)
     of_values = _groups_of_values(reduced)
     by_values = [some for some in of_values.values() if some]
     if not needs and not shared and not by_values:
@@ -142,19 +145,14 @@ def _connected(roles_of: Mapping[IRI, Sequence[int]]) -> Iterator[tuple[set[int]
         yield found, list(components)
 
 
-def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
+def _fed_by_one(reduced: ReducedProblem, shared: bool) -> dict[int, set[int]]:
     """Return for each role with one slot the needs of other roles that it alone feeds, mostly by many of its options.
 
-    None are returned if these are few.
+    None are returned if these are few, or if no three roles may have conflicts with each other.
     """
     scopes = reduced.needs.scopes
-    asked = Counter(reduced.slots)
-    alone: dict[NeedScope, int] = {}
-    for scope in dict.fromkeys(scopes):
-        role, *others = [source.role for source in scope.sources] or [scope.role]
-        if role != scope.role and asked[role] == 1 and others.count(role) == len(others):
-            alone[scope] = role
-    if not alone:
+    alone = _feeding_alone(reduced)
+    if not _any_three(alone, _sharing(reduced) if alone and shared else ()):
         return {}
     found: defaultdict[int, set[int]] = defaultdict(set)
     used = set[int]().union(*[option.kind.needs for options in reduced.options for option in options])
@@ -163,3 +161,38 @@ def _fed_by_one(reduced: ReducedProblem) -> dict[int, set[int]]:
             found[alone[scopes[number]]].add(number)
     often = {role: some for role, needs in found.items() if (some := often_supported(reduced.options[role], needs))}
     return often if sum(map(len, often.values())) * SHARE_EXCLUDING >= len(used) else {}
+
+
+def _feeding_alone(reduced: ReducedProblem) -> dict[NeedScope, int]:
+    """Return the scopes that one other role with one slot alone feeds, with that role."""
+    asked = Counter(reduced.slots)
+    alone: dict[NeedScope, int] = {}
+    for scope in dict.fromkeys(reduced.needs.scopes):
+        role, *others = [source.role for source in scope.sources] or [scope.role]
+        if role != scope.role and asked[role] == 1 and others.count(role) == len(others):
+            alone[scope] = role
+    return alone
+
+
+def _any_three(alone: Mapping[NeedScope, int], sharing: Iterable[int]) -> bool:
+    """Return whether three roles may have conflicts with each other, given the role that feeds each scope alone.
+
+    Given are also the sets of roles that have a component in common, as masks.
+    """
+    beside: defaultdict[int, int] = defaultdict(int)
+    for scope, role in alone.items():
+        beside[role] |= 1 << scope.role
+        beside[scope.role] |= 1 << role
+    for roles in sharing:
+        for role in numbers_of(roles):
+            beside[role] |= roles & ~(1 << role)
+    return any(beside[role] & beside[scope.role] for scope, role in alone.items())
+
+
+def _sharing(reduced: ReducedProblem) -> set[int]:
+    """Return the sets of roles that have a component in common, as masks."""
+    roles_of: dict[IRI, int] = {}
+    for role, options in enumerate(reduced.options):
+        for option in options:
+            roles_of[option.component] = roles_of.get(option.component, 0) | 1 << role
+    return {roles for component, roles in roles_of.items() if component and roles & (roles - 1)}

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from benchmarks.search.families import distinct, iri, profile
 from benchmarks.search.further_families import colouring, counted, in_pairs
-from selfconf.model.partition import ANY_VALUE, Candidate, Variable
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.search.budget import Budget
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.exclusion import exclusive_groups
@@ -68,9 +68,20 @@ def in_step(excluding: int, following: int) -> ReducedProblem:
 
 
 def test_few_conflicts_among_many_needs_that_few_options_meet_stay_needs() -> None:
-    assert exclusive_groups(in_step(2, 0)).stated
-    found = exclusive_groups(in_step(2, 30))
+    assert exclusive_groups(in_step(3, 0)).stated
+    found = exclusive_groups(in_step(3, 60))
     assert (found.groups, found.stated) == ((), frozenset())
+
+
+@pytest.mark.parametrize("shared", [False, True])
+def test_where_no_three_roles_have_conflicts_with_each_other_needs_stay_needs(shared: bool) -> None:
+    """A square of four roles has none; with a component in two of its corners it has two triangles."""
+    square = in_pairs([range(5)] * 4, dict.fromkeys([(0, 1), (1, 2), (2, 3), (0, 3)], ne))
+    both = Candidate(profile("both"))
+    corners = [(*some, both) if shared and role in (0, 2) else some for role, some in enumerate(square.candidates)]
+    found = exclusive_groups(reduced(Problem(square.task, Partition(tuple(corners)))))
+    assert bool(found.stated) == shared
+    assert bool(found.groups) == shared
 
 
 def test_pigeonholes_are_counted_beside_many_needs_that_few_options_meet() -> None:
