@@ -30,6 +30,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Apply, Wire
 from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.component import Signal
 from selfconf.sdk.inputs.input_subscription import InputEvents, InputSubscription
 from selfconf.sdk.inputs.signal_queue import SignalQueue
 from selfconf.sdk.inputs.silence_watch import BEGINNING, PATIENCE
@@ -143,6 +144,8 @@ class Inputs:
         """Which outputs each input is to follow, and which stand by."""
         self._handovers: dict[str, Handover] = {}
         """The inputs that follow what they followed before as well, until a new output has issued a signal."""
+        self._taken_over: dict[str, Handover] = {}
+        """The latest handover of each input in which a new output has delivered one."""
         self._dropped = 0
         """How many signals were dropped of subscriptions that have ended."""
 
@@ -288,9 +291,24 @@ class Inputs:
 
     def _subscription(self, port: str, wire: Wire) -> InputSubscription:
         queue = SignalQueue(self._depths.get(port) or (1 if wire.period is not None else None))
+        events = replace(self._events, deliver=partial(self._deliver, wire))
         return InputSubscription(
-            self._bus, self._keys, self._code, port, wire, queue, self._events, self._lost, self._read_value
+            self._bus, self._keys, self._code, port, wire, queue, events, self._lost, self._read_value
         )
+
+    def _deliver(self, wire: Wire, port: str, signal: Signal) -> None:
+        """Deliver a signal, but none of the old outputs once a new one has: it may be looked only later who issues.
+
+        Called on the thread of the component's code.
+        """
+        handover = self._handovers.get(port)
+        if handover is not None and wire in handover.new:
+            self._taken_over[port] = handover
+        elif handover is not None and wire in handover.old:
+            taken_over = self._taken_over.get(port)
+            if taken_over is not None and taken_over.began == handover.began:
+                return
+        self._events.deliver(port, signal)
 
     def _lost(self, port: str) -> None:
         """One output that an input follows is lost; the input is unfed if that was the last one.

@@ -14,7 +14,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.inputs.input_subscription import JUST_COME, UNSEEN
-from selfconf.sdk.inputs.inputs import HANDOVER
+from selfconf.sdk.inputs.inputs import HANDOVER, HANDOVER_CHECK
 from selfconf.sdk.inputs.silence_watch import PATIENCE
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.runtime.supervision import GRACE
@@ -383,6 +383,22 @@ def test_an_input_goes_on_following_what_fed_it_while_the_next_issues_nothing_an
     assert change.told == {TRACKER.short}
     assert change.stage.state().patience == 0.0
     assert change.answers
+
+
+def test_an_input_hears_nothing_of_what_fed_it_once_the_next_has_delivered() -> None:
+    change = Change()
+    change.stage.let_pass(0.1)
+    change.stage.recorder.said.clear()
+    for source in (change.tracker, change.odometry, change.tracker, change.odometry):
+        source.component.emit("pose", source.profile.component.short)
+        change.stage.let_pass(HANDOVER_CHECK / 10)
+    heard = [said[1] for said in change.stage.recorder.said]
+    assert heard == [TRACKER.short, ODOMETRY.short, ODOMETRY.short]
+    change.stage.let_pass(0.2)
+    change.stage.call(apply(4, US, {"position": (Wire(TRACKER, "pose"),)}, gently=True))
+    change.tracker.component.emit("pose", "back")
+    change.stage.let_pass(0.2)
+    assert change.stage.recorder.said[-1] == ("position", "back")
 
 
 def test_time_in_which_the_machine_stalls_is_none_in_which_the_next_output_issues_nothing() -> None:
