@@ -236,10 +236,115 @@ def magic(given: int, seed: int) -> Problem:
     return counted(parts, [1] * len(parts), (), variables)
 
 
+def building(floors: int, rooms: int, each: int, protocols: int, seed: int) -> Problem:
+    """A building with a backbone, a gateway for each floor, and a sensor, a controller and a lamp for each room.
+
+    For each of these there are so many candidates, and each speaks one or two protocols; a sensor of a floor's hall may
+    serve any room of the floor, but one alone.
+    """
+    rng = random.Random(seed)
+
+    def spoken(kind: str, number: int) -> list[str]:
+        return [f"{kind}{protocol}" for protocol in rng.sample(range(protocols), number)]
+
+    def some(name: str, heard: Mapping[int, str], issued: str, number: int) -> list[Candidate]:
+        return [
+            hearing(
+                f"{name}.{k:02}",
+                {role: signal for role, kind in heard.items() for signal in spoken(kind, 1)},
+                spoken(issued, number),
+            )
+            for k in range(each)
+        ]
+
+    parts = [some("backbone", {}, "net", 2)]
+    edges: list[tuple[int, int]] = []
+    for floor in range(floors):
+        gateway = len(parts)
+        parts.append(some(f"gateway{floor:02}", {0: "net"}, "bus", 2))
+        edges.append((0, gateway))
+        hall = some(f"hall{floor:02}", {}, "lux", 2)
+        for room in range(rooms):
+            place, sensor = f"{floor:02}.{room:02}", len(parts)
+            parts += [
+                some(f"sensor{place}", {}, "lux", 1) + hall,
+                some(f"controller{place}", {sensor: "lux", gateway: "bus"}, "dim", 1),
+                some(f"lamp{place}", {sensor + 1: "dim"}, "light", 1),
+            ]
+            edges += [(sensor, sensor + 1), (gateway, sensor + 1), (sensor + 1, sensor + 2)]
+    return heard_by_name(parts, edges)
+
+
+def bins(items: int, number: int, each: int, slack: int, seed: int) -> Problem:
+    """Items of 2 to 9 units that each fit some of the bins; a bin knows the loads that it can take, all nearly full."""
+    rng = random.Random(seed)
+    size = [rng.randint(2, 9) for _ in range(items)]
+    fits = [rng.sample(range(number), each) for _ in range(items)]
+    room = [slack] * number
+    for item, some in enumerate(fits):
+        room[rng.choice(some)] += size[item]
+    parts = [
+        [
+            hearing(f"item{item:02}.{one}", {}, [f"{'in' if one == other else 'out'}{other}" for other in some])
+            for one in some
+        ]
+        for item, some in enumerate(fits)
+    ]
+    edges: list[tuple[int, int]] = []
+    for one in range(number):
+        mine = [item for item, some in enumerate(fits) if one in some]
+        loads = [
+            load
+            for load in product((0, 1), repeat=len(mine))
+            if room[one] - 5 <= sum(size[item] for item, taken in zip(mine, load, strict=True) if taken) <= room[one]
+        ]
+        parts.append(
+            [
+                hearing(
+                    f"load{one}.{''.join(map(str, load))}",
+                    {item: f"{'in' if taken else 'out'}{one}" for item, taken in zip(mine, load, strict=True)},
+                    (),
+                )
+                for load in rng.sample(loads, len(loads))
+            ]
+        )
+        edges += [(item, items + one) for item in mine]
+    return heard_by_name(parts, edges)
+
+
+def hours(jobs: int, workers: int, projects: int, length: int, seed: int) -> Problem:
+    """Workers of one pool for jobs, each with time for three projects: all have to have an hour of each in common."""
+    rng = random.Random(seed)
+    variables = tuple(
+        Variable(iri(f"project{p:02}"), tuple(iri(f"hour{p:02}.{k:02}") for k in range(length)))
+        for p in range(projects)
+    )
+    pool = []
+    for k in range(workers):
+        admits = [ANY_VALUE] * projects
+        for project in rng.sample(range(projects), 3):
+            begin, last = rng.randrange(length), rng.randint(length // 6 + 1, length // 3)
+            admits[project] = sum(1 << (begin + hour) % length for hour in range(last))
+        pool.append(Candidate(profile(f"worker{k:03}"), tuple(admits)))
+    return counted([[one for one in pool if rng.random() < 0.35] for _ in range(jobs)], [1] * jobs, (), variables)
+
+
 NEWEST_CHOOSING: Mapping[str, Family] = {
     "squads": (
         ("20 of 60 people", lambda seed: squads(20, 60, 10, 0.4, seed)),
         ("28 of 76 people", lambda seed: squads(28, 76, 11, 0.38, seed)),
+    ),
+    "building": (
+        ("4 floors of 5 rooms", lambda seed: building(4, 5, 6, 5, seed)),
+        ("10 floors of 8 rooms", lambda seed: building(10, 8, 10, 6, seed)),
+    ),
+    "bins": (
+        ("18 items, 6 bins", lambda seed: bins(18, 6, 3, 1, seed)),
+        ("24 items, 8 bins", lambda seed: bins(24, 8, 3, 1, seed)),
+    ),
+    "hours": (
+        ("7 jobs, 8 projects", lambda seed: hours(7, 36, 8, 12, seed)),
+        ("9 jobs, 14 projects", lambda seed: hours(9, 40, 14, 16, seed)),
     ),
 }
 """What the search was changed on."""
@@ -278,6 +383,9 @@ NEWEST_REPORTING: Mapping[str, Family] = {
 
 NEWEST_SMALL: Mapping[str, Family] = {
     "squads": (("3 of 10 people", lambda seed: squads(3, 10, 4, 0.8, seed)),),
+    "building": (("1 floor of 2 rooms", lambda seed: building(1, 2, 3, 2, seed)),),
+    "bins": (("5 items, 3 bins", lambda seed: bins(5, 3, 2, 1, seed)),),
+    "hours": (("2 jobs, 4 projects", lambda seed: hours(2, 12, 4, 6, seed)),),
     "workshop": (("2 jobs, 2 machines", lambda seed: workshop(2, 2, 9, seed)),),
     "tree": (("6 nodes", lambda seed: tree(6, 2, 4, 3, seed)),),
     "cycles": (("6 nodes", lambda seed: cycles(6, 4, seed)),),

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from functools import reduce
+from operator import and_
 
 import pytest
 
@@ -11,7 +13,7 @@ from benchmarks.search.further import Asked
 from benchmarks.search.further_families import counted, cover
 from benchmarks.search.last_families import Circuit, multiplied
 from benchmarks.search.measure import Measured
-from benchmarks.search.newest_families import cycles, magic, tree, workshop
+from benchmarks.search.newest_families import bins, building, cycles, hours, magic, tree, workshop
 from benchmarks.search.report import Row
 from selfconf.model.partition import Candidate
 from tests.benchmarks.short_run import short_run
@@ -89,10 +91,47 @@ def test_a_workshop_that_has_to_end_too_early_has_no_configuration() -> None:
     assert first.selfconf(workshop(3, 2, 6, 1)) is False
 
 
+def test_each_item_is_in_the_bin_whose_load_has_it() -> None:
+    found = first.selfconf(bins(10, 3, 2, 1, 1))
+    assert isinstance(found, tuple)
+    names = [name.rpartition(":")[2] for name in found]
+    chosen = [int(name.partition(".")[2]) for name in names[:10]]
+    loads = [[int(taken) for taken in name.partition(".")[2]] for name in names[10:]]
+    assert sum(map(sum, loads)) == 10
+    assert [chosen.count(one) for one in range(3)] == [*map(sum, loads)]
+
+
+def test_workers_have_an_hour_of_each_project_in_common() -> None:
+    problem = hours(5, 36, 8, 12, 2)
+    found = first.selfconf(problem)
+    assert isinstance(found, tuple)
+    admits = {one.profile.component: one.admits for some in problem.candidates for one in some}
+    assert len(set(found)) == 5
+    assert all(reduce(and_, masks) for masks in zip(*[admits[name] for name in found], strict=True))
+
+
+def test_sensors_of_a_hall_serve_rooms_of_their_floor_alone() -> None:
+    found = first.selfconf(building(2, 4, 5, 3, 17))
+    assert isinstance(found, tuple)
+    names = [name.rpartition(":")[2] for name in found]
+    assert len(names) == len(set(names)) == 27
+    floors = [names[2:14], names[15:]]
+    assert [[name for name in some if "hall" in name] for some in floors] == [[], ["hall01.01", "hall01.02"]]
+
+
 @pytest.mark.process
 def test_the_short_run_asks_all_engines_both_questions() -> None:
     printed = short_run("benchmarks.search.further")
-    for family in ("pigeonholes", "relay chain", "crossword", "teams", "timetable", "squads", "magic square"):
+    for family in (
+        "pigeonholes",
+        "relay chain",
+        "crossword",
+        "teams",
+        "timetable",
+        "squads",
+        "building",
+        "magic square",
+    ):
         assert f"| smoke | {family} | 1 |" in printed
     assert "## Any configuration" in printed
 
