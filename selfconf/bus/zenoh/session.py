@@ -122,7 +122,9 @@ def open_session(
     except BaseException as error:  # a panic of Zenoh is no Exception
         if type(error).__name__ != PANIC:
             raise
-        raise NetworkError(f"Zenoh cannot begin ({error}); may this program start threads (`ulimit -u`)?") from None
+        raise NetworkError(
+            f"Zenoh cannot begin ({error}); may this program start threads (`ulimit -u`), and is the clock right?"
+        ) from None
 
 
 def with_port(endpoint: str) -> str:
