@@ -236,7 +236,7 @@ def announce_for(other: LocalSite, relays: bool) -> None:
 def relays(path: Path) -> bool:
     """Whether the file of a site says that it relays; True where it cannot be read."""
     try:
-        return json.loads(path.read_text())["relays"] is not False
+        return json.loads(path.read_text("utf-8"))["relays"] is not False
     except (OSError, ValueError, KeyError, TypeError):
         return True
 
@@ -253,7 +253,7 @@ def _write(site: LocalSite) -> Path:
 def leave(path: Path) -> None:
     """Remove the file of a site of this process; a file that another process has written since stays."""
     try:
-        if json.loads(path.read_text())["process"] == os.getpid():
+        if json.loads(path.read_text("utf-8"))["process"] == os.getpid():
             path.unlink()
     except (OSError, ValueError, KeyError, TypeError):
         return

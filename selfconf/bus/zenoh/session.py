@@ -162,7 +162,7 @@ def _locks_any_memory() -> bool:
     if resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY:
         return True
     with suppress(OSError):
-        may = _EFFECTIVE.search(PROCESS_STATUS.read_text())
+        may = _EFFECTIVE.search(PROCESS_STATUS.read_text("utf-8", "replace"))
         return may is not None and bool(int(may[1], 16) >> CAP_IPC_LOCK & 1)
     return False
 

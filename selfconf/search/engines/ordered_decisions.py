@@ -55,7 +55,7 @@ class OrderedDecisions:
         self._found: list[int] = []
         self.possible: bool | None = None
         """Whether there is a solution, once that is known."""
-        with tempfile.NamedTemporaryFile("w") as program:
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8") as program:
             program.write("\n".join(_aspif(encoding)))
             program.flush()
             self._control.load(program.name)
