@@ -168,6 +168,8 @@ class LivingTasks:
                 *(one.suspension() for one in suspended),
             ]
         )
+        ended = set(map(str, holding))  # without an error, what they held has come to rest for good
+        self.complaints = tuple(one for one in self.complaints if one not in ended)
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
 

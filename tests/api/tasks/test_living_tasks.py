@@ -184,6 +184,7 @@ def test_an_inside_goes_on_where_the_sites_keep_a_task_of_its_name_and_ends_by_i
     tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
     tasks.site(PATROL)
     assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.asked.complaints == (), "it holds nothing any more"
     assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
     assert [status.configurator for status in tasks.asked.running()] == ["c2"]
     assert tasks.asked.stop("c2") == ("patrol",)
@@ -296,6 +297,7 @@ def test_a_task_whose_end_the_sites_keep_is_taken_down_once_all_rests_though_its
     tasks.site(PATROL)
     tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 3, AT_REST)
     assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.asked.complaints == (), "it holds nothing any more"
     assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
 
 
