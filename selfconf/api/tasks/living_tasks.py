@@ -168,10 +168,14 @@ class LivingTasks:
                 *(one.suspension() for one in suspended),
             ]
         )
-        ended = set(map(str, holding))  # without an error, what they held has come to rest for good
-        self.complaints = tuple(one for one in self.complaints if one not in ended)
+        self._withdraw(map(str, holding))  # without an error, what they held has come to rest for good
         names = {status.name or status.configurator for status in running}
         return tuple(sorted(names | {task_name(record.task) for record in kept}))
+
+    def _withdraw(self, complaints: Iterable[str]) -> None:
+        """Complain no more of some things."""
+        over = set(complaints)
+        self.complaints = tuple(one for one in self.complaints if one not in over)
 
     def _silent_beside_holders(self, name: str | None) -> set[str]:
         """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
