@@ -43,7 +43,7 @@ class Authority(KeysFolder):
     is_authority = True
 
     def __init__(self, path: Path) -> None:
-        """Raises AuthorError for a folder that is none, that others may read, or that holds no key of an authority."""
+        """Raises AuthorError for what is refused as a `KeysFolder`, or holds no key of an authority."""
         super().__init__(path)
         if not (path / f"{AUTHORITY}.key").is_file():
             raise AuthorError(f"{path} is not the folder of an authority: there is no {AUTHORITY}.key in it")

@@ -10,8 +10,9 @@
     admitted/NAME/    certificates that others have shown to the sites of an ecology
     revoked.pem       what the authority has revoked: a copy in each folder that it has issued to
 
-Keys have the mode 0600 and folders 0700; a folder that others may read is refused. What an authority does with its
-folder is an `Authority`, what the sites of a host do for their components a `HostAuthority`.
+Keys have the mode 0600 and folders 0700; a key that others may read is refused, and a folder that they may write into.
+What an authority does with its folder is an `Authority`, what the sites of a host do for their components a
+`HostAuthority`.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from selfconf.access.certificates import Certificate, read_revocations
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.private_files import (
     check_private,
+    check_unwritable,
     make_private_folder,
     named_in_errors,
     read_file,
@@ -44,10 +46,11 @@ class KeysFolder:
     """Whether certificates can be issued with this folder."""
 
     def __init__(self, path: Path) -> None:
-        """Raises AuthorError for a folder that is none, or that others may read."""
+        """Raises AuthorError for no folder, one that others may write into, and one with a key that they may read."""
         self.path = path
         if not path.is_dir():
             raise AuthorError(f"there is no folder {path}; make an authority with `selfconf keys init {path}`")
+        check_unwritable(path)
         self.authority = read_certificate(path / f"{AUTHORITY}.pem")
         for key in (AUTHORITY, HOST_AUTHORITY, OWN):
             check_private(path / f"{key}.key")

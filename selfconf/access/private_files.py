@@ -30,6 +30,8 @@ def make_private_folder(folder: Path) -> None:
 
 def read_file(path: Path) -> bytes:
     """What a file of a folder of keys holds. Raises AuthorError where it is not there or cannot be read."""
+    if path.is_fifo():  # it would be waited for
+        raise AuthorError(f"{path} is no file")
     try:
         return path.read_bytes()
     except FileNotFoundError:
@@ -41,7 +43,7 @@ def read_file(path: Path) -> bytes:
 def content(path: Path) -> bytes:
     """What a file holds; nothing if it is not there, or cannot be read."""
     try:
-        return path.read_bytes()
+        return path.read_bytes() if path.is_file() else b""
     except OSError:
         return b""
 
@@ -50,6 +52,14 @@ def check_private(path: Path) -> None:
     """Raise AuthorError for a key that others than its owner may read."""
     if path.is_file() and path.stat().st_mode & 0o077:
         raise AuthorError(f"others may read {path}, so it is no secret; say `chmod 600 {path}`, or make a new one")
+
+
+def check_unwritable(folder: Path) -> None:
+    """Raise AuthorError for a folder of keys into which others than its owner may put files."""
+    if folder.stat().st_mode & 0o022:
+        raise AuthorError(
+            f"others may write into {folder}, and so have it believe another authority; say `chmod go-w {folder}`"
+        )
 
 
 def named_in_errors(path: Path, read: Callable[[], _Value]) -> _Value:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import stat
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 from selfconf.access.private_files import (
     check_private,
+    check_unwritable,
     content,
     make_private_folder,
     named_in_errors,
@@ -40,6 +42,24 @@ def test_a_key_that_others_may_read_is_refused(tmp_path: Path) -> None:
     (tmp_path / "key").chmod(0o640)
     with pytest.raises(AuthorError, match=r"others may read .*key, so it is no secret"):
         check_private(tmp_path / "key")
+
+
+@pytest.mark.parametrize("others", [0o777, 0o775, 0o702])
+def test_a_folder_of_keys_that_others_may_write_into_is_refused(tmp_path: Path, others: int) -> None:
+    make_private_folder(tmp_path / "keys")
+    check_unwritable(tmp_path / "keys")
+    (tmp_path / "keys").chmod(0o755)
+    check_unwritable(tmp_path / "keys")
+    (tmp_path / "keys").chmod(others)
+    with pytest.raises(AuthorError, match=r"others may write into .*keys, .*`chmod go-w .*keys`"):
+        check_unwritable(tmp_path / "keys")
+
+
+def test_nothing_is_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "certificate.pem")
+    assert content(tmp_path / "certificate.pem") == b""
+    with pytest.raises(AuthorError, match=r"certificate.pem is no file"):
+        read_file(tmp_path / "certificate.pem")
 
 
 def test_what_cannot_be_read_is_an_error_or_nothing_as_the_caller_wants(tmp_path: Path) -> None:
