@@ -83,7 +83,8 @@ def test_one_site_relays_and_the_others_are_its_clients(machine: Machine) -> Non
         machine.join(name)
     assert machine.until(machine.united)
     assert machine.relaying() == ["a"]
-    assert {site.endpoint for site in machine.sites.values()} == {rendezvous.usual_endpoints("machine")[0]}
+    (endpoint,) = {site.endpoint for site in machine.sites.values()}
+    assert endpoint in rendezvous.usual_endpoints("machine")  # another program may listen at the first
     assert rendezvous.find("machine", []) == ("machine", rendezvous.usual_endpoints("machine"))
 
 
