@@ -69,6 +69,14 @@ class Keepers:
             if any(runner.state.phase is Phase.RUNNING for runner in keeper.runners.values())
         ]
 
+    def settled(self) -> str:
+        """Give the record to all sites, and return the one that has run its task for a second."""
+        self.hand_over(RECORD)
+        assert self.lab.until(lambda: bool(self.running()))
+        self.lab.let_pass(1.0)
+        (keeper,) = self.running()
+        return keeper
+
 
 @pytest.fixture
 def keepers(lab: Lab, tmp_path: Path) -> Keepers:
@@ -96,11 +104,8 @@ def test_a_task_that_is_handed_over_runs_at_one_site_and_is_kept_by_all(keepers:
 
 
 def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> None:
-    keepers.hand_over(RECORD)
-    assert keepers.lab.until(lambda: bool(keepers.running()))
-    keepers.lab.let_pass(1.0)
+    keeper = keepers.settled()
     said = {name: list(recorder.said) for name, recorder in keepers.lab.components.items()}
-    (keeper,) = keepers.running()
     keepers.end(keeper)
     assert keepers.lab.until(lambda: bool(keepers.running()), 0.9)
     keepers.lab.let_pass(5.0)
@@ -117,10 +122,7 @@ def test_a_site_that_was_away_goes_on_again_without_stopping_anything(
     keepers: Keepers, seconds: float, how: str, repaired: bool
 ) -> None:
     """While it was away the next site went on with the task, and perhaps repaired it."""
-    keepers.hand_over(RECORD)
-    assert keepers.lab.until(lambda: bool(keepers.running()))
-    keepers.lab.let_pass(1.0)
-    (keeper,) = keepers.running()
+    keeper = keepers.settled()
     network, node = keepers.lab.network, keepers.buses[keeper]
     assert isinstance(node, MemoryBus)
     others = [one for one in network.nodes if one is not node and one.open]
@@ -150,10 +152,7 @@ def test_a_site_that_hears_of_a_failure_as_it_wakes_gives_up_nothing_that_the_ne
     keepers: Keepers, seconds: float
 ) -> None:
     """The FAIL came while it was frozen, and lies before it now, when nothing else reaches it yet."""
-    keepers.hand_over(RECORD)
-    assert keepers.lab.until(lambda: bool(keepers.running()))
-    keepers.lab.let_pass(1.0)
-    (keeper,) = keepers.running()
+    keeper = keepers.settled()
     network, node = keepers.lab.network, keepers.buses[keeper]
     assert isinstance(node, MemoryBus)
     said = {name: list(keepers.lab.components[name].said) for name in TASK}
@@ -170,10 +169,7 @@ def test_a_site_that_hears_of_a_failure_as_it_wakes_gives_up_nothing_that_the_ne
 
 def test_a_site_that_wakes_goes_on_with_a_task_if_the_one_that_runs_it_ends_in_that_moment(keepers: Keepers) -> None:
     """As long as it is cut off it seems to be the only site, and would find that nothing is there."""
-    keepers.hand_over(RECORD)
-    assert keepers.lab.until(lambda: bool(keepers.running()))
-    keepers.lab.let_pass(1.0)
-    (keeper,) = keepers.running()
+    keeper = keepers.settled()
     woken = keeper_of(RECORD.task, {*"abc"} - {keeper})
     keepers.end(*({*"abc"} - {keeper, woken}))
     said = {name: list(recorder.said) for name, recorder in keepers.lab.components.items()}
@@ -190,10 +186,7 @@ def test_a_site_that_wakes_goes_on_with_a_task_if_the_one_that_runs_it_ends_in_t
 
 
 def test_of_two_records_of_one_revision_that_counts_by_which_the_components_act(keepers: Keepers) -> None:
-    keepers.hand_over(RECORD)
-    assert keepers.lab.until(lambda: bool(keepers.running()))
-    keepers.lab.let_pass(1.0)
-    (keeper,) = keepers.running()
+    keeper = keepers.settled()
     record, runner = keepers.keepers[keeper].folder.records[RECORD.task], keepers.keepers[keeper].runners[RECORD.task]
     keepers.hand_over(replace(record, epoch=record.epoch - 1, lost=()))
     keepers.lab.let_pass(1.0)
@@ -287,10 +280,7 @@ def test_the_next_site_goes_on_though_its_clock_is_behind(keepers: Keepers) -> N
 
 
 def test_a_failure_that_nobody_heard_is_found_by_the_next_site(keepers: Keepers) -> None:
-    keepers.hand_over(RECORD)
-    assert keepers.lab.until(lambda: bool(keepers.running()))
-    keepers.lab.let_pass(1.0)
-    (keeper,) = keepers.running()
+    keeper = keepers.settled()
     keepers.lab.isolate(keepers.keepers[keeper].runners[RECORD.task])
     keepers.lab.components["tracker"].fail("lost")
     keepers.lab.let_pass(0.01)
