@@ -52,17 +52,17 @@ opens a hundred connections and stays silent would have all the time."""
 SHARED_FROM = 1 << 15
 """From how many bytes on a payload goes through shared memory; smaller ones are as fast through a socket."""
 SHARED_MEMORY = Path("/dev/shm")
-FREE_DESCRIPTORS = 32
-"""How many files a program must still be free to open: a session takes about twenty, and some for its first links.
-With fewer Zenoh does not fail: it may hang, or abort the process."""
-_PORTS_TRIED = 100
+ENOUGH_SHARED = 256_000_000
+"""Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
 PROCESS_STATUS = Path("/proc/self/status")
 """What Linux says of this process (proc_pid_status(5))."""
 CAP_IPC_LOCK = 14
 """The number of the capability to lock memory without a limit (capabilities(7))."""
 _EFFECTIVE = re.compile(r"^CapEff:\s*([0-9a-f]+)$", re.MULTILINE)
-ENOUGH_SHARED = 256_000_000
-"""Bytes that have to be free there: in a container with 64 MB, a page that cannot be had would end the process."""
+FREE_DESCRIPTORS = 32
+"""How many files a program must still be free to open: a session takes about twenty, and some for its first links.
+With fewer Zenoh does not fail: it may hang, or abort the process."""
+_PORTS_TRIED = 100
 _RETRY = {
     # A client is cut off as long as it has no router, and its components rest after a second.
     "client": {"period_init_ms": 50, "period_max_ms": 200, "period_increase_factor": 1.5},
