@@ -13,12 +13,12 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, field, replace
+from dataclasses import asdict, field
 from io import FileIO
 from pathlib import Path
 
 from selfconf.errors import NetworkError
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.termination import alive, start_time, stopped
 
 CLAIMED = "names"

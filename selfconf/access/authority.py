@@ -6,7 +6,6 @@ import os
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 
 from selfconf.access.certificate_files import (
@@ -25,6 +24,7 @@ from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.private_files import content, make_private_folder, read_file, write_private
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import AuthorError, reason
+from selfconf.model.immutable import replace
 
 DAYS = 7.0
 """For how many days a certificate is good unless told otherwise."""

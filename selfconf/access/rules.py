@@ -11,11 +11,10 @@ with `@`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from selfconf.access.principal import Principal, PrincipalKind
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, any_ecology, component_chunk
 from selfconf.protocol.messages import Access

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 
 from selfconf.api.answer import Answer, ExplainedRefusal
 from selfconf.api.arguments import Paths, checked_flag
@@ -19,6 +18,7 @@ from selfconf.composition import Composer, Inside, TimeLimit, composed, explaine
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.literal_values import number
 from selfconf.model.optimum import Optimum

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from selfconf.api.arguments import answer_seconds, rows_limit
@@ -13,7 +12,7 @@ from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.holder import Holder
-from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, BlankNode, Literal, Term

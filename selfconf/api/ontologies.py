@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from selfconf import entailment, files, library
 from selfconf.api.reading import Text, file_text
 from selfconf.model.hierarchy import Hierarchy, Reasoning
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.reasoning import READ, hierarchy

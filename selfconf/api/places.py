@@ -9,12 +9,12 @@ by the task or the ecology that was read from it.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from selfconf.api.reading import GRAPH, KEPT_TEXTS
+from selfconf.model.immutable import replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import Place

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ from selfconf.api.arguments import checked_text
 from selfconf.api.reading import kept_text, text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, ProgrammerError, TemplateError
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.setting_names import binding, setting
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, BlankNode, Literal, Term

@@ -10,10 +10,10 @@ import queue
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, TextIO
 
 from selfconf.cli.terminal import silence
+from selfconf.model.immutable import replace
 
 if TYPE_CHECKING:
     from selfconf.api.task import TaskSpecification

@@ -20,7 +20,6 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Callable, Mapping, Set
-from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Undo, Urgency
@@ -28,6 +27,7 @@ from selfconf.composites.inside_prospect import InsideProspect
 from selfconf.composition import why_none
 from selfconf.deployment import Outside, RunRequest, TaskRunner
 from selfconf.errors import SelfconfError
+from selfconf.model.immutable import replace
 from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import ComponentLost, ComponentReleased, RunEvent, TaskRunning

@@ -9,7 +9,6 @@ again. Composites that could be inside of each other in a circle never live.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Set
-from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Undo
@@ -19,6 +18,7 @@ from selfconf.deployment import Aside, RunRequest, at_once
 from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.keys import Keys, safe_name

@@ -7,7 +7,6 @@ a failure only the lost components leave it and the search alone runs again.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
-from dataclasses import replace
 
 from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
 from selfconf.composition.searches import Searches, Strategy
@@ -16,6 +15,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable

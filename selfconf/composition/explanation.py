@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.near_misses import ranked_near_misses
 from selfconf.composition.recruit_near_misses import recruiting_instead, with_recruit_near_misses
 from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import LetRecruit
 from selfconf.model.setting_names import setting

@@ -8,11 +8,11 @@ near it comes, by degree of match and by words, is `model.nearness`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import filterfalse
 
 from selfconf.composition.composer import Composer
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.nearness import ranked
 from selfconf.model.obstacle import UnfitOutput, UnlikePorts, WrongType
 from selfconf.model.partition import NearMiss

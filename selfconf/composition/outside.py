@@ -11,10 +11,10 @@ only the deployment leaves it out, and takes its connections for the ports.
 from __future__ import annotations
 
 from collections.abc import Set
-from dataclasses import replace
 
 from selfconf.model.configuration import Assignment, Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition
 from selfconf.model.profile import (
     CALL_MARK,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.near_misses import fault_of
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.nearness import Near, ranked
 from selfconf.model.obstacle import NotFedItself, Obstacle
 from selfconf.model.partition import NearMiss, candidate_order

@@ -9,14 +9,13 @@ all of them ask for that; a task that asks waits a moment for the others.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from selfconf.configurator import deploying, losing, phases
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.disconnecting import disconnect
 from selfconf.configurator.effects import Decline, ReleaseFrom
 from selfconf.configurator.events import Answered, Call
 from selfconf.configurator.state import Loss, Phase, State
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 

@@ -21,7 +21,6 @@ So it is claimed meanwhile: reserved as it is.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 from selfconf.configurator.effects import (
     ApplyTo,
@@ -38,6 +37,7 @@ from selfconf.configurator.events import Answered, Call
 from selfconf.configurator.starting_order import Plan, plan_of, resting_order
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Verdict
 

@@ -9,7 +9,6 @@ but are held on; they start again when everything else acts.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
@@ -17,6 +16,7 @@ from selfconf.configurator.effects import ApplyTo
 from selfconf.configurator.events import Call
 from selfconf.configurator.starting_order import InputWires
 from selfconf.configurator.state import Held, Phase, State
+from selfconf.model.immutable import replace
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 

@@ -6,13 +6,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from selfconf.configurator import deploying, phases
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.effects import ReleaseFrom, WakeUp
 from selfconf.configurator.events import Call, Failed
 from selfconf.configurator.state import Held, Loss, Phase, Policy, State
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
 

@@ -23,7 +23,6 @@ an older epoch, or the result of an older search, changes nothing; no component 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from selfconf.configurator import answering, deploying, losing, phases, searching
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
@@ -52,6 +51,7 @@ from selfconf.configurator.events import (
 )
 from selfconf.configurator.starting_order import parameter_values, wiring
 from selfconf.configurator.state import Held, Loss, Phase, State
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
 

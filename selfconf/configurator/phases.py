@@ -6,7 +6,6 @@ released again when it is seen again. What is to come to rest does so in its ord
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import MappingProxyType
 
 from selfconf.configurator.deploying import Reaction, then
@@ -25,6 +24,7 @@ from selfconf.configurator.events import Call
 from selfconf.configurator.starting_order import resting_next
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
 from selfconf.model.sharing import Avoided
 
 NOTHING: Avoided = MappingProxyType({})

@@ -18,8 +18,6 @@ better one may never.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from selfconf.configurator import deploying, phases
 from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import Discover
@@ -27,6 +25,7 @@ from selfconf.configurator.events import Composed, Discovered, StayedAway
 from selfconf.configurator.phases import NOTHING
 from selfconf.configurator.state import Loss, Phase, State
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.sharing import Avoided, avoid, avoided_in_vain
 from selfconf.protocol.messages import Cause

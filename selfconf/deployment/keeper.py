@@ -18,7 +18,6 @@ import hashlib
 import logging
 import time
 from collections.abc import Callable, Iterable, Set
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -29,6 +28,7 @@ from selfconf.deployment.holders import Holding
 from selfconf.deployment.task_folder import TaskFolder
 from selfconf.errors import PeerError, SelfconfError, reason
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import replace
 from selfconf.model.run_event import RunEvent, TaskRunning
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of

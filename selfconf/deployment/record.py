@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from selfconf.bus.port import Bus, Request, Urgency
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import LARGEST, encode
 from selfconf.protocol.keys import Keys, call_of

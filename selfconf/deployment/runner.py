@@ -9,7 +9,6 @@ import socket
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Bus, Urgency
@@ -60,7 +59,7 @@ from selfconf.deployment.task_search import TaskSearch
 from selfconf.discovery import EcologyView
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration, Wants
-from selfconf.model.immutable import FrozenMapping
+from selfconf.model.immutable import FrozenMapping, replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import (
     AnyRunEvent,

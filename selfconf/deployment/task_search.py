@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 from selfconf.bus.port import Undo
@@ -16,6 +15,7 @@ from selfconf.deployment.run_request import RunRequest
 from selfconf.deployment.task_context import TaskContext
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import ComponentLeftOut, SearchEnded

@@ -7,9 +7,9 @@ writer of Turtle takes; a format that is RDF already makes descriptions without 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import field
 
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.model.wording import listed
 from selfconf.rdf.vocabulary import LABEL, SC, TYPE, XSD

@@ -15,10 +15,10 @@ properties or ports are amiss, `composition.near_misses` those that feed nothing
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from decimal import Decimal
 
-from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.obstacle import Obstacle
 from selfconf.model.profile import Place, Profile, WantedSignal
 from selfconf.model.term import IRI, Term

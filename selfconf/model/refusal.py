@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from typing import ClassVar, Literal
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.partition import NearMiss
 from selfconf.model.profile import CALL_MARK, Place, WantedSignal, port_in_words

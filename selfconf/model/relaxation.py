@@ -7,10 +7,10 @@ programs.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from typing import ClassVar
 
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.profile import CALL_MARK, Operation, Output, Place
 from selfconf.model.term import IRI, Term

@@ -27,10 +27,9 @@ lasts, but blocks no other task, and another configurator of the same task goes 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from enum import Enum
 
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict, Wire
 from selfconf.protocol.task_queue import TaskQueue, rank
 

@@ -10,9 +10,7 @@ no task is asked to yield for its sake until it asks again: its configurator may
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.protocol.messages import Claim
 
 MOST_WAITING = 64

@@ -30,13 +30,12 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from selfconf.bus.port import Bus, Replies, Request
 from selfconf.errors import PeerError, ProgrammerError
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI

@@ -14,10 +14,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 
 from selfconf.model.cost import CostTerm
+from selfconf.model.immutable import replace
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.profile import Profile

@@ -12,10 +12,10 @@ If another one joins then, what was left out is tried once more, until nothing j
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence, Set
-from dataclasses import replace
 from heapq import heappop, heappush
 
 from selfconf.model.configuration import Configuration, ordered_connections
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import Input, Output
 from selfconf.model.term import IRI

@@ -25,11 +25,10 @@ engine has met, the strategy `first` included. Then `proved` says that a nearer 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from operator import attrgetter
 
 from selfconf.model.configuration import Configuration, Connection
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import pickle
+import re
 from collections.abc import Mapping
-from dataclasses import FrozenInstanceError, asdict, dataclass, field, fields, replace
+from dataclasses import FrozenInstanceError, asdict, dataclass, field, fields
 from pathlib import Path
 
 import pytest
@@ -13,7 +15,7 @@ import pytest
 import selfconf
 from selfconf.model.configuration import Connection
 from selfconf.model.diagnostic import Report
-from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 
@@ -116,6 +118,21 @@ def test_a_class_below_has_the_fields_above_and_its_own_methods() -> None:
         replace(spot, angle=-1.0)
 
 
+@pytest.mark.parametrize("changes", [{}, {"watts": 7.0}, {"name": "b", "note": "n"}, {"tags": ["x"], "name": "c"}])
+@pytest.mark.parametrize("kind", [Lamp, Spot])
+def test_replacing_gives_what_the_standard_library_gives(kind: type[Lamp], changes: Mapping[str, object]) -> None:
+    one = kind("a", 6.0, ["y"], note="m")
+    ours, theirs = (replaced(one, **changes) for replaced in (replace, dataclasses.replace))
+    assert ours.__class__ is kind
+    assert [getattr(ours, f.name) for f in fields(kind)] == [getattr(theirs, f.name) for f in fields(kind)]
+    assert one == kind("a", 6.0, ["y"], note="m")
+
+
+def test_replacing_refuses_what_is_no_field() -> None:
+    with pytest.raises(TypeError, match="a Lamp has no field 'colour'"):
+        replace(Lamp("a"), colour="red")  # type: ignore[call-arg]  # that is what is tested
+
+
 def test_values_are_copied_and_pickled() -> None:
     for one in (Lamp("a", tags=["x"], note="n"), Spot("b", angle=1.0), Nothing()):
         for again in (copy.copy(one), copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
@@ -149,6 +166,12 @@ def test_every_class_of_values_with_slots_is_made_by_it() -> None:
     folder = Path(selfconf.__file__).parent
     made = [path for path in folder.rglob("*.py") if "@dataclass(frozen=True, slots=True" in path.read_text("utf-8")]
     assert made == []
+
+
+def test_every_module_replaces_by_it() -> None:
+    folder = Path(selfconf.__file__).parent
+    slow = re.compile(r"^from dataclasses import .*\breplace\b", re.MULTILINE)
+    assert [path for path in folder.rglob("*.py") if slow.search(path.read_text("utf-8"))] == []
 
 
 def test_values_without_fields_are_equal() -> None:

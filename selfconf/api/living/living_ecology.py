@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -38,6 +37,7 @@ from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.keys import component_chunk, task_name

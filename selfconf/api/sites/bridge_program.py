@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from selfconf import files
 from selfconf.api.sites.site_program import SiteOptions, serve
 from selfconf.bridging import Bridge, ForeignWorld
+from selfconf.model.immutable import replace
 
 
 def serve_bridge(world: ForeignWorld, site: SiteOptions, complain: Callable[[str], None]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from selfconf import this_machine
@@ -25,6 +24,7 @@ from selfconf.api.sites.joining import Joining
 from selfconf.bus.port import Bus
 from selfconf.bus.zenoh import Security, hear_refusals
 from selfconf.errors import AuthorError
+from selfconf.model.immutable import replace
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.site import Shelf, Site, programs_of

@@ -11,7 +11,6 @@ import secrets
 import socket
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,7 +28,7 @@ from selfconf.deployment import Keeper, TaskFolder
 from selfconf.discovery import Beliefs
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.hierarchy import Reasoning
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.protocol.endpoints import endpoint_host

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence, Set
 from contextlib import suppress
-from dataclasses import replace
 from itertools import chain, count
 
 from selfconf.api.synchronous_bus import SynchronousBus
@@ -13,6 +12,7 @@ from selfconf.api.tasks.released_components import ReleasedComponents
 from selfconf.bus.port import Replies
 from selfconf.discovery import namesakes
 from selfconf.errors import NetworkError, PeerError
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import replace
 from functools import partial
 from types import TracebackType
 from typing import NamedTuple
@@ -26,7 +25,7 @@ from selfconf.composition import Composer, TimeLimit
 from selfconf.configurator import Loss
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import ProgrammerError
-from selfconf.model.immutable import FrozenMapping
+from selfconf.model.immutable import FrozenMapping, replace
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI

@@ -10,14 +10,14 @@ another search may have been made, in another ecology.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import field, fields, replace
+from dataclasses import field, fields
 from typing import TypeAlias, overload
 
 from selfconf.api.answer import Answer, ExplainedRefusal
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.deployment import ComposeFunction
 from selfconf.model.configuration import Configuration
-from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import (

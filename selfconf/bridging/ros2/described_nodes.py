@@ -15,7 +15,6 @@ what else is hidden.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 from selfconf.bridging.ros2.actions import RosAction, actions_of
@@ -36,6 +35,7 @@ from selfconf.importing import (
     feedback_port,
     slug,
 )
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, SH, UNIT, XSD
 

@@ -13,7 +13,7 @@ way back the field the value.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from functools import lru_cache
 from typing import Any, TypeVar
 
@@ -27,7 +27,7 @@ from selfconf.importing import (
     NestedNode,
     event_ports,
 )
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, UNIT, XSD

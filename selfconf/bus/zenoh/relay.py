@@ -21,7 +21,6 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -33,6 +32,7 @@ from selfconf.bus.zenoh.door import Door
 from selfconf.bus.zenoh.receivers import callback
 from selfconf.bus.zenoh.session import Security, open_session, with_port
 from selfconf.errors import NetworkError
+from selfconf.model.immutable import replace
 from selfconf.protocol.endpoints import endpoint_port
 
 log = logging.getLogger(__name__)

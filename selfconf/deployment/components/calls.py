@@ -6,7 +6,6 @@ How one call is made, and what becomes of it, is in `calling`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 from selfconf.bus.port import Replies
@@ -32,6 +31,7 @@ from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.run_request import Standby, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.configuration import Configuration, Connection
+from selfconf.model.immutable import replace
 from selfconf.model.run_event import (
     ActivationSent,
     ComponentAwaited,

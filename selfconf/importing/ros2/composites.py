@@ -11,7 +11,6 @@ Ports of a composite are joined to those of a node by type. So one of which the 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -21,6 +20,7 @@ from selfconf.importing.ros2.interfaces import ROS2, TOPICS, InterfaceKind, Node
 from selfconf.importing.ros2.system_models import SystemModel
 from selfconf.importing.ros2.templates import fact, interaction, role_of, system_template, template_head
 from selfconf.importing.ros2.wiring import NodeInstance, SystemWiring
+from selfconf.model.immutable import replace
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, SH, TYPE

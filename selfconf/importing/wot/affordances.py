@@ -10,7 +10,6 @@ vocabularies is said of the port or operation. A property and an event may have 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
 from selfconf.importing.imported import ImportedOperation, ImportedPort
@@ -21,6 +20,7 @@ from selfconf.importing.wot.contexts import TermMeanings
 from selfconf.importing.wot.json_text import one_or_several
 from selfconf.importing.wot.other_terms import OtherTerms
 from selfconf.importing.wot.own_terms import stated_rate
+from selfconf.model.immutable import replace
 from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI
 from selfconf.rdf.vocabulary import SC, XSD

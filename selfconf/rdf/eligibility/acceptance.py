@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from operator import attrgetter
 from typing import NamedTuple, TypeVar
 
 from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.obstacle import NotJudged, Obstacle
 from selfconf.model.partition import Candidate, Partition, Recruit, Unissuable
 from selfconf.model.profile import Input, Output, Ports, Profile, WantedSignal, shared_ports

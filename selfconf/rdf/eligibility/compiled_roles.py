@@ -8,10 +8,10 @@ value. That both ways give one partition is a property test.
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import replace
 from itertools import chain
 
 from selfconf.errors import TemplateError
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.eligibility.compiler import SHAPES_OF_A_LIST, SILENT, TARGETS, ShapeCompiler
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest

@@ -11,11 +11,11 @@ elsewhere (`composition.near_misses`), by these ports and by the words of the ro
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
-from dataclasses import replace
 from difflib import SequenceMatcher
 from functools import lru_cache
 
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.obstacle import TypeRelation, WrongType
 from selfconf.model.partition import NearMiss
 from selfconf.model.port_likeness import WantedPorts

@@ -7,10 +7,9 @@ be violated, or that it leaves no value for a free parameter. Without that it ma
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from operator import attrgetter
 
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, ParameterForbids, ShapeViolated
 from selfconf.model.partition import NearMiss
 from selfconf.model.term import IRI, Term, sort_key

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from operator import attrgetter
 from typing import TypeVar
 
 from selfconf.model.hierarchy import Hierarchy
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Candidate, Partition, Recruit
 from selfconf.model.profile import Input, Ports, shared_ports
 

@@ -9,9 +9,9 @@ is judged by the whole shape.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
+from selfconf.model.immutable import replace
 from selfconf.model.port_likeness import Types, WantedPorts
 from selfconf.model.term import IRI, BlankNode, Term
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_ANNOTATIONS, SHAPE_VALUED

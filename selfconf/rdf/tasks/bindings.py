@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import replace
 from functools import partial
 
 import pyoxigraph as ox
 
 from selfconf.errors import BindingError
 from selfconf.model.curie import is_local_name, is_prefix, suggested_local_name
+from selfconf.model.immutable import replace
 from selfconf.model.literal_values import number_of
 from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
+from selfconf.model.immutable import replace
 from selfconf.model.literal_values import plain_number, truth
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Setting

@@ -18,13 +18,12 @@ live, the new one takes its place, and the input has lost nothing.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
 from selfconf import ros2
 from selfconf.bus.port import Bus
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.profile import CALL_MARK, Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys

@@ -18,10 +18,10 @@ few of these.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import reduce
 from operator import or_
 
+from selfconf.model.immutable import replace
 from selfconf.model.partition import ANY_VALUE
 from selfconf.search.engines.matching import hall_set
 from selfconf.search.reduction import ReducedProblem, pruned

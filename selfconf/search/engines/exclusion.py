@@ -19,11 +19,11 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import reduce
 from itertools import chain
 from operator import or_
 
+from selfconf.model.immutable import replace
 from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
 from selfconf.search.engines.conflict_graph import ConflictGraph, numbers_of, often_supported

@@ -23,10 +23,9 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import accumulate, chain, takewhile
 
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.search.engines.matching import HallSet, unmatchable
 from selfconf.search.reduction import Limit, NeedScope, Option, ReducedProblem
 

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 
+from selfconf.model.immutable import replace
 from selfconf.search.engines.matching import hall_set
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, supplied
 from selfconf.search.reduction import ArcConsistency, Option, ReducedProblem, pruned

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import replace
 from functools import reduce
 from heapq import heapify, heappop, heappush
 from itertools import chain
@@ -12,6 +11,7 @@ from operator import or_
 from typing import NamedTuple
 
 from selfconf.model.configuration import Configuration, Connection, ordered_connections
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Recruit
 from selfconf.model.profile import Input, Output, Profile, WantedSignal
 from selfconf.model.term import IRI

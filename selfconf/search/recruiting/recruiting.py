@@ -14,9 +14,8 @@ where the steps end, the answer is what is left once none of them can be spared.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget

@@ -15,11 +15,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Set
-from dataclasses import replace
 from operator import attrgetter
 from typing import NamedTuple
 
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.profile import Ports
 from selfconf.model.term import IRI

@@ -14,9 +14,9 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from operator import itemgetter
 
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import CALL_MARK, Input, Output, Ports, WantedSignal
 from selfconf.model.refusal import Undecided

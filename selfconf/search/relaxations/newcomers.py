@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
+from selfconf.model.immutable import replace
 from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Variable
 from selfconf.model.profile import Ports, Profile
 from selfconf.model.relaxation import AddComponents, Addition

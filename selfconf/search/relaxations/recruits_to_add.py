@@ -8,8 +8,8 @@ conform to several. If these make the task possible, their outputs are taken awa
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Recruit
 from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.relaxation import Addition, AddRecruits

@@ -15,9 +15,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import replace
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import (

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Candidate
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, AddInteraction, AddRecruits, LetRecruit, Relaxation
 from selfconf.model.template import Interaction

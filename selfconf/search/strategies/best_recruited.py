@@ -16,13 +16,12 @@ Without a solver library, players and recruits are chosen one after the other, a
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.cost import cost, unknown
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate
 from selfconf.model.profile import Profile

@@ -27,11 +27,11 @@ alone. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`)
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import reduce
 from operator import or_
 
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
