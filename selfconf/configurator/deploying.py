@@ -61,8 +61,7 @@ def then(effects: Iterable[Effect], following: Reaction) -> Reaction:
 
 def deploy(state: State) -> Reaction:
     """Watch every component of the target, and wake those that are not held yet."""
-    assert state.target is not None
-    plan, epoch = plan_of(state.target), state.epoch + 1
+    plan, epoch = _plan_of_target(state), state.epoch + 1
     wires, held = plan.inputs, _to_be_confirmed(state, plan)
     asleep = sorted(component for component in wires if not held[component].reserved)
     claimed = _unclaimed(state) if asleep else []
@@ -81,6 +80,13 @@ def deploy(state: State) -> Reaction:
         watched=state.watched & held.keys() | wires.keys(),
     )
     return then(effects, proceed(deployed))
+
+
+def _plan_of_target(state: State) -> Plan:
+    """The plan of the target: the one that is known, if it is not that of another configuration."""
+    assert state.target is not None
+    known = state.plan
+    return known if known is not None and known.configuration is state.target else plan_of(state.target)
 
 
 def _unclaimed(state: State) -> list[IRI]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import field
 from enum import Enum
 
+from selfconf.configurator.starting_order import Plan
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable
@@ -65,6 +66,8 @@ class Composed:
     outcome: Outcome
     usable: frozenset[IRI] = frozenset()
     """The components that other tasks hold, and that may play a role or be recruited where candidates lack."""
+    plan: Plan | None = None
+    """The plan of a configuration that was found, if it was made while there was time."""
 
 
 @immutable

@@ -70,7 +70,7 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
         if state.contested(event.outcome):
             fewer, avoided = _avoid(state, event.outcome)
             return phases.compose(fewer, avoided=avoided)
-        return deploying.deploy(replace(state, target=event.outcome, refusal=None, put_off=0))
+        return deploying.deploy(replace(state, target=event.outcome, plan=event.plan, refusal=None, put_off=0))
     if state.avoided:
         return phases.compose(_avoided_in_vain(state))
     if any(loss.startable for loss in state.lost.values()):
@@ -131,4 +131,4 @@ def _improved(state: State, event: Composed) -> Reaction:
         return state, ()
     if state.contested(better):
         return _improve(*_avoid(state, better))
-    return deploying.deploy(replace(state, target=better, fallback=state.target))
+    return deploying.deploy(replace(state, target=better, plan=event.plan, fallback=state.target))

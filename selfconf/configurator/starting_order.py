@@ -77,6 +77,7 @@ class StartingOrder:
 class Plan:
     """What a deployment needs to know of its configuration, as each of its many steps asks for a part of it."""
 
+    configuration: Configuration
     inputs: Mapping[IRI, InputWires]
     values: Mapping[IRI, Mapping[str, Term]]
     callers: Mapping[IRI, Callers]
@@ -86,7 +87,11 @@ class Plan:
 def plan_of(configuration: Configuration) -> Plan:
     """Return the plan of a deployment."""
     return Plan(
-        wiring(configuration), parameter_values(configuration), callers(configuration), starting_order(configuration)
+        configuration,
+        wiring(configuration),
+        parameter_values(configuration),
+        callers(configuration),
+        starting_order(configuration),
     )
 
 

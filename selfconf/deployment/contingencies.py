@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from selfconf.bus.port import Bus
+from selfconf.configurator import Plan, plan_of
 from selfconf.deployment.run_request import RunRequest
 from selfconf.errors import SelfconfError
 from selfconf.model.configuration import Configuration
@@ -33,6 +34,8 @@ class Contingency(NamedTuple):
     """What the search has answered to a question that may come."""
 
     configuration: Configuration
+    plan: Plan
+    """The plan of its deployment."""
     not_judged: Mapping[IRI, NotJudged]
     """The components that were left out because they cannot be judged."""
 
@@ -103,7 +106,7 @@ class Contingencies:
                 if component not in known:
                     outcome = self._request.compose(supposed.found, supposed.lost | {component}, supposed.running)
                     if isinstance(outcome, Configuration):
-                        known[component] = Contingency(outcome, dict(self._request.not_judged()))
+                        known[component] = Contingency(outcome, plan_of(outcome), dict(self._request.not_judged()))
                     else:
                         known[component] = None
         except SelfconfError:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from selfconf.bus.port import Undo
-from selfconf.configurator import Compose, Composed, Phase, Policy
+from selfconf.configurator import Compose, Composed, Phase, Policy, plan_of
 from selfconf.deployment.components import Liveness
 from selfconf.deployment.contingencies import Contingencies
 from selfconf.deployment.run_request import RunRequest
@@ -66,7 +66,7 @@ class TaskSearch:
         ignores_holders = self._state().ignores_holders
         known = None if ignores_holders else self._contingencies.answer(found, effect.lost, effect.running)
         if known is not None:
-            composed = Composed(effect.attempt, known.configuration)
+            composed = Composed(effect.attempt, known.configuration, plan=known.plan)
             self._composed(composed, time.monotonic() - began, known.not_judged)
             return
         better, looks_again = self._better, self._runs
@@ -94,7 +94,8 @@ class TaskSearch:
             if isinstance(outcome, Refusal):
                 outcome = outcome.told_of_held(usable)
             seconds = time.monotonic() - began
-            composed = Composed(effect.attempt, outcome, frozenset(usable))
+            plan = plan_of(outcome) if isinstance(outcome, Configuration) else None
+            composed = Composed(effect.attempt, outcome, frozenset(usable), plan)
             if looks_again and not isinstance(outcome, Undecided):
                 self._better = _Better(found, effect.lost, outcome, not_judged)
             self._bus.wake_up(lambda: self._searched(composed, seconds, not_judged))

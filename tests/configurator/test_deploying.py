@@ -23,6 +23,7 @@ from selfconf.configurator.events import (
     Answered,
     Appeared,
     Call,
+    Composed,
     Discovered,
     Failed,
     HandedOver,
@@ -86,6 +87,16 @@ def test_what_each_component_is_to_do_is_found_out_once_for_a_deployment() -> No
         history.answer(*min(history.state.pending))
         assert history.state.plan is plan
     assert history.state.phase is Phase.RUNNING
+
+
+def test_the_plan_that_comes_with_a_configuration_is_taken_and_one_of_another_is_not() -> None:
+    history, made, other = History().accepted(), navigation(), plan_of(navigation(ODOMETRY))
+    history.hear(Composed(1, made, plan=plan_of(made)))
+    assert history.state.plan is not None
+    assert history.state.plan.configuration is made
+    again = History().accepted()
+    again.hear(Composed(1, made, plan=other))
+    assert again.state.plan == history.state.plan
 
 
 def test_nothing_is_applied_to_before_all_are_reserved() -> None:

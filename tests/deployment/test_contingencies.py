@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from selfconf.composition import Composer
-from selfconf.configurator import Improvable, Phase
+from selfconf.configurator import Improvable, Phase, plan_of
 from selfconf.deployment import Outside, RunRequest
 from selfconf.deployment.contingencies import MOST_SECONDS, REST, Contingencies
 from selfconf.errors import TemplateError
@@ -149,6 +149,7 @@ def test_what_is_known_is_what_the_search_answers(lab: Lab) -> None:
             if known is not None:
                 hits += 1
                 assert known.configuration == Composer(task).compose(found, before | {component}, running)
+                assert known.plan == plan_of(known.configuration)
     assert hits > 10
 
 
