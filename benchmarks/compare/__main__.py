@@ -21,10 +21,16 @@ from typing import Any
 from benchmarks.compare.inputs import PROCESS, Measure, measures
 from benchmarks.compare.report import MEDIAN, Row, page
 from benchmarks.compare.trees import ROOT, Done, Tree, both
+from benchmarks.failover import PAUSE
 
 PAGE = ROOT / "docs" / "benchmarks" / "compare.md"
 PARTS = ("start", "search", "scale", "validate", "failover")
 IN_ALL = "FAIL to first message"
+AFTER_REST = "import sys; from benchmarks import failover; failover.PAUSE = float(sys.argv.pop(1)); failover.main()"
+"""The program `benchmarks.failover` of a tree, with so many seconds of rest before each trial as its first argument.
+
+Trees differ in how long they rest, and after a longer rest all programs are slower: their memory is in no cache.
+"""
 
 
 def measured(measure: Measure, trees: tuple[Tree, Tree], folder: Path) -> list[Row]:
@@ -57,11 +63,11 @@ def _taken_apart(done: Done) -> tuple[Any, dict[str, float]]:
 
 
 def failover(trees: tuple[Tree, Tree], rounds: int, trials: int) -> list[Row]:
-    """The program `benchmarks.failover` of each tree, by turns: of each part of a failover the least of the medians."""
+    """The failover of each tree, by turns and after as long a rest: of each part the least of the medians."""
     found: list[dict[str, list[float]]] = [{}, {}]
     for number in range(rounds):
         for which in (0, 1) if number % 2 else (1, 0):
-            done = trees[which].run("-m", "benchmarks.failover", "--trials", str(trials))
+            done = trees[which].run("-c", AFTER_REST, str(PAUSE), "--trials", str(trials))
             if done.code:
                 raise SystemExit(f"{trees[which].name}: benchmarks.failover: {done.err or done.out}")
             for name, milliseconds in medians(done.out):

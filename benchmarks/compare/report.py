@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
+from benchmarks.failover import PAUSE
 from benchmarks.machine import described, table
 
 MEDIAN = "median"
@@ -45,8 +46,8 @@ def page(rows: Sequence[Row], names: Sequence[str]) -> str:
         "`python -m benchmarks.compare REVISION --write` makes this page: two trees run the same commands over the",
         "same files, interleaved in one run, with one interpreter. A number is the least of several runs. `process` is",
         "the processor time of the whole process and its children; `load`, `partition` and `search` are what",
-        "`configure` tells in `seconds`; failover is the median of trials, the least of several rounds, its last row",
-        "all of it with the search, and has to be seen beside the bare round trip of its own run. Trust the ratios,",
+        f"`configure` tells in `seconds`; failover is the median of trials, each after {PAUSE:g} s of rest in either",
+        "tree, the least of several rounds, its last row all of it with the search. Trust the ratios,",
         f"not the digits: less than 1 is quicker, and those within {NOISE:.0%} of 1 are noise. So are ratios of less",
         "than a millisecond.",
         "",

@@ -69,6 +69,15 @@ def test_different_answers_are_named() -> None:
     assert "the same answer to every command" in report.page(rows[:1], ["v1", "the tree as it is"])
 
 
+def test_the_failover_of_any_tree_is_measured_after_the_rest_that_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    measured: list[tuple[float, list[str]]] = []
+    monkeypatch.setattr(failover, "PAUSE", failover.PAUSE)
+    monkeypatch.setattr(failover, "main", lambda: measured.append((failover.PAUSE, sys.argv[1:])))
+    monkeypatch.setattr(sys, "argv", ["-c", "0.7", "--trials", "3"])
+    exec(compare.AFTER_REST, {})
+    assert measured == [(0.7, ["--trials", "3"])]
+
+
 def test_a_failover_is_compared_with_the_search_too() -> None:
     parts = {"round trip": [0.001], "detect": [0.001], "decide": [0.002], "deploy": [0.001], "undecided": [0.005]}
     printed = failover.report(parts)
