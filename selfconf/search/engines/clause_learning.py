@@ -78,6 +78,8 @@ class ClauseSolver:
         """How many conflicts the next call has."""
         self._interrupted = False
         """Whether an interrupt has to be cleared after the call that it ends."""
+        self._refuted: set[int] = set()
+        """The literals of which propagation has shown that they cannot hold, whatever else does."""
         self.counters = counters
         """Whether numbers that are worth it are counted by clauses, about which the solver can learn."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
@@ -160,9 +162,32 @@ class ClauseSolver:
             self._model = self._solver.get_model()
         return found
 
-    def refutes(self, *literals: int) -> bool:
-        """Return whether propagation shows that literals cannot hold; False if the solver would have to search."""
-        return self._propagates and not self._solver.propagate(literals)[0]
+    def settle(self, literals: Sequence[int]) -> None:
+        """Let literals hold from now on, which can hold together."""
+        # What follows from them is noted before, as the solver does not say of what follows from nothing that it does.
+        self._refuted.update([-literal for literal in self.implied(literals) or ()])
+        for literal in literals:
+            self.add([literal])
+
+    def refutes(self, literal: int) -> bool:
+        """Return whether propagation shows that a literal cannot hold; False if the solver would have to search."""
+        if literal in self._refuted:
+            return True
+        if not self._propagates:
+            return False
+        possible, implied = self._solver.propagate((literal,))
+        if not possible:
+            self._refuted.add(literal)
+            if implied:
+                self.add([-literal])  # else the solver knows already
+        return not possible
+
+    def implied(self, literals: Sequence[int]) -> set[int] | None:
+        """Return what follows from literals by propagation, but not without them; None if they cannot hold together."""
+        if not self._propagates:
+            return set()
+        possible, implied = self._solver.propagate(literals)
+        return set(implied) if possible else None
 
     def interrupt(self) -> None:
         """End the call that goes on in another thread, or else the next one, as if its conflicts were used up."""

@@ -220,23 +220,25 @@ class _Descent:
     def _inform(self, turn: Turn) -> None:
         """Add what is settled to the clauses of a solver."""
         clauses = turn.clauses
+        known: list[int] = []
         for slot in range(turn.fixed, len(self.settled)):
             literals = self.plays[self.slots[slot]]
             # Its clauses know already of what was rejected for the slot that it was asked about.
             start = max(turn.rejected, self._start(slot)) if slot == turn.fixed else self._start(slot)
-            for number in range(start, self.settled[slot]):
-                clauses.add([-literals[number]])
-            clauses.add([literals[self.settled[slot]]])
-            turn.modelled = turn.modelled and clauses.holds(literals[self.settled[slot]])
+            known += [-literal for literal in literals[start : self.settled[slot]]]
+            known.append(literals[self.settled[slot]])
+            turn.modelled = turn.modelled and clauses.holds(known[-1])
         if turn.fixed < len(self.settled):
             turn.fixed, turn.rejected = len(self.settled), 0
         if not self.finished:
             literals = self.plays[self.slots[turn.fixed]]
             turn.rejected = max(turn.rejected, self._start(turn.fixed))
-            for number in range(turn.rejected, self.least_left):
-                clauses.add([-literals[number]])
-                turn.modelled = turn.modelled and not clauses.holds(literals[number])
+            rejected = [-literal for literal in literals[turn.rejected : self.least_left]]
+            turn.modelled = turn.modelled and all(map(clauses.holds, rejected))
+            known += rejected
             turn.rejected = max(turn.rejected, self.least_left)
+        if known:
+            clauses.settle(known)
 
     def _start(self, slot: int) -> int:
         """Return the first option that a slot may have: slots of one role take options in ascending order."""
@@ -284,7 +286,6 @@ class _Descent:
             literal = literals[turn.rejected]
             if clauses.holds(literal) or not clauses.refutes(literal):
                 break
-            clauses.add([-literal])
             turn.rejected += 1
             self.budget.spend(1)
         self.least_left = max(self.least_left, turn.rejected)

@@ -14,7 +14,7 @@ the other role has. For values, in each role that they constrain, as all that pl
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 SHARE_FITTING = 3
 """A support clause has at most one in this number of the options of a role."""
@@ -33,17 +33,14 @@ def clauses_of_needs(
     """
     if len(needs) < SHARE_FITTING:
         return
-    wanted: defaultdict[int, list[int]] = defaultdict(list)
-    issued: defaultdict[int, list[int]] = defaultdict(list)
-    for need, (having, supporting) in needs.items():
-        for literal in having:
-            wanted[literal].append(need)
-        for literal in supporting:
-            issued[literal].append(need)
     most = len(sink) // SHARE_FITTING
+    if len(sink) - sum([len(having) for having, _ in needs.values()]) > most:
+        return  # so many have no need of these
+    wanted = _by_option((need, having) for need, (having, _) in needs.items())
     content = [literal for literal in sink if literal not in wanted]
     if len(content) > most:
         return
+    issued = _by_option((need, supporting) for need, (_, supporting) in needs.items())
     alike: defaultdict[tuple[int, ...], list[int]] = defaultdict(list)
     for literal in source:
         alike[tuple(issued.get(literal, ()))].append(literal)
@@ -55,6 +52,15 @@ def clauses_of_needs(
                 break
         else:
             yield [-any_of(some), *fitting]
+
+
+def _by_option(options: Iterable[tuple[int, list[int]]]) -> dict[int, list[int]]:
+    """Return the needs of each option, or those that it supports, given the options of each need."""
+    found: defaultdict[int, list[int]] = defaultdict(list)
+    for need, literals in options:
+        for literal in literals:
+            found[literal].append(need)
+    return found
 
 
 def _met_by(

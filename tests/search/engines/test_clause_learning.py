@@ -83,6 +83,24 @@ def test_propagation_alone_refutes_what_is_refuted_without_a_search() -> None:
         assert solver.conflicts == 0
 
 
+def test_what_is_settled_refutes_what_cannot_be_beside_it() -> None:
+    pytest.importorskip("pysat")
+    given_ = pruned(reduced(families.distinct(3, 3)))
+    with clause_learning.ClauseSolver(given_) as solver:
+        (first, second, third), (of_second, *others), _ = solver.plays
+        assert {-second, -third, -of_second} <= (solver.implied([first]) or set())
+        assert solver.implied([first, of_second]) is None
+        assert not solver.refutes(of_second)
+        solver.settle([first])
+        assert solver.refutes(second)
+        assert solver.refutes(of_second)
+        assert not any(map(solver.refutes, others))
+        # What holds by now follows from nothing, and not from what is asked about.
+        assert -of_second not in (solver.implied(others[:1]) or set())
+        assert solver.ask((), Budget())
+        assert solver.holds(first)
+
+
 def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pysat")
     monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 10**9)

@@ -45,6 +45,24 @@ def test_what_propagation_refutes_is_left_out_of_a_question_and_is_a_step() -> N
         assert ahead.ahead(given_.slots, clauses.plays, Budget(0)) == [0]
 
 
+def test_what_follows_from_the_options_before_is_not_propagated_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    given_ = pruned(reduced(families.distinct(3, 3)))
+    propagated: list[list[int]] = []
+    implied = ClauseSolver.implied
+
+    def counted(solver: ClauseSolver, literals: Sequence[int]) -> set[int] | None:
+        propagated.append(list(literals))
+        return implied(solver, literals)
+
+    monkeypatch.setattr(ClauseSolver, "implied", counted)
+    with ClauseSolver(given_) as clauses:
+        ahead = Turn(clauses)
+        ahead.reach = 3
+        assert ahead.ahead(given_.slots, clauses.plays, Budget()) == [0, 1, 2]
+        # Not the second role with the first component, nor what is left to the third one.
+        assert propagated == [[clauses.plays[0][0]], [clauses.plays[0][0], clauses.plays[1][1]]]
+
+
 def test_where_all_options_are_refuted_half_of_the_slots_are_asked_about() -> None:
     given_ = pruned(reduced(families.distinct(4, 4)))
     with ClauseSolver(given_) as clauses:
