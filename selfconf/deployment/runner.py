@@ -56,6 +56,7 @@ from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.deployment.task_discovery import TaskDiscovery
 from selfconf.deployment.task_search import TaskSearch
+from selfconf.deployment.warm_up import warm_up_failure
 from selfconf.discovery import EcologyView
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration, Wants
@@ -286,9 +287,12 @@ class TaskRunner:
         self._liveness.heed(failed)
 
     def _stand_by(self, configuration: Configuration) -> None:
-        lost, epoch = frozenset(self.state.lost), self.state.epoch
+        """Be ready for a failure: what may come next is listened to, and one is gone through."""
+        state = self.state
+        lost, epoch = frozenset(state.lost), state.epoch
 
         def work() -> None:
+            warm_up_failure(state)
             standby = self.request.standby(configuration, lost)
 
             def send() -> None:

@@ -29,6 +29,8 @@ CODE_CHECK = 0.1
 """How often, in seconds, it is looked whether the code that runs is within its deadline."""
 JOINING = 1.0
 """Seconds that a component of the same IRI may take to say that it lives."""
+WARM_UP, WARM_UPS = 0.2, 4
+"""After how many seconds a host of which no component is held goes through a call beforehand, and how often."""
 LEAVING = 2.5
 """Seconds that the code of the components may take to come to rest when the host is closed."""
 _Kind = TypeVar("_Kind", bound=Component)
@@ -53,6 +55,7 @@ class Host:
         """The code that was found to hang last."""
         if not self.code.inline:
             bus.wake_up(self._watch_code)
+            bus.later(WARM_UP, partial(self._warm_up, WARM_UPS))
 
     def add(self, component: _Kind, life: str = "", advertisement: Path | None = None) -> _Kind:
         """Let a component join the ecology.
@@ -176,6 +179,14 @@ class Host:
     def _be_superseded(self, reason: str) -> None:
         self.superseded = reason
         self.code.wake_up()
+
+    def _warm_up(self, times: int) -> None:
+        """Go through a call beforehand while no component is held, and again when what waits had its turn."""
+        if times and not any(runtime.activation.holds for runtime in self.runtimes):
+            from selfconf.sdk.warm_up import warm_up_calls  # loads a bus in memory, of which others have no need
+
+            warm_up_calls()
+            self.bus.later(0.0, partial(self._warm_up, times - 1))
 
     def _watch_code(self) -> None:
         """Look at intervals whether the code that runs is within its deadline; once for each piece of code."""
