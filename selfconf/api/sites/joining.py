@@ -15,6 +15,10 @@ place of the one before, and nothing would relay for longer than a moment.
 What sites write into the runtime folder may be lost, as when that is emptied, or a disk is full: a site whose file is
 not there writes it again, and relays as well where it cannot be written.
 
+The usual ports of two ecologies may overlap. Then a site that has lost its hub may find that of the other ecology:
+that passes on what is said in this one as well, but it is not where programs look for this one. So a site takes the
+place all the same while no site of its ecology relays, and connects its own hub to the one that it has found.
+
 A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
 and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
 its own hub who lives, again and again, and opens another one when it does not answer. The others ask theirs, more
@@ -289,14 +293,18 @@ class Joining:
 
     def _in_order(self) -> bool:
         """Whether there is nothing to change; a turn is not taken then, as one that is stopped in it keeps it."""
-        return bool(self.bus.link) if not self.bus.endpoint else self._file is None or this_machine.relays(self._file)
+        return not self._lacks_hub() if not self.bus.endpoint else self._file is None or this_machine.relays(self._file)
+
+    def _lacks_hub(self) -> bool:
+        """Whether this site is connected to no hub of its ecology: to none, or while no site of this machine relays."""
+        return not (self.bus.link and self._relays())
 
     def _looked_in_turn(self) -> bool:
         """Give or take the place of the one that relays, if it is this site's turn; whether it was."""
         with self._turn() as mine:
             if mine and self.bus.endpoint:
                 self._give_place()
-            elif mine and not self.bus.link:
+            elif mine and self._lacks_hub():
                 self._take_place()
         return mine
 
@@ -325,16 +333,23 @@ class Joining:
         return is_in_time(self._security.credentials)
 
     def _relay_at(self, endpoints: Sequence[str], relays: Sequence[str]) -> None:
-        """Relay at the first of some endpoints that is free, beside others that relay and keep their places."""
+        """Relay at the first of some endpoints that is free, beside others that relay and keep their places.
+
+        And beside the hub that this site is connected to, if there is one: that of another ecology, to which others may
+        have gone as well.
+        """
+        strange: list[str] = []
         for endpoint in endpoints:
             try:
                 hub = Hub(endpoint, self._security)
             except NetworkError:  # the port is taken, by one that hangs or by another program
+                strange += [endpoint] if self.bus.link else []
                 continue
             for other in this_machine.local_sites(self._ecology):
                 if other.relays and other.endpoint in self._usual:
                     with suppress(NetworkError):  # then two relay once that one goes on
                         this_machine.announce_for(other, relays=False)
-            self.bus.relay(hub, [*(relay for relay in relays if relay not in self._usual), *self._elsewhere])
+            known = [relay for relay in relays if relay not in self._usual]
+            self.bus.relay(hub, [*known, *strange, *self._elsewhere])
             self._announce_anew()
             return

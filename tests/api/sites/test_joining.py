@@ -16,7 +16,7 @@ import pytest
 from selfconf import rendezvous, this_machine
 from selfconf.api.sites import joining
 from selfconf.api.sites.joining import Joining
-from selfconf.bus.zenoh import client
+from selfconf.bus.zenoh import client, router
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys, owner_of
 from tests.cli.processes import Home
@@ -140,6 +140,22 @@ def test_a_place_is_taken_though_nothing_can_be_written(machine: Machine, monkey
     monkeypatch.setattr(this_machine, "announce_for", full)
     machine.leave("a")
     assert machine.until(lambda: machine.relaying() == ["b"] and machine.united())
+
+
+def test_a_place_is_taken_though_the_hub_of_another_ecology_listens_at_a_usual_port(machine: Machine) -> None:
+    first, second, *_ = rendezvous.usual_endpoints("machine")
+    stranger = router(first)
+    try:
+        for name in "abc":
+            machine.join(name)
+        machine.leave("a")
+        assert machine.until(lambda: len(machine.relaying()) == 1 and machine.united())
+        (relaying,) = machine.relaying()
+        assert machine.sites[relaying].endpoint == second
+        assert [site.site for site in this_machine.local_sites("machine") if site.relays] == [relaying]
+    finally:
+        stranger.close()
+    assert machine.until(lambda: all(site.bus.link for site in machine.sites.values()) and machine.united())
 
 
 def test_a_site_that_is_told_where_to_listen_or_what_to_connect_to_relays_beside_the_other(machine: Machine) -> None:
