@@ -15,7 +15,8 @@ Where a role of one slot always issues one of two signals, and never both, as a 
 literal is the negation of the other.
 
 *Both ways.* That an option plays only if those that it feeds can do with it is said by clauses of their own
-(`support_clauses`), which are added (`Encoding.support`) when the clauses turn out to be hard without.
+(`support_clauses`), which are added (`Encoding.support`) when the clauses turn out to be hard without. That an option
+excludes the values which it does not admit is added (`Encoding.exclude`) when they are hard even then.
 
 *Probing.* Options that turn out to be in no solution when they are tried alone (`probing`) are ruled out
 (`Encoding.probe`) when the clauses turn out to be hard: to try them takes longer than most problems take.
@@ -48,7 +49,7 @@ from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.group_counting import ExclusiveGroups
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.probing import probed
-from selfconf.search.engines.support_clauses import clauses_of_needs, clauses_of_values
+from selfconf.search.engines.support_clauses import clauses_of_needs, clauses_of_values, exclusions_of_values
 from selfconf.search.engines.symmetry import interchangeable
 from selfconf.search.reduction import Constraint, Distinct, Fed, Limit, Played, ReducedProblem, Shared
 
@@ -350,6 +351,22 @@ class Encoding:
                 admitted[role][options[number]] = mask
             for role, masks in admitted.items():
                 self.statements += clauses_of_values(self.plays[role], masks, values)
+        return self.statements[before:]
+
+    @property
+    def valued(self) -> bool:
+        """Whether values of variables have literals."""
+        return bool(self._valued)
+
+    def exclude(self) -> list[list[int] | Implied]:
+        """Let options exclude the values that they do not admit, and return all that is added."""
+        before = len(self.statements)
+        options = [literal for literals in self.plays for literal in literals]
+        for some, values in self._valued:
+            admitting: defaultdict[int, list[int]] = defaultdict(list)
+            for _, number, mask in some:
+                admitting[mask].append(options[number])
+            self.statements += exclusions_of_values(admitting, values, self._any_of)
         return self.statements[before:]
 
     def probe(self) -> list[list[int] | Implied]:

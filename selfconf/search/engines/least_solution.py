@@ -9,13 +9,14 @@ with it.
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
 begins. It soon gets support clauses, from which more propagates (`support_clauses`), what trying options alone rules
-out (`probing`), and, where roles ask for many, the counting as clauses too. After `BRIEF` steps clasp works beside it;
-where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
-would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and takes the place of clasp; if
-no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take turns on the other processor. Where there is one
-processor, all three take turns, each twice as long as before. With a budget of steps it is always in turns, as a step
-has to mean the same on every machine. What one engine has settled the others take over, since the least solution is
-unique: so the answer is the same whichever engine finds it, and the time is that of the better one at each question.
+out (`probing`), a little later the values that options exclude, and, where roles ask for many, the counting as clauses
+too. After `BRIEF` steps clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process
+of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits a little longer
+(`ALONE_OF_TWO`), and takes the place of clasp; if no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take
+turns on the other processor. Where there is one processor, all three take turns, each twice as long as before. With a
+budget of steps it is always in turns, as a step has to mean the same on every machine. What one engine has settled the
+others take over, since the least solution is unique: so the answer is the same whichever engine finds it, and the time
+is that of the better one at each question.
 """
 
 from __future__ import annotations
@@ -33,7 +34,10 @@ from selfconf.search.engines.turn import Turn
 from selfconf.search.reduction import Option, ReducedProblem
 
 UNSUPPORTED = 100
-"""Conflicts and questions of the first solver before it gets support clauses, and options are tried alone."""
+"""Conflicts and questions of the first solver before it gets support clauses, and options are tried alone.
+
+As many again before it gets the values that options exclude.
+"""
 BRIEF = 1_000
 """Conflicts and questions of the first solver before it has company."""
 BRIEF_COUNTING = 250
@@ -114,6 +118,10 @@ class _Descent:
             self.advance(first, UNSUPPORTED)
             if not self.finished:
                 first.clauses.extend([*encoding.support(), *encoding.probe()], encoding.top)
+            if encoding.valued:
+                self.advance(first, UNSUPPORTED)
+                if not self.finished:
+                    first.clauses.extend(encoding.exclude(), encoding.top)
             if any(bound.worth_counting for bound in encoding.bounds):
                 self.advance(first, BRIEF_COUNTING)
                 if not self.finished:

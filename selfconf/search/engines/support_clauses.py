@@ -7,6 +7,11 @@ nothing for the first. With support clauses unit propagation does what arc consi
 after each decision (Gent, ECAI 2002). Where an option goes with few of another role, a solver then meets a fifth to a
 thousandth of the conflicts; where it goes with many, there is little to propagate, so that only short clauses are made.
 
+*Values.* An option that admits some values of a variable implies one of them, which excludes no other option as long
+as several are left: of two people who can come at other hours, either seems possible. So an option also excludes each
+value that it does not admit, where clauses are hard in spite of support clauses; options that admit the same values
+have one literal for that. Two options without a common value, or three, then exclude each other at once.
+
 *Where.* For needs that one role alone supports, with one slot: what plays there supports all of them that anything in
 the other role has. For values, in each role that they constrain, as all that plays has them in common.
 """
@@ -89,3 +94,19 @@ def clauses_of_values(
         fitting = [*content, *[literal for literal, mask in admitted.items() if mask & alike]]
         if len(fitting) <= most:
             yield [-value, *fitting]
+
+
+def exclusions_of_values(
+    admitting: Mapping[int, list[int]], values: Sequence[tuple[int, int]], any_of: Callable[[list[int]], int]
+) -> Iterator[list[int]]:
+    """Yield the clauses by which options that admit several values of a variable exclude all others.
+
+    Given are the literals of the options that admit each mask of values; masks of values with their literals; and what
+    returns a literal that holds iff one of some does.
+    """
+    for mask, options in admitting.items():
+        others = [value for alike, value in values if not mask & alike]
+        # One value excludes all others already, and a mask below zero those that are not in it.
+        if mask >= 0 and others and len(others) < len(values) - 1:
+            one = any_of(options)
+            yield from ([-one, -value] for value in others)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from benchmarks.search.further_families import tour
 from benchmarks.search.later_families import coloured_parameters, crossword
+from benchmarks.search.newest_families import hours
 from selfconf.search.budget import Budget
 from selfconf.search.engines import least_solution, support_clauses
 from selfconf.search.engines.clause_learning import ClauseSolver
@@ -30,6 +31,19 @@ WORDS = problem(
     "across>down across>last",
 )
 """Two words for each letter that a third one begins with."""
+
+MEETING = problem(
+    {
+        "host": [component("early"), component("later"), component("free")],
+        "guest": [component("late"), component("both"), component("any")],
+    },
+    values={
+        "host": {"early": 0b0011, "later": 0b1110, "free": 0b1010},
+        "guest": {"late": 0b1100, "both": 0b0110, "any": 0b0101},
+    },
+    domain=("nine", "ten", "eleven", "noon"),
+)
+"""Who can come at some of four hours, each."""
 
 
 @given(st.one_of(rivalries(), problems()), st.integers(1, 3))
@@ -61,20 +75,37 @@ def test_what_support_clauses_say_of_options_is_true_of_every_solution(problem: 
             assert all(playing.intersection(clause) for clause in added)
 
 
-def test_without_an_option_propagation_excludes_what_only_that_one_can_do_with() -> None:
+def implied_by(encoding: Encoding, literal: int) -> set[int]:
+    """Return what propagation concludes from a literal."""
     solvers = pytest.importorskip("pysat.solvers")
+    with solvers.Minicard(bootstrap_with=list(encoding.clauses())) as solver:
+        for bound in encoding.bounds:
+            solver.add_atmost(list(bound.literals), bound.most)
+        return set(solver.propagate([literal])[1])
+
+
+def test_without_an_option_propagation_excludes_what_only_that_one_can_do_with() -> None:
     encoding = Encoding(reduced(WORDS))
     across, down, _ = encoding.plays
-
-    def implied() -> list[int]:
-        with solvers.Minicard(bootstrap_with=list(encoding.clauses())) as solver:
-            for bound in encoding.bounds:
-                solver.add_atmost(list(bound.literals), bound.most)
-            return [literal for literal in solver.propagate([-down[0]])[1] if abs(literal) in across]
-
-    assert implied() == []
+    assert not implied_by(encoding, -down[0]).intersection(across, map(int.__neg__, across))
     encoding.support()
-    assert sorted(implied()) == sorted([-across[0], -across[1]])
+    assert implied_by(encoding, -down[0]).issuperset([-across[0], -across[1]])
+
+
+def test_an_option_excludes_those_that_admit_other_values_alone() -> None:
+    encoding = Encoding(reduced(MEETING))
+    (early, _, _), (late, both, _) = encoding.plays
+    assert encoding.valued
+    assert -late not in implied_by(encoding, early)
+    assert [one for one in encoding.exclude() if isinstance(one, list)]
+    assert -late in implied_by(encoding, early)
+    assert -both not in implied_by(encoding, early)
+
+
+def test_where_values_have_no_literals_none_are_excluded() -> None:
+    encoding = Encoding(reduced(WORDS))
+    assert not encoding.valued
+    assert not encoding.exclude()
 
 
 @pytest.mark.parametrize(
@@ -83,8 +114,9 @@ def test_without_an_option_propagation_excludes_what_only_that_one_can_do_with()
         (lambda: crossword(4, 100, 6, 501), 20),
         (lambda: coloured_parameters(40, 4, 8.0, 501), 4),
         (lambda: tour(24, 4.0, 501), 4),
+        (lambda: hours(7, 36, 8, 12, 501), 4),
     ],
-    ids=["needs", "values", "needs of roles that share components"],
+    ids=["needs", "values", "needs of roles that share components", "several values of one option"],
 )
 def test_with_support_clauses_a_solver_meets_a_fraction_of_the_conflicts(
     made: Callable[[], Problem], share: int
@@ -96,6 +128,7 @@ def test_with_support_clauses_a_solver_meets_a_fraction_of_the_conflicts(
         encoding = Encoding(given_)
         if supported:
             encoding.support()
+            encoding.exclude()
         with ClauseSolver(given_, encoding=encoding) as clauses:
             assert clauses.solve((), Budget()) is True
             assert isinstance(least_of_clauses(clauses, Budget()), list)
