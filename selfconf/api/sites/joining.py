@@ -17,7 +17,7 @@ not there writes it again, and relays as well where it cannot be written.
 
 The usual ports of two ecologies may overlap. Then a site that has lost its hub may find that of the other ecology:
 that passes on what is said in this one as well, but it is not where programs look for this one. So a site takes the
-place all the same while no site of its ecology relays, and connects its own hub to the one that it has found.
+place all the same while no site of its ecology relays, and connects its own hub to the other.
 
 A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
 and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
@@ -335,15 +335,17 @@ class Joining:
     def _relay_at(self, endpoints: Sequence[str], relays: Sequence[str]) -> None:
         """Relay at the first of some endpoints that is free, beside others that relay and keep their places.
 
-        And beside the hub that this site is connected to, if there is one: that of another ecology, to which others may
-        have gone as well.
+        And beside what has a usual port and is no site of this ecology: if it is the hub of another, what has lost its
+        hub may have gone there. With keys nothing is let in there.
         """
+        ours = {site.endpoint for site in this_machine.local_sites(self._ecology)}
         strange: list[str] = []
         for endpoint in endpoints:
             try:
                 hub = Hub(endpoint, self._security)
             except NetworkError:  # the port is taken, by one that hangs or by another program
-                strange += [endpoint] if self.bus.link else []
+                if self._security is None and endpoint not in ours:
+                    strange.append(endpoint)
                 continue
             for other in this_machine.local_sites(self._ecology):
                 if other.relays and other.endpoint in self._usual:
