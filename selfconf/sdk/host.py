@@ -21,6 +21,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer
+from selfconf.sdk.code_pages import let_go_of_code
 from selfconf.sdk.code_thread import CodeThread, RunningCode
 from selfconf.sdk.component import Component
 from selfconf.sdk.runtime import ComponentRuntime
@@ -29,8 +30,12 @@ CODE_CHECK = 0.1
 """How often, in seconds, it is looked whether the code that runs is within its deadline."""
 JOINING = 1.0
 """Seconds that a component of the same IRI may take to say that it lives."""
-WARM_UP, WARM_UPS = 0.2, 4
-"""After how many seconds a host of which no component is held goes through a call beforehand, and how often."""
+AT_REST = 0.2
+"""After how many seconds a host lets go of what it needed to begin, and makes ready what it will need."""
+WARM_UPS = 4
+"""How often it goes through a call beforehand."""
+PARSER = "pyoxigraph"
+"""The library that reads advertisements and ontologies; once these are read, its code is a fifth of the memory."""
 LEAVING = 2.5
 """Seconds that the code of the components may take to come to rest when the host is closed."""
 _Kind = TypeVar("_Kind", bound=Component)
@@ -55,7 +60,7 @@ class Host:
         """The code that was found to hang last."""
         if not self.code.inline:
             bus.wake_up(self._watch_code)
-            bus.later(WARM_UP, partial(self._warm_up, WARM_UPS))
+            bus.later(AT_REST, self._settle)
 
     def add(self, component: _Kind, life: str = "", advertisement: Path | None = None) -> _Kind:
         """Let a component join the ecology.
@@ -179,6 +184,10 @@ class Host:
     def _be_superseded(self, reason: str) -> None:
         self.superseded = reason
         self.code.wake_up()
+
+    def _settle(self) -> None:
+        let_go_of_code(PARSER)
+        self._warm_up(WARM_UPS)
 
     def _warm_up(self, times: int) -> None:
         """Go through a call beforehand while no component is held, and again when what waits had its turn."""

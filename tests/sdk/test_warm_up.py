@@ -78,7 +78,7 @@ def test_a_host_of_which_no_component_is_held_warms_up(living: LivingStage, time
 def test_a_host_of_which_a_component_is_held_does_not(
     living: LivingStage, times: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("selfconf.sdk.host.WARM_UP", 1.0)
+    monkeypatch.setattr("selfconf.sdk.host.AT_REST", 1.0)
     lamp = living.component(living.advertised(Lamp, LAMP)())
     began, answers = time.monotonic(), living.apply("urn:c:lamp")
     assert until(lambda: bool(answers))
