@@ -11,6 +11,9 @@ solution of all is the least among those of the cases.
 *When.* Where most combinations leave enough components, nothing is gained by looking at them one by one: there are no
 cases then, and clause learning gets the parameters as they are.
 
+*Which.* Parameters on which all have to agree: of the roles that constrain one, most options do so. Where a few people
+of each role have hours for something, whatever hour is given leaves all the others.
+
 *Cost.* A pass over all needs and supports, and a matching, for each value or combination that is tried, while there are
 few of these.
 """
@@ -28,6 +31,8 @@ from selfconf.search.reduction import ReducedProblem, pruned
 
 MOST_CASES = 256
 """How many combinations of values are looked at at most."""
+SHARE_FREE = 3
+"""At most one in this number of the options leaves a parameter with cases free, in the roles where any does not."""
 MARGIN = 16
 """By how many those that leave enough components may outnumber the others, at any time, if there are to be cases."""
 MOST_COUNTED = 1_000_000
@@ -42,7 +47,7 @@ def value_cases(given: ReducedProblem) -> list[ReducedProblem] | None:
     """
     size = sum(1 + len(kind.needs) + len(kind.supports) for kind in given.kinds()) + sum(map(len, given.options))
     most, chosen = min(MOST_CASES, MOST_COUNTED // max(1, size)), list[int]()
-    choices = sorted((len(_values(given, variable)), variable) for variable in range(len(given.values)))
+    choices = sorted((len(_values(given, variable)), variable) for variable in _agreed_on(given))
     for count, variable in choices:
         if count > 1 and (most := most // count) > 0:
             chosen.append(variable)
@@ -58,6 +63,14 @@ def value_cases(given: ReducedProblem) -> list[ReducedProblem] | None:
         if len(cases) > refuted + MARGIN:
             return None
     return cases
+
+
+def _agreed_on(given: ReducedProblem) -> Iterator[int]:
+    """Yield the variables that most options constrain, in the roles where any does."""
+    for variable, constrained in enumerate(given.constraining()):
+        options = sum([len(given.options[role]) for role in {role for role, _, _ in constrained}])
+        if SHARE_FREE * (options - len(constrained)) <= options:
+            yield variable
 
 
 def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProblem | None]:

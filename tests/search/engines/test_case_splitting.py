@@ -194,7 +194,24 @@ def test_a_case_is_not_divided_again(monkeypatch: pytest.MonkeyPatch, seed: int)
     assert divided
 
 
-def test_all_values_that_no_option_states_are_one_case() -> None:
+def test_a_parameter_that_few_constrain_has_no_cases() -> None:
+    """Whatever hour is given for something, those who have no hours for it are left."""
+    variable = Variable(iri("hour"), (iri("nine"), iri("ten")))
+
+    def pool(busy: int) -> list[Candidate]:
+        return [Candidate(profile(f"p{k}", (), [k]), (1 << k % 2 if k < busy else ANY_VALUE,)) for k in range(12)]
+
+    def cases(busy: int) -> list[ReducedProblem] | None:
+        # A role of which no one has hours for it does not count.
+        idle = [Candidate(profile(f"q{k}"), (ANY_VALUE,)) for k in range(20)]
+        return value_cases(pruned(reduced(counted([pool(busy), pool(busy), idle], [1, 1, 1], [(0, 2)], (variable,)))))
+
+    assert cases(7) is None
+    assert len(cases(8) or ()) == len(["nine", "ten", "any other hour"])
+
+
+def test_all_values_that_no_option_states_are_one_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(case_splitting, "SHARE_FREE", 1)
     variable = Variable(iri("site"), (iri("s"), iri("t")))
     pool = [Candidate(profile(f"p{number}"), (ANY_VALUE if number else ~1,)) for number in range(4)]
     cases = value_cases(pruned(reduced(counted([pool, pool], [1, 1], [], (variable,)))))
