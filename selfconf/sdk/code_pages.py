@@ -18,14 +18,18 @@ _CODE = "r-xp"
 
 
 def let_go_of_code(library: str) -> None:
-    """Let go of the pages of code of the libraries with this in the names of their files; only Linux can do so."""
-    for first, last in _ranges(library):
+    """Let go of the pages of code of the libraries with this in the names of their files, where Linux lets it."""
+    try:
+        ranges = [*_ranges(library)]
+    except OSError:  # there is no such file, or it may not be read
+        return
+    for first, last in ranges:
         ctypes.CDLL(None).madvise(ctypes.c_void_p(first), ctypes.c_size_t(last - first), mmap.MADV_DONTNEED)
 
 
 def _ranges(library: str) -> Iterator[tuple[int, int]]:
     """The ranges of addresses with such code: it may only be read and run, so its pages are as they are in the file."""
-    for line in MAPS.read_text().splitlines() if MAPS.exists() else ():
+    for line in MAPS.read_text(errors="replace").splitlines():
         place, may, *_, file = line.split(maxsplit=5)
         if may == _CODE and library in file.rpartition("/")[2]:
             first, _, last = place.partition("-")
