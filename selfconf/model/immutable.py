@@ -1,7 +1,7 @@
 """Immutable values: `immutable` does to a class what `dataclass(frozen=True, slots=True)` does, in a fifth of the time.
 
 A data class compiles six methods for each class, one by one, which for the 150 classes of a site was a quarter of the
-time in which it starts. Here only `__init__` is compiled, and that when the class has its first value: most programs
+time in which it starts. Here only `__init__` is compiled, and that when the class has had a few values: most programs
 make values of some classes only. The other methods are the same functions for all classes, or closures over the names
 of the fields. What `dataclasses` offers for data classes (`fields`, `replace`, `asdict`) works as usual, and type
 checkers see a frozen data class. The `replace` of this module does the same in a third of the time, as a configurator
@@ -13,7 +13,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import MISSING, Field, FrozenInstanceError
-from functools import cache
+from functools import cache, partial
 from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -22,6 +22,8 @@ Class = TypeVar("Class", bound=type)
 _Key = TypeVar("_Key")
 _Mapped = TypeVar("_Mapped", covariant=True)
 Methods = dict[str, Callable[..., Any]]
+FIRST_VALUES = 8
+"""How many values of a class are made before its `__init__` is compiled."""
 
 if TYPE_CHECKING:
     from dataclasses import replace as replace
@@ -59,17 +61,47 @@ else:
 
 
 class _Initializer:
-    """Stands for the `__init__` of a class until it is asked for, and is then replaced by it."""
+    """Stands for the `__init__` of a class until that has had a few values, and is then replaced by a compiled one.
 
-    __slots__ = ("_cls",)
+    To compile one takes as long as thirty values do without it, and most programs make few values of most classes.
+    """
+
+    __slots__ = ("_cls", "_left")
 
     def __init__(self, cls: type) -> None:
-        self._cls = cls
+        self._cls, self._left = cls, FIRST_VALUES
 
     def __get__(self, value: object, owner: type | None = None) -> Any:
+        if value is None or self._left <= 0:
+            return self._compiled().__get__(value, owner)
+        self._left -= 1
+        return partial(self._initialize, value)
+
+    def _compiled(self) -> Callable[..., None]:
         made = _initializer(self._cls)
         type.__setattr__(self._cls, "__init__", made)
-        return made.__get__(value, owner)
+        return made
+
+    def _initialize(self, value: Any, *given: Any, **named: Any) -> None:
+        """Store the fields of a value; if the arguments are wrong, the compiled `__init__` raises what that is."""
+        fields = sorted(dataclasses.fields(self._cls), key=_by_keyword_only)
+        arguments = {**{field.name: one for field, one in zip(fields, given, strict=False)}, **named}
+        right = len(arguments) == len(given) + len(named) and not any(one.kw_only for one in fields[: len(given)])
+        for field in fields:
+            if field.name in arguments:
+                made = arguments.pop(field.name)
+            elif field.default is not MISSING:
+                made = field.default
+            elif field.default_factory is not MISSING:
+                made = field.default_factory()
+            else:
+                right = False
+                break
+            getattr(self._cls, field.name).__set__(value, made)
+        if arguments or not right:
+            self._compiled()(value, *given, **named)
+        elif hasattr(value, "__post_init__"):
+            value.__post_init__()
 
 
 def _initializer(cls: type) -> Callable[..., None]:

@@ -15,6 +15,7 @@ from typing import TypeVar
 from selfconf import files, library, rendezvous
 from selfconf.bus.port import Bus, Replies
 from selfconf.errors import AuthorError, NetworkError, PeerError, ProgrammerError
+from selfconf.model.immutable import FIRST_VALUES
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
@@ -32,8 +33,8 @@ JOINING = 1.0
 """Seconds that a component of the same IRI may take to say that it lives."""
 AT_REST = 0.2
 """After how many seconds a host lets go of what it needed to begin, and makes ready what it will need."""
-WARM_UPS = 4
-"""How often it goes through a call beforehand."""
+WARM_UPS = FIRST_VALUES + 1
+"""How often it goes through a call beforehand: until all values of that are made by what is compiled."""
 PARSER = "pyoxigraph"
 """The library that reads advertisements and ontologies; once these are read, its code is a fifth of the memory."""
 LEAVING = 2.5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import inspect
 import pickle
 import re
 from collections.abc import Mapping
@@ -15,7 +16,7 @@ import pytest
 import selfconf
 from selfconf.model.configuration import Connection
 from selfconf.model.diagnostic import Report
-from selfconf.model.immutable import FrozenMapping, immutable, replace
+from selfconf.model.immutable import FIRST_VALUES, FrozenMapping, immutable, replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 
@@ -59,6 +60,19 @@ class Nothing:
     """A value without fields."""
 
 
+def lamp_class() -> type:
+    """A class like `Lamp` that has had no value yet."""
+
+    @immutable
+    class Lamp:
+        name: str
+        watts: float = 5.0
+        tags: list[str] = field(default_factory=list, hash=False)
+        note: str = field(default="", kw_only=True, compare=False, repr=False)
+
+    return Lamp
+
+
 ARGUMENTS: list[tuple[tuple[object, ...], Mapping[str, object]]] = [
     (("a",), {}),
     (("a", 7.0), {}),
@@ -84,10 +98,33 @@ def test_values_compare_hash_and_print_as_those_of_the_standard_library() -> Non
     ("given", "named"),
     [((), {}), (("a", 1.0, [], "n"), {}), (("a",), {"name": "b"}), (("a",), {"colour": "red"})],
 )
-def test_what_the_standard_library_refuses_is_refused(given: tuple[object, ...], named: Mapping[str, object]) -> None:
-    for kind in (Usual, Lamp):
-        with pytest.raises(TypeError):
-            kind(*given, **named)  # type: ignore[arg-type]
+@pytest.mark.parametrize("times", [1, FIRST_VALUES + 1])
+def test_what_the_standard_library_refuses_is_refused(
+    given: tuple[object, ...], named: Mapping[str, object], times: int
+) -> None:
+    fresh = lamp_class()
+    for _ in range(times - 1):
+        fresh("a")
+    said = []
+    for kind in (Usual, fresh):
+        with pytest.raises(TypeError) as refused:
+            kind(*given, **named)
+        said.append(str(refused.value).rpartition(".")[2])
+    assert said[0] == said[1]
+
+
+@pytest.mark.parametrize(("given", "named"), ARGUMENTS)
+def test_the_first_values_of_a_class_are_made_as_those_after_them(
+    given: tuple[object, ...], named: Mapping[str, object]
+) -> None:
+    fresh = lamp_class()
+    made = [fresh(*given, **named) for _ in range(2 * FIRST_VALUES)]
+    assert len({repr(one) for one in made}) == 1
+    assert [asdict(one) for one in made] == [asdict(Usual(*given, **named))] * len(made)  # type: ignore[arg-type]
+
+
+def test_an_init_can_be_looked_at_before_there_is_a_value() -> None:
+    assert list(inspect.signature(lamp_class()).parameters) == ["name", "watts", "tags", "note"]
 
 
 def test_nothing_is_assigned_or_deleted() -> None:
