@@ -137,7 +137,7 @@ def find(ecology: str | None, connect: Sequence[str], credentials: Credentials |
     if not names:
         which = "" if ecology is None else f"of the ecology {ecology!r} "
         raise NetworkError(
-            f"no site {which}runs on this machine; start one with `selfconf site`, or give"
+            f"no site {which}runs on this machine as this user; start one with `selfconf site`, or give"
             f" {setting('connect', 'ENDPOINT')}"
         )
     if len(names) > 1:
