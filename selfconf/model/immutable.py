@@ -72,7 +72,7 @@ class _Initializer:
         self._cls, self._left = cls, FIRST_VALUES
 
     def __get__(self, value: object, owner: type | None = None) -> Any:
-        if value is None or self._left <= 0:
+        if self._left <= 0 or not isinstance(value, self._cls):  # it is looked at, as by `inspect.signature`
             return self._compiled().__get__(value, owner)
         self._left -= 1
         return partial(self._initialize, value)
