@@ -292,7 +292,6 @@ class TaskRunner:
         lost, epoch = frozenset(state.lost), state.epoch
 
         def work() -> None:
-            warm_up_failure(state)
             standby = self.request.standby(configuration, lost)
 
             def send() -> None:
@@ -302,6 +301,7 @@ class TaskRunner:
                     self._liveness.select(sources, lambda: None)
 
             self.bus.wake_up(send)
+            warm_up_failure(state)
 
         self.request.aside(work)
 

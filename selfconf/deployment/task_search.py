@@ -79,6 +79,7 @@ class TaskSearch:
             began = time.monotonic()
             try:
                 outcome = self._request.compose(found, effect.lost, effect.running)
+                plan = plan_of(outcome) if isinstance(outcome, Configuration) else None
                 not_judged = dict(self._request.not_judged())
                 refusal = outcome if isinstance(outcome, Refusal) else refused
                 usable = self._request.usable(taken, refusal) if isinstance(refusal, Refusal) else {}
@@ -94,7 +95,6 @@ class TaskSearch:
             if isinstance(outcome, Refusal):
                 outcome = outcome.told_of_held(usable)
             seconds = time.monotonic() - began
-            plan = plan_of(outcome) if isinstance(outcome, Configuration) else None
             composed = Composed(effect.attempt, outcome, frozenset(usable), plan)
             if looks_again and not isinstance(outcome, Undecided):
                 self._better = _Better(found, effect.lost, outcome, not_judged)
