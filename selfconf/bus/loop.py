@@ -36,6 +36,10 @@ class Loop:
     """How large what others have sent may be together, in bulk and of the urgent; one message may always wait."""
     OVERHEAD = 500
     """Bytes that a message takes besides what it says."""
+    ROUND = 0.5
+    """Seconds that one round of `run` takes at most, after which `until` is asked again, whatever it looks at."""
+    LONG_ROUND = 600.0
+    """Seconds that one takes on a thread of the loop's own, which `end` wakes up: idle programs are to sleep."""
 
     def __init__(self) -> None:
         self._waiting: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
@@ -144,14 +148,18 @@ class Loop:
     def run(self, until: Callable[[], bool]) -> None:
         """Run callbacks until `until` holds; it is asked after each round."""
         while not until():
-            self.poll(0.5)
+            self.poll(self.ROUND)
 
     def run_aside(self) -> bool:
         """Run callbacks on a thread of their own from now on, until the loop ends."""
         if self._thread is None:
-            self._thread = threading.Thread(target=self.run, args=(lambda: self._ended,), daemon=True, name="bus")
+            self._thread = threading.Thread(target=self._run_to_the_end, daemon=True, name="bus")
             self._thread.start()
         return True
+
+    def _run_to_the_end(self) -> None:
+        while not self._ended:
+            self.poll(self.LONG_ROUND)
 
     def end(self) -> None:
         """Run no callback any more; one that runs on the loop's own thread is waited for."""

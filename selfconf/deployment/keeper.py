@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterable, Set
 from functools import partial
 from typing import TYPE_CHECKING
 
-from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
+from selfconf.bus.port import Bus, Replies, Request, Sample, Undo, Urgency
 from selfconf.configurator import Phase
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
 from selfconf.deployment.holders import Holding
@@ -88,6 +88,8 @@ class Keeper:
         """When a site has come or gone."""
         self._to_ask: set[str] = set()
         """The sites that have come and were not asked once more since: they may not have been reached at first."""
+        self._unlook: Undo | None = None
+        """Takes back that it will look again; None where it will not."""
         bus.serve(self.keys.keep(site), self._keep)
         bus.serve(self.keys.kept_tasks(site), self._answer)
         bus.subscribe(self.keys.task(), self._take, Urgency.EVENT)
@@ -158,6 +160,7 @@ class Keeper:
         if self.folder.learn(record):
             self._read(record)
             self.bus.wake_up(self._assign)
+            self._look_later()
 
     def _read(self, record: TaskRecord) -> None:
         """Read a task in advance, so that going on with it takes no time; one that cannot be read is never run."""
@@ -190,6 +193,7 @@ class Keeper:
             lives.setdefault(site, set()).add(key)
             # When this site began it may have been cut off from that one, and no other site says what that one keeps.
             self._to_ask.add(site)
+            self._look_later()
             self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._take_all)
         elif site in lives:
             lives[site].discard(key)
@@ -199,12 +203,20 @@ class Keeper:
 
     def _look(self) -> None:
         """Look from time to time, as what was to be handed over may be free by now."""
-        self.bus.later(KEEPER_LOOK, self._look)
+        if self._unlook is not None:
+            self._unlook()
+            self._unlook = None
         for record in list(self.folder.records.values()):
             self._read(record)
         for site in sorted(self._to_ask):
             self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, partial(self._asked_again, site))
         self._assign()
+        self._look_later()
+
+    def _look_later(self) -> None:
+        """Look again in a while; not where there is no task, nor a site to ask: most sites keep none, and sleep."""
+        if self._unlook is None and (self.folder.records or self._to_ask):
+            self._unlook = self.bus.later(KEEPER_LOOK, self._look)
 
     def _assign(self) -> None:
         """Run the tasks that this site is to run, and no others.

@@ -98,6 +98,22 @@ def test_running_asks_until_after_each_round() -> None:
     assert told
 
 
+def test_a_thread_of_its_own_sleeps_until_there_is_something_to_do() -> None:
+    rounds: list[float] = []
+
+    class Counting(Loop):
+        def poll(self, seconds: float = 0.0) -> None:
+            rounds.append(seconds)
+            super().poll(seconds)
+
+    loop, told = Counting(), threading.Event()
+    loop.run_aside()
+    loop.later(0.01, told.set)
+    assert told.wait(60)
+    loop.end()
+    assert min(rounds) > 60
+
+
 def test_nothing_is_said_after_the_end() -> None:
     loop = Loop()
     said: list[int] = []

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import Faults, MemoryBus
-from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
@@ -101,6 +101,24 @@ def test_a_task_that_is_handed_over_runs_at_one_site_and_is_kept_by_all(keepers:
     assert {name: list(k.folder.records) for name, k in keepers.keepers.items()} == {
         name: [RECORD.task] for name in "abc"
     }
+
+
+def test_a_site_sleeps_that_keeps_no_task_and_a_task_wakes_it(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keepers.lab.let_pass(3.0)
+    bus, looks = keepers.buses["a"], []
+    later = bus.later
+
+    def counted(seconds: float, action: Callable[[], None]) -> Undo:
+        looks.append(keepers.lab.network.time)
+        return later(seconds, action)
+
+    monkeypatch.setattr(bus, "later", counted)
+    keepers.lab.let_pass(10.0)
+    assert not looks
+    keepers.settled()
+    assert looks
 
 
 def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> None:
