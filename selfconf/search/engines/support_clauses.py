@@ -39,24 +39,42 @@ def clauses_of_needs(
     if len(needs) < SHARE_FITTING:
         return
     most = len(sink) // SHARE_FITTING
-    if len(sink) - sum([len(having) for having, _ in needs.values()]) > most:
+    having = {need: some for need, (some, _) in needs.items()}
+    counted = sum(map(len, having.values()))
+    if len(sink) - counted > most:
         return  # so many have no need of these
-    wanted = _by_option((need, having) for need, (having, _) in needs.items())
-    content = [literal for literal in sink if literal not in wanted]
+    needing = set[int]().union(*having.values())
+    content = [literal for literal in sink if literal not in needing]
     if len(content) > most:
         return
-    issued = _by_option((need, supporting) for need, (_, supporting) in needs.items())
-    alike: defaultdict[tuple[int, ...], list[int]] = defaultdict(list)
-    for literal in source:
-        alike[tuple(issued.get(literal, ()))].append(literal)
-    for supported, some in alike.items():
+    wanted = _by_option(having.items()) if len(needing) < counted else None  # mostly none has two of the needs
+    for supported, some in _alike(source, {need: supporting for need, (_, supporting) in needs.items()}):
         fitting = content.copy()
         for need in supported:
-            fitting += _met_by(supported, need, needs[need][0], wanted)
+            fitting += having[need] if wanted is None else _met_by(supported, need, having[need], wanted)
             if len(fitting) > most:
                 break
         else:
             yield [-any_of(some), *fitting]
+
+
+def _alike(source: Sequence[int], supporting: Mapping[int, list[int]]) -> Iterable[tuple[tuple[int, ...], list[int]]]:
+    """Return sets of some needs, with the options of a role that support just these, the earliest first."""
+    able = set[int]().union(*supporting.values())
+    if len(able) == sum(map(len, supporting.values())):
+        # Each supports one at most, so that the options of each need are known, and no option has to be looked at.
+        others = [literal for literal in source if literal not in able]
+        sets = [*(((need,), some) for need, some in supporting.items()), *([((), others)] if others else [])]
+        return sorted(sets, key=_first_option)
+    issued = _by_option(supporting.items())
+    alike: defaultdict[tuple[int, ...], list[int]] = defaultdict(list)
+    for literal in source:
+        alike[tuple(issued.get(literal, ()))].append(literal)
+    return alike.items()
+
+
+def _first_option(alike: tuple[tuple[int, ...], list[int]]) -> int:
+    return alike[1][0]
 
 
 def _by_option(options: Iterable[tuple[int, list[int]]]) -> dict[int, list[int]]:

@@ -16,6 +16,7 @@ from selfconf.search.engines import least_solution, support_clauses
 from selfconf.search.engines.clause_learning import ClauseSolver
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.least_solution import least_by_clauses, least_of_clauses
+from selfconf.search.engines.support_clauses import clauses_of_needs
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import pruned, reduced
 from tests.search.comparison import least_numbers, numbers
@@ -73,6 +74,47 @@ def test_what_support_clauses_say_of_options_is_true_of_every_solution(problem: 
         }
         if all(names[role].issubset(some) for role, some in enumerate(map(set, encoding.reduced.components()))):
             assert all(playing.intersection(clause) for clause in added)
+
+
+def naive(
+    source: list[int], sink: list[int], needs: dict[int, tuple[list[int], list[int]]]
+) -> set[tuple[frozenset[int], frozenset[int]]]:
+    """Return what goes with options that support the same needs, option by option, where it is few."""
+    alike: dict[frozenset[int], set[int]] = {}
+    for one in source:
+        alike.setdefault(frozenset(n for n, (_, supporting) in needs.items() if one in supporting), set()).add(one)
+    fitting = {
+        supported: frozenset(o for o in sink if all(n in supported for n, (having, _) in needs.items() if o in having))
+        for supported in alike
+    }
+    return {
+        (frozenset(some), fitting[supported])
+        for supported, some in alike.items()
+        if 2 * len(fitting[supported]) <= len(sink)
+    }
+
+
+@pytest.mark.parametrize("several", [False, True], ids=["one need each", "several needs each"])
+@given(st.data())
+def test_the_clauses_are_those_that_a_look_at_each_option_finds(several: bool, data: st.DataObject) -> None:
+    source, sink, numbers_ = [1, 2, 3, 4, 5], [11, 12, 13, 14, 15, 16], [0, 1, 2]
+    most = 3 if several else 1
+    of_option = st.lists(st.sampled_from(numbers_), max_size=most, unique=True)
+    chosen = {one: data.draw(of_option) for one in (*source, *sink)}
+    needs = {n: ([o for o in sink if n in chosen[o]], [o for o in source if n in chosen[o]]) for n in numbers_}
+    needs = {n: (having, supporting) for n, (having, supporting) in needs.items() if having and supporting}
+    sums: dict[int, frozenset[int]] = {}
+
+    def any_of(literals: list[int]) -> int:
+        sums[100 + len(sums)] = frozenset(literals)
+        return 99 + len(sums)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(support_clauses, "SHARE_FITTING", 2)
+        found = [(sums[-one], frozenset(rest)) for one, *rest in clauses_of_needs(source, sink, needs, any_of)]
+    assert len(found) == len(set(found))
+    if found:
+        assert set(found) == naive(source, sink, needs)
 
 
 def implied_by(encoding: Encoding, literal: int) -> set[int]:
