@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from typing import TypeVar
 
@@ -13,25 +16,64 @@ ROLL_CALL = 3.0
 """How long, in seconds, a roll-call or a question may take, if nothing else is said."""
 ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
+LONGEST_TURN = 0.05
+"""Seconds for which a thread waits at most until others have their turn, or until it notices that the bus is closed."""
 _Result = TypeVar("_Result")
 
 
 class SynchronousBus:
-    """Asks over a bus, and lets that run until the answer is there."""
+    """Asks over a bus, and lets that run until the answer is there; may be used by several threads, which take turns.
+
+    What has come for any of them is done by the one whose turn it is, so none waits for the answers of others.
+    """
 
     def __init__(self, bus: Bus, seconds: float = ROLL_CALL) -> None:
         """`seconds` is how long a roll-call or a question may take, unless it says otherwise."""
         self._bus, self._seconds = bus, seconds
         self._left = False
+        self._process = os.getpid()
+        self._turn, self._next_turn = threading.Lock(), threading.Lock()
+        self._running: int | None = None
+        """The thread whose turn it is."""
 
     def leave(self) -> None:
         """From now on nothing can be asked: the bus is closed by its owner."""
         self._left = True
 
     def check(self) -> None:
-        """Raises ProgrammerError where the ecology was left."""
+        """Raises ProgrammerError where the ecology was left, and in a process that was forked since it was joined."""
         if self._left:
             raise ProgrammerError("the ecology was left, by `close` or at the end of its `with`; join it again")
+        if self._process != os.getpid():
+            raise ProgrammerError("the ecology was joined before this process was forked; spawn it, and join there")
+
+    @contextmanager
+    def _in_turn(self) -> Iterator[None]:
+        """In the block the bus belongs to this thread."""
+        if self._running == threading.get_ident():  # a handler of signals asks, in the middle of the thread's own turn
+            yield
+            return
+        with self._next_turn:  # without it, the thread that has just had its turn would have the next one, too
+            self._turn.acquire()
+        self._running = threading.get_ident()
+        try:
+            yield
+        finally:
+            self._running = None
+            self._turn.release()
+
+    def run(self, until: Callable[[], bool]) -> None:
+        """Let the bus run until `until` holds. Raises ProgrammerError where the ecology was left."""
+        while not until():
+            self.check()
+            with self._in_turn():
+                self._run_once(until)
+
+    def _run_once(self, until: Callable[[], bool]) -> None:
+        over: list[bool] = []
+        undo = self._bus.later(LONGEST_TURN, partial(over.append, True))
+        self._bus.run(lambda: until() or bool(over) or self._left)
+        undo()
 
     def wait(self, begin: Callable[[Callable[[_Result], None]], None]) -> _Result:
         """Begin something that says when it is done, and return its result. Raises NetworkError if it never does.
@@ -40,9 +82,10 @@ class SynchronousBus:
         """
         self.check()
         results: list[_Result] = []
-        begin(results.append)
+        with self._in_turn():
+            begin(results.append)
         deadline = self._bus.now() + ANSWER_PATIENCE
-        self._bus.run(lambda: bool(results) or self._bus.now() > deadline)
+        self.run(lambda: bool(results) or self._bus.now() > deadline)
         if not results:
             raise NetworkError("the ecology does not answer")
         return results[0]
@@ -87,7 +130,8 @@ class SynchronousBus:
 
     def pause(self, seconds: float) -> None:
         """Let the bus run for some time."""
-        self._bus.poll(seconds)
+        with self._in_turn():
+            self._bus.poll(seconds)
 
     def now(self) -> float:
         """Seconds of the bus's clock."""

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import os
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+
 import pytest
 
 from selfconf.api.synchronous_bus import ANSWER_PATIENCE, SynchronousBus
-from selfconf.bus.memory import Network
-from selfconf.bus.port import Request
+from selfconf.bus.loop import Loop
+from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.port import Replies, Request
 from selfconf.errors import NetworkError, ProgrammerError
 
 
@@ -69,3 +76,86 @@ def test_what_never_ends_is_given_up(network: Network) -> None:
     node.later(2 * ANSWER_PATIENCE, lambda: None)
     with pytest.raises(NetworkError, match="the ecology does not answer"):
         bus.wait(lambda done: None)
+
+
+class SharedBus(MemoryBus):
+    """A bus in real time for several threads, that answers each question a moment later, unless it is about a mute."""
+
+    def __init__(self, network: Network) -> None:
+        super().__init__(network, 0, 0.0)
+        self.loop, self.asked = Loop(), threading.Event()
+        self._polled = threading.Lock()
+
+    def now(self) -> float:
+        return self.loop.now()
+
+    def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
+        return self.loop.later(seconds, action)
+
+    def poll(self, seconds: float = 0.0) -> None:
+        assert self._polled.acquire(blocking=False), "two threads let the bus run at the same time"
+        try:
+            self.loop.poll(seconds)
+        finally:
+            self._polled.release()
+
+    def run(self, until: Callable[[], bool]) -> None:
+        while not until():
+            self.poll(0.5)
+
+    def ask(self, key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+        self.asked.set()
+        if key != "mute":
+            self.later(0.001, partial(done, Replies(errors=(key,))))
+
+
+def test_several_threads_ask_in_turns_and_each_gets_its_answers(network: Network) -> None:
+    bus = SynchronousBus(SharedBus(network))
+    questions = [str(number) for number in range(200)]
+    with ThreadPoolExecutor(4) as threads:
+        assert [replies.errors for replies in threads.map(bus.ask, questions)] == [(one,) for one in questions]
+
+
+def test_a_thread_asks_while_another_waits_without_an_end(network: Network) -> None:
+    shared, ended = SharedBus(network), threading.Event()
+    bus = SynchronousBus(shared)
+    with ThreadPoolExecutor(1) as threads:
+        waiting = threads.submit(bus.run, ended.is_set)
+        assert [bus.ask(str(number)).errors for number in range(20)] == [(str(number),) for number in range(20)]
+        ended.set()
+        waiting.result(ANSWER_PATIENCE)
+
+
+def test_a_question_ends_when_another_thread_leaves_the_ecology(network: Network) -> None:
+    shared = SharedBus(network)
+    bus = SynchronousBus(shared)
+    with ThreadPoolExecutor(1) as threads:
+        asked = threads.submit(bus.ask, "mute")
+        assert shared.asked.wait(ANSWER_PATIENCE)
+        bus.leave()
+        with pytest.raises(ProgrammerError, match="the ecology was left"):
+            asked.result(ANSWER_PATIENCE / 2)
+
+
+def test_what_interrupts_a_thread_in_its_turn_may_ask_too(network: Network) -> None:
+    shared = SharedBus(network)
+    bus, said = SynchronousBus(shared), list[Replies]()
+    shared.later(0.01, lambda: None)
+
+    def interrupt() -> None:
+        shared._polled.release()
+        said.append(bus.ask("meanwhile"))
+        shared._polled.acquire()
+
+    shared.later(0.001, interrupt)
+    bus.run(lambda: bool(said))
+    assert said[0].errors == ("meanwhile",)
+
+
+def test_a_process_that_is_forked_is_told_that_it_has_not_joined(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bus = SynchronousBus(network.node())
+    monkeypatch.setattr(os, "getpid", lambda: -1)
+    with pytest.raises(ProgrammerError, match="joined before this process was forked; spawn it, and join there"):
+        bus.ask("k/answers")

@@ -12,7 +12,8 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
-from selfconf.bus.port import Bus, Sample, Undo
+from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.bus.port import Sample, Undo
 from selfconf.errors import PeerError
 from selfconf.protocol.messages import Stamp
 from selfconf.protocol.stamps import StampReader
@@ -86,11 +87,14 @@ def heard_signal(
 
 
 def echo(
-    bus: Bus, follow: Callable[[Callable[[Sample], None]], Undo], complain: Callable[[str], None] = lambda _: None
+    bus: SynchronousBus,
+    follow: Callable[[Callable[[Sample], None]], Undo],
+    complain: Callable[[str], None] = lambda _: None,
 ) -> Iterator[HeardSignal]:
     """The signals of an output from now on, without an end; `complain` hears of what is no signal.
 
-    `follow` begins to hand the samples of the output to what it is given, on the thread of the bus.
+    `follow` begins to hand the samples of the output to what it is given, while the bus runs. Raises ProgrammerError
+    once the ecology was left.
     """
     arrived: deque[tuple[float, Sample]] = deque(maxlen=SIGNALS_HELD)
     stamps, moments = StampReader(), deque[float]()

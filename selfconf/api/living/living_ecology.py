@@ -59,6 +59,8 @@ _Result = TypeVar("_Result")
 class LivingEcology(Ecology):
     """Everything that is alive under one name, as seen over the network; use it in a `with` statement.
 
+    Several threads may ask it at the same time. A process that is forked from one that has joined cannot.
+
     >>> with join() as living:
     ...     for component in living.components:
     ...         print(component.short, living.state(component))
@@ -204,7 +206,7 @@ class LivingEcology(Ecology):
         state = self.state(profile.component)
         if state != "alive":
             complain(f"{profile.component.short} is {state}: it says nothing before a task has it started")
-        return echo(self._bus, partial(follow_output, self._bus, self._view.keys, profile, output), complain)
+        return echo(self._synchronous, partial(follow_output, self._bus, self._view.keys, profile, output), complain)
 
     def restart(self, component: str) -> ComponentState:
         """Have its site end the process of a component, and start it again; returns how it is once it lives again.

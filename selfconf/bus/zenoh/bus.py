@@ -17,6 +17,7 @@ else on its host, the site's own bus included, is a *client* of a relay (`openin
 from __future__ import annotations
 
 import atexit
+import os
 import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -64,6 +65,15 @@ def _close_all() -> None:
     """Close what was left open."""
     for bus in list(_OPEN):
         bus.close()
+
+
+def _leave_to_parent() -> None:
+    """In a process that was forked, close nothing: the threads of Zenoh that would do it are those of the parent."""
+    for bus in list(_OPEN):
+        bus.disown()
+
+
+os.register_at_fork(after_in_child=_leave_to_parent)
 
 
 class _Publisher:
@@ -298,6 +308,10 @@ class ZenohBus(Loop):
             end()
 
         self._readers.begin(read)
+
+    def disown(self) -> None:
+        """Leave the session to another process, which will close it."""
+        self._open = False
 
     def close(self) -> None:
         """Leave the network."""

@@ -27,7 +27,7 @@ import zenoh
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh.descriptors import open_descriptors
-from selfconf.errors import NetworkError
+from selfconf.errors import NetworkError, ProgrammerError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
 from selfconf.protocol.endpoints import (
@@ -82,6 +82,10 @@ class Security:
     """The member `access_control` for a session that connects a hub to others; None: as at the hub."""
 
 
+_openers: set[int] = set()
+"""This process, and those that it was forked from, as far as they have opened a session."""
+
+
 def begin_log(what: str = "off") -> None:
     """Have Zenoh log something, by default nothing: it writes to stdout, among the results. RUST_LOG goes before.
 
@@ -100,7 +104,8 @@ def open_session(
 ) -> Any:
     """Open a session. Raises NetworkError for an endpoint that is none or taken, and where no router answers a client.
 
-    It is raised as well where this program may not open enough files.
+    It is raised as well where this program may not open enough files, and ProgrammerError in a process that was forked
+    from one that had opened a session: Zenoh's threads are missing there, and it would wait for them for ever.
 
     With `connect_seconds` a client tries for that long, otherwise each endpoint once. A router does not wait for those
     that it connects to. With `shared_memory` large payloads go through that to others on this machine that have it too.
@@ -109,6 +114,7 @@ def open_session(
     for endpoint in (*listen, *connect):
         _check_endpoint(endpoint, security)
     _check_descriptors()
+    _check_process()
     begin_log()
     config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory(), security)
     try:
@@ -242,6 +248,15 @@ def _check_endpoint(endpoint: str, security: Security | None) -> None:
         raise NetworkError(f"{endpoint} is reached with keys only; give {setting('keys', 'DIR')}, or set SELFCONF_KEYS")
     if security is not None and protocol == "tcp":
         raise NetworkError(f"{endpoint} is without keys, and keys are given; write tls/{endpoint.partition('/')[2]}")
+
+
+def _check_process() -> None:
+    _openers.add(os.getpid())
+    if len(_openers) > 1:
+        raise ProgrammerError(
+            "this process was forked from one that was in an ecology, and cannot join any; spawn it instead, as"
+            ' `multiprocessing.get_context("spawn")` does'
+        )
 
 
 def _check_descriptors() -> None:

@@ -9,8 +9,10 @@ from functools import partial
 import pytest
 
 from selfconf.api.living.echo import SIGNALS_HELD, HeardSignal, echo
+from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Publisher, Urgency
+from selfconf.errors import ProgrammerError
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import SignalEncoding
 from selfconf.protocol.stamps import StampWriter
@@ -28,7 +30,8 @@ class Stage:
         self.output: Publisher = self.network.node().publisher(KEY, Urgency.SIGNAL)
         self.stamps, self.numbers = StampWriter(CAMERA, "life"), itertools.count(1)
         self.said: list[str] = []
-        self.heard: Iterator[HeardSignal] = echo(self.reader, partial(self.reader.subscribe, KEY), self.said.append)
+        self.asking = SynchronousBus(self.reader)
+        self.heard: Iterator[HeardSignal] = echo(self.asking, partial(self.reader.subscribe, KEY), self.said.append)
 
     def put(self, payload: bytes, raw: bool = False, encoding: SignalEncoding | None = None) -> None:
         stamp = self.stamps.write(next(self.numbers), 5.0, raw, encoding or SignalEncoding())
@@ -101,3 +104,12 @@ def test_what_is_no_signal_is_named_and_passed_over() -> None:
     stage.reader.later(0.1, strangers)
     assert next(stage.heard).value == 7
     assert len(stage.said) == 2
+
+
+def test_no_signal_is_waited_for_once_the_ecology_was_left() -> None:
+    stage = Stage()
+    stage.later(0.1, b"7")
+    assert next(stage.heard).value == 7
+    stage.asking.leave()
+    with pytest.raises(ProgrammerError, match="the ecology was left"):
+        next(stage.heard)

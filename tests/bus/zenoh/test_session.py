@@ -113,3 +113,28 @@ def test_a_panic_of_zenoh_is_said_in_a_sentence() -> None:
     """With so few descriptors its threads cannot begin."""
     done = opened_with_few_files(8, 0)
     assert "Zenoh cannot begin (" in done.stdout, done.stderr[-500:]
+
+
+FORKED = """
+import os, sys
+from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, client, router
+from selfconf.errors import ProgrammerError
+
+bus = router(ANYWHERE_ON_LOOPBACK)
+process = os.fork()
+if not process:
+    bus.close()
+    try:
+        client(["tcp/127.0.0.1:7447"])
+    except ProgrammerError as error:
+        sys.exit(str(error))
+    sys.exit(1)
+print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), bool(bus.link))
+"""
+
+
+def test_a_process_that_was_forked_opens_no_session_and_closes_none() -> None:
+    command = [sys.executable, "-c", FORKED]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout == "1 True\n"
+    assert done.stderr.startswith("this process was forked from one that was in an ecology")
