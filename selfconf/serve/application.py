@@ -16,7 +16,8 @@ from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from selfconf.serve.board import CHANGE, Board
-from selfconf.serve.directory import Directory, event_stream
+from selfconf.serve.directory import Directory
+from selfconf.serve.event_stream import streamed
 from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
 from selfconf.serve.look_endpoint import Onlookers
@@ -63,7 +64,7 @@ def application(
         if found is None:
             return problem(404, "there is no such page; / is the page, /sparql, /things and /metrics are for programs")
         text, media, tag = found
-        if request.headers.get("if-none-match") == tag:
+        if _names_tag(request.headers.get("if-none-match", ""), tag):
             return Response(status_code=304, headers={"ETag": tag})
         return Response(text, media_type=media, headers={"ETag": tag, "Cache-Control": "no-cache"})
 
@@ -72,7 +73,7 @@ def application(
 
     async def changes(request: Request) -> Response:
         last = request.headers.get("last-event-id") or request.query_params.get("last", "")
-        return event_stream(board, (CHANGE,), last)
+        return streamed(request, board.stream.lines((CHANGE,), last))
 
     async def counted(_: Request) -> Response:
         return Response(metrics.text(board.gauges(linked())), media_type=PROMETHEUS)
@@ -142,6 +143,14 @@ class Guard:
             return problem(403, refused)
         allowed = self._origins.preflight(scope["method"], asked)
         return None if allowed is None else Response(status_code=204, headers=allowed)
+
+
+def _names_tag(known: str, tag: str) -> bool:
+    """Whether a client has what a tag stands for, by the header If-None-Match (RFC 9110, section 13.1.2).
+
+    A proxy that compresses makes a tag weak (`W/`), which says the same here.
+    """
+    return known.strip() == "*" or tag in (one.strip().removeprefix("W/") for one in known.split(","))
 
 
 def _without_port(host: str) -> str:

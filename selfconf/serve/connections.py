@@ -1,8 +1,8 @@
 """Connections of HTTP that cannot be held for ever: bounds on how many there are, and how long a request takes.
 
 A client that sends a byte now and then, in the head of a request or in its body, would otherwise keep a connection for
-as long as it likes, and some hundreds of them all that a process can have ("slowloris"). uvicorn bounds the size of a
-head and the time between two requests, not the time of one.
+as long as it likes, and some hundreds of them all that a process can have ("slowloris"); so would one that takes
+nothing of what it is sent. uvicorn bounds the size of a head and the time between two requests, not the time of one.
 """
 
 from __future__ import annotations
@@ -15,14 +15,17 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 REQUEST_SECONDS = 15.0
 """Seconds from the opening of a connection, or the first byte of a further request, to the last byte of the request."""
+UNREAD_SECONDS = 30.0
+"""Seconds for which an answer waits that is not taken, beyond the buffers of 64 KiB here and those of the system."""
 MOST_CONNECTIONS = 400
 """Connections at a time; a browser has up to six, one of them for the stream of events."""
 
 
 class BoundedConnection(H11Protocol):
-    """One connection: closed if its request does not arrive in time, or if there are too many."""
+    """One connection: closed if its request or its answer gets stuck, or if there are too many."""
 
     _late: asyncio.TimerHandle | None = None
+    _unread: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: Any) -> None:
         """Begin to wait for a request."""
@@ -39,9 +42,20 @@ class BoundedConnection(H11Protocol):
         if self.conn.their_state not in (h11.IDLE, h11.SEND_BODY):
             self._wait_no_more()
 
+    def pause_writing(self) -> None:
+        """Begin to wait for the client to take what is there for it."""
+        super().pause_writing()
+        self._unread = self.loop.call_later(UNREAD_SECONDS, self._give_up)
+
+    def resume_writing(self) -> None:
+        """Go on with an answer, as the client takes it."""
+        self._taken()
+        super().resume_writing()
+
     def connection_lost(self, exc: Exception | None) -> None:
         """Wait for nothing."""
         self._wait_no_more()
+        self._taken()
         super().connection_lost(exc)
 
     def _wait(self) -> None:
@@ -53,7 +67,11 @@ class BoundedConnection(H11Protocol):
             self._late.cancel()
             self._late = None
 
+    def _taken(self) -> None:
+        if self._unread is not None:
+            self._unread.cancel()
+            self._unread = None
+
     def _give_up(self) -> None:
-        self._late = None
         if not self.transport.is_closing():
             self.transport.abort()  # not `close`, which waits until what is to be sent has been taken

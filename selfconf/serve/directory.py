@@ -9,13 +9,13 @@ from urllib.parse import quote, urlencode
 
 from starlette.datastructures import QueryParams
 from starlette.requests import Request
-from starlette.responses import Response, StreamingResponse
+from starlette.responses import Response
 
 from selfconf.model.term import IRI
 from selfconf.rdf import turtle
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.board import THING_EVENTS, Board
-from selfconf.serve.event_stream import EVENT_STREAM
+from selfconf.serve.event_stream import streamed
 from selfconf.serve.negotiation import acceptable
 from selfconf.serve.problems import problem
 from selfconf.serve.things import DISCOVERY_CONTEXT, TD, directory_description, thing_description
@@ -92,13 +92,7 @@ class Directory:
         def worded(data: Any) -> object:
             return data if whole else {"id": data["id"]}
 
-        return event_stream(self._board, THING_EVENTS if kind is None else (kind,), last, worded)
-
-
-def event_stream(board: Board, kinds: tuple[str, ...], last: str, worded: Any = lambda data: data) -> Response:
-    """A stream of the events of some kinds, from the one after the last that the client has heard."""
-    lines = board.stream.lines(kinds, last, worded)
-    return StreamingResponse(lines, media_type=EVENT_STREAM, headers={"Cache-Control": "no-store"})
+        return streamed(request, self._board.stream.lines(THING_EVENTS if kind is None else (kind,), last, worded))
 
 
 def _fault(parameters: QueryParams) -> Response | None:
@@ -123,7 +117,8 @@ def _page(**parameters: int | str | None) -> str:
 
 
 def _whole(text: str, least: int) -> int:
-    number = int(text)
-    if number < least:
+    if (
+        not (text.isascii() and text.isdecimal()) or int(text) < least
+    ):  # `int` also takes `1_0`, and digits of any script
         raise ValueError(text)
-    return number
+    return int(text)

@@ -14,8 +14,10 @@ from collections import deque
 from collections.abc import AsyncIterator, Callable, Collection
 from typing import NamedTuple
 
-EVENT_STREAM = "text/event-stream"
-"""The media type of such a stream."""
+from starlette.requests import Request
+from starlette.responses import Response, StreamingResponse
+
+_EVENT_STREAM = "text/event-stream"
 EVENTS_KEPT = 2000
 """How many events are kept for clients that were away."""
 WAITING = 500
@@ -24,6 +26,8 @@ STILL_THERE = 15.0
 """Seconds after which a line is sent that says nothing, so that a connection that is gone is noticed."""
 RESET = "reset"
 """The event that says: what you know is too old; begin anew."""
+_LONGEST_NUMBER = 18
+"""Digits of the number of an event; a longer one is none of this server."""
 
 
 class ServerEvent(NamedTuple):
@@ -77,7 +81,7 @@ class EventStream:
     def missed(self, last: str) -> list[ServerEvent] | None:
         """What came after the event of an identifier; None where that is not known any more."""
         life, _, number = last.partition("-")
-        if life != self.life or not number.isdecimal() or int(number) > self._number:
+        if life != self.life or not number.isdecimal() or len(number) > _LONGEST_NUMBER or int(number) > self._number:
             return None
         first = self._kept[0].number if self._kept else self._number + 1
         if int(number) + 1 < first:
@@ -117,3 +121,9 @@ class EventStream:
     def _text(self, event: ServerEvent) -> bytes:
         data = json.dumps(event.data, ensure_ascii=False)  # one line: JSON writes no line break
         return f"id: {self.life}-{event.number}\nevent: {event.kind}\ndata: {data}\n\n".encode()
+
+
+def streamed(request: Request, lines: AsyncIterator[bytes]) -> Response:
+    """The response with the lines of a stream; to HEAD, for which they would be read without an end, without any."""
+    wanted = lines if request.method != "HEAD" else iter(())
+    return StreamingResponse(wanted, media_type=_EVENT_STREAM, headers={"Cache-Control": "no-store"})

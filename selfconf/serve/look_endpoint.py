@@ -8,13 +8,13 @@ import json
 from collections.abc import AsyncIterator
 
 from starlette.requests import Request
-from starlette.responses import Response, StreamingResponse
+from starlette.responses import Response
 
 from selfconf.bus.port import Bus
 from selfconf.discovery import FoundAdvertisement
 from selfconf.model.term import IRI
 from selfconf.serve.board import Board
-from selfconf.serve.event_stream import EVENT_STREAM, STILL_THERE
+from selfconf.serve.event_stream import STILL_THERE, streamed
 from selfconf.serve.onlooker import Onlooker
 from selfconf.serve.problems import problem
 from selfconf.serve.watching.change import Body
@@ -46,7 +46,7 @@ class Onlookers:
             return problem(404, "no component of this IRI is advertised; /look?component=IRI takes one of /things")
         if len(self._queues) >= MOST_LOOKS:
             return problem(503, f"{MOST_LOOKS} look at a component already", {"Retry-After": "10"})
-        return StreamingResponse(self._stream(found), media_type=EVENT_STREAM, headers={"Cache-Control": "no-store"})
+        return streamed(request, self._stream(found))
 
     async def _stream(self, found: FoundAdvertisement) -> AsyncIterator[bytes]:
         loop, queue = asyncio.get_running_loop(), asyncio.Queue[_Told]()

@@ -31,7 +31,7 @@ class Origins:
     def refusal(self, headers: Mapping[str, str], path: str) -> str:
         """Why a request is refused that a page of another origin has made; empty for every other one."""
         origin, site = headers.get("origin", ""), headers.get("sec-fetch-site", "none")
-        own = site == "same-origin" or urlsplit(origin).netloc == headers.get("host", "").lower()
+        own = site == "same-origin" or _place(origin) == headers.get("host", "").lower()
         if origin and not own:
             if origin not in self._named:
                 return f"a page of {origin} may not ask this server; `selfconf serve --allow-origin ORIGIN` lets it"
@@ -65,6 +65,14 @@ class Origins:
             "Access-Control-Max-Age": PERMISSION_LASTS,
             **({"Access-Control-Allow-Private-Network": "true"} if local else {}),
         }
+
+
+def _place(origin: str) -> str:
+    """Host and port of an origin; empty for what is none."""
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:  # a bracket of IPv6 that is never closed
+        return ""
 
 
 def _is_shared(path: str) -> bool:

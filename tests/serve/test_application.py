@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from urllib.parse import quote
+
 import pytest
 
 from selfconf.serve.board import Board
 from selfconf.serve.metrics import Metrics
+from tests.lab import iri
 from tests.serve.asgi import ask, served
 
 
 def test_the_page_is_there_and_nothing_behind_it(board: Board) -> None:
     answer = ask(served(board), "/")
     assert (answer.status, answer.media) == (200, "text/html")
-    assert ask(served(board), "/", if_none_match=answer.headers["etag"]).status == 304
+    tag = answer.headers["etag"]
+    for known, status in ((tag, 304), (f'"other", W/{tag}', 304), ("*", 304), ('"other"', 200), (tag[1:], 200)):
+        assert ask(served(board), "/", if_none_match=known).status == status
     for path in ("/page/nothing.js", "/page/..%2Fserver.py", "/nothing"):
         assert ask(served(board), path).status == 404
 
@@ -22,6 +27,13 @@ def test_every_answer_forbids_what_a_stranger_might_slip_in(board: Board, path: 
     policy = ask(served(board), path).headers["content-security-policy"]
     assert "default-src 'none'" in policy
     assert "unsafe" not in policy
+
+
+@pytest.mark.parametrize("path", ["/changes", "/events", f"/look?component={quote(iri('pippi-drive'))}"])
+def test_a_stream_that_is_asked_for_its_head_alone_ends(board: Board, path: str) -> None:
+    answer = ask(served(board), path, "HEAD")
+    assert (answer.status, answer.media, answer.body) == (200, "text/event-stream", b"")
+    assert board.stream.listeners == 0
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:8000", "", "localhost.evil.example"])

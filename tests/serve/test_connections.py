@@ -16,11 +16,18 @@ from selfconf.serve import connections
 from selfconf.serve.connections import BoundedConnection
 
 SHORT = 0.3
+LARGE = 400
+"""How often 64 KiB are sent of an answer that no buffer holds."""
 HEAD = b"POST /x HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\n"
 
 
 async def app(scope: Any, receive: Any, send: Any) -> None:
     """Answers with the body of the request, once it is there."""
+    if scope["path"] == "/large":
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        for number in range(LARGE):
+            await send({"type": "http.response.body", "body": bytes(1 << 16), "more_body": number < LARGE - 1})
+        return
     body, more = b"", True
     while more:
         event = await receive()
@@ -37,6 +44,7 @@ async def app(scope: Any, receive: Any, send: Any) -> None:
 def place(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, int]]:
     """A server that has little patience and few connections."""
     monkeypatch.setattr(connections, "REQUEST_SECONDS", SHORT)
+    monkeypatch.setattr(connections, "UNREAD_SECONDS", SHORT)
     monkeypatch.setattr(connections, "MOST_CONNECTIONS", 20)
     listening = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(app, log_level="error", lifespan="off", ws="none", http=BoundedConnection)
@@ -60,6 +68,14 @@ def closed(link: socket.socket) -> bool:
         return link.recv(100) == b""
     except ConnectionResetError:
         return True
+
+
+def taken(link: socket.socket) -> int:
+    """How many bytes come next; zero once the other end has closed the connection."""
+    try:
+        return len(link.recv(1 << 16))
+    except ConnectionResetError:
+        return 0
 
 
 def sends(link: socket.socket) -> bool:
@@ -98,6 +114,17 @@ def test_a_byte_now_and_then_does_not_help(place: tuple[str, int]) -> None:
 
 def test_an_answer_may_take_longer(place: tuple[str, int]) -> None:
     assert answered(place, b"/slow")
+
+
+@pytest.mark.parametrize("pause", [0.0, 3 * SHORT], ids=["at once", "late"])
+def test_an_answer_that_is_not_taken_is_not_kept_for_ever(place: tuple[str, int], pause: float) -> None:
+    size = 0
+    with connected(place) as link:
+        link.sendall(b"GET /large HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
+        threading.Event().wait(pause)
+        while more := taken(link):
+            size += more
+    assert (size > LARGE << 16) == (not pause)
 
 
 def test_who_opens_connections_without_an_end_is_served_no_longer_than_the_others(place: tuple[str, int]) -> None:

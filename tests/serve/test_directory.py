@@ -6,10 +6,11 @@ import asyncio
 from urllib.parse import quote
 
 import pytest
+from starlette.requests import Request
 from starlette.types import ASGIApp
 
 from selfconf.serve.board import Board
-from selfconf.serve.directory import event_stream
+from selfconf.serve.directory import Directory
 from selfconf.serve.watching.change import EcologyChange
 from tests.lab import ADVERTISEMENTS, iri
 from tests.serve.asgi import ask, served
@@ -54,7 +55,9 @@ def test_a_collection_of_all_things_names_no_limit(app: ASGIApp) -> None:
     assert "next" not in answer
 
 
-@pytest.mark.parametrize("parameters", ["limit=0", "limit=x", "offset=-1", "format=table", "limit=1&limit=2"])
+@pytest.mark.parametrize(
+    "parameters", ["limit=0", "limit=x", "offset=-1", "format=table", "limit=1&limit=2", "limit=1_0", "offset=%D9%A3"]
+)
 def test_a_parameter_that_makes_no_sense_is_a_problem(app: ASGIApp, parameters: str) -> None:
     answer = ask(app, f"/things?{parameters}")
     assert (answer.status, answer.media) == (400, "application/problem+json")
@@ -93,9 +96,10 @@ def test_events_of_another_type_are_a_problem(app: ASGIApp) -> None:
 
 def test_a_stream_tells_of_things_from_the_last_event_on(board: Board) -> None:
     async def play() -> list[bytes]:
-        before = board.stream.last
+        last = [(b"last-event-id", board.stream.last.encode())]
         board.apply(EcologyChange({iri("pippi-drive"): None}))
-        response = event_stream(board, ("thing_deleted",), before)
+        scope = {"type": "http", "method": "GET", "headers": last, "query_string": b"", "path_params": {}}
+        response = await Directory(board).events(Request({**scope, "path_params": {"kind": "thing_deleted"}}))
         lines = response.body_iterator  # type: ignore[attr-defined]  # a StreamingResponse
         return [await anext(lines), await anext(lines)]
 

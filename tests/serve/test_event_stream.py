@@ -46,7 +46,13 @@ def test_who_was_away_too_long_or_heard_another_server_is_told_to_begin_anew() -
         stream = EventStream()
         for number in range(EVENTS_KEPT + 2):
             stream.put("change", number)
-        for last in (f"{stream.life}-1", "other-7", "nonsense", f"{stream.life}-{EVENTS_KEPT + 99}"):
+        for last in (
+            f"{stream.life}-1",
+            "other-7",
+            "nonsense",
+            f"{stream.life}-{EVENTS_KEPT + 99}",
+            f"{stream.life}-{'9' * 5000}",
+        ):
             _, event = await heard(stream.lines(["change"], last), 2)
             assert "event: reset" in event
         assert stream.missed(f"{stream.life}-2") is not None

@@ -18,11 +18,12 @@ from tests.lab import iri
 from tests.serve.asgi import ask, served
 
 QUERY = f"component={quote(iri('person-tracker'), safe='')}"
+SCOPE = {"type": "http", "method": "GET", "query_string": QUERY.encode(), "headers": []}
 
 
 async def look(onlookers: Onlookers) -> AsyncGenerator[bytes, None]:
     """The stream of one more who looks."""
-    response = await onlookers.respond(Request({"type": "http", "query_string": QUERY.encode(), "headers": []}))
+    response = await onlookers.respond(Request(SCOPE))
     assert isinstance(response, StreamingResponse), response
     assert response.media_type == "text/event-stream"
     stream = cast(AsyncGenerator[bytes, None], response.body_iterator)
@@ -49,7 +50,7 @@ def test_no_more_may_look_than_the_ecology_can_bear_and_those_who_go_make_room(b
     async def play() -> None:
         onlookers = Onlookers(Network().node(), board)
         streams = [await look(onlookers) for _ in range(MOST_LOOKS)]
-        refused = await onlookers.respond(Request({"type": "http", "query_string": QUERY.encode(), "headers": []}))
+        refused = await onlookers.respond(Request(SCOPE))
         assert refused.status_code == 503
         await streams[0].aclose()
         await look(onlookers)

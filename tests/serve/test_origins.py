@@ -55,7 +55,9 @@ def test_what_people_look_at_is_for_no_other_origin(app: ASGIApp, path: str) -> 
     assert "and nothing else" in answer.json["detail"]
 
 
-@pytest.mark.parametrize("origin", [STRANGER, "http://yasgui.example", "https://yasgui.example:444", "null"])
+@pytest.mark.parametrize(
+    "origin", [STRANGER, "http://yasgui.example", "https://yasgui.example:444", "null", "http://["]
+)
 def test_a_page_of_another_origin_is_refused_and_told_by_what_it_would_not_be(app: ASGIApp, origin: str) -> None:
     answer = asked_by(app, origin, sec_fetch_site="cross-site")
     assert answer.status == 403
