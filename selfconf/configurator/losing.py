@@ -22,7 +22,9 @@ PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
 def heed_failure(state: State, event: Failed) -> Reaction:
     """A component has failed, has ended, has let go of the task, or is asked to; others do not matter to it."""
     held = state.held.get(event.component)
-    if held is None or state.phase is Phase.DISMANTLING:
+    if held is None:
+        return _ended_since(state, event), ()
+    if state.phase is Phase.DISMANTLING:
         return state, ()
     again = event.life and not held.life and state.ended_lives.get(event.component) == event.life
     if again and (event.component, Call.RESERVE) not in state.pending:  # which a life that hangs does not answer
@@ -38,6 +40,16 @@ def heed_failure(state: State, event: Failed) -> Reaction:
     if not held.reserved:
         return state, ()  # another task is asked to let go of it, perhaps for this one
     return _let_go(state, event.component, loss)
+
+
+def _ended_since(state: State, event: Failed) -> State:
+    """Note that its site can start a component that was lost in a life which has ended, at that moment or since."""
+    loss = state.lost.get(event.component)
+    if loss is None or not event.startable or event.cause is not Cause.CRASH:
+        return state
+    if loss.cause is Cause.CRASH or (loss.lasts and loss.life == event.life):
+        return replace(state, lost={**state.lost, event.component: replace(loss, startable=True)})
+    return state
 
 
 def _passes_over(held: Held, event: Failed) -> bool:

@@ -325,13 +325,19 @@ class TaskRunner:
         return FrozenMapping({c: f"{loss.cause.value}, {loss.detail}" for c, loss in self.state.lost.items()})
 
     def _notice(self, known: Mapping[IRI, Loss]) -> None:
-        """Record and report every component that the machine has just given up, whatever the cause."""
+        """Record and report every component that the machine has just given up, whatever the cause.
+
+        Where only its life has ended since, its site is to count that as a crash if it is to start it again.
+        """
         for component, loss in self.state.lost.items():
-            if known.get(component) is not loss:
+            before = known.get(component)
+            if before is None or replace(before, startable=loss.startable) != loss:
                 self._waking.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self._report(ComponentLost(component, loss.cause.value, loss.detail))
                 self._lasting_losses.lost()
+            elif before is not loss and loss.life:
+                self._lives.lost(component, loss.life)
 
     def _report(self, event: AnyRunEvent) -> None:
         """Note an event with its time, and report it when there is nothing more urgent to do."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from selfconf.configurator import Appeared, Discovered
+from selfconf.configurator import Appeared, Discovered, Failed, Loss
 from selfconf.deployment.components import Liveness
 from selfconf.deployment.holders import WithoutConfigurator, ask_holders
 from selfconf.deployment.task_context import TaskContext
@@ -12,6 +12,8 @@ from selfconf.discovery import Discovery
 from selfconf.model.holder import Holder
 from selfconf.model.run_event import AnswerRejected, AnyRunEvent, EcologyAsked, EcologyDiscovered
 from selfconf.model.term import IRI
+from selfconf.protocol.keys import component_chunk
+from selfconf.protocol.messages import Cause
 
 
 class TaskDiscovery:
@@ -87,19 +89,29 @@ class TaskDiscovery:
         held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared)
 
         def known() -> None:
-            if first:
-                self._heed_new_lives()
+            self._heed_ended_lives()
             if number == self._asked:
                 self._step(held)
 
         state = self._state()
         self._liveness.select((*state.held, *state.lost) if first else state.held, known)
 
-    def _heed_new_lives(self) -> None:
-        """What the configurator before this one has lost may have begun another life before this one followed it."""
-        lives = {one: life for one in self._state().lost if (life := self._ecology.life(one)) is not None}
+    def _heed_ended_lives(self) -> None:
+        """Lives of lost components may have ended before this configurator followed them, or their sites were away."""
+        ended = {one: loss.life for one, loss in self._state().lost.items() if self._has_ended(one, loss)}
+        for component, life in ended.items():
+            self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
+        now = {component: self._ecology.life(component) for component in ended}
+        lives = {component: life for component, life in now.items() if life is not None}
         if lives:
             self._step(Appeared(lives))
+
+    def _has_ended(self, component: IRI, loss: Loss) -> bool:
+        """Whether the life has ended in which a component was lost, as far as is known, and that is news."""
+        if loss.cause is Cause.CRASH:
+            return not loss.startable
+        known = loss.lasts and self._ecology.knows(component_chunk(component))
+        return known and not self._ecology.lives_on(component, loss.life)
 
     def shareable(self, component: IRI) -> bool:
         found = self._ecology.discovery.found.get(component)

@@ -51,6 +51,35 @@ def test_what_can_be_started_but_says_that_it_cannot_act_is_not_asked_again(caus
     assert history.state.phase is Phase.DISMANTLING
 
 
+@pytest.mark.parametrize("cause", [Cause.FAIL, Cause.SILENCE, Cause.MALFORMED])
+@pytest.mark.parametrize(("life", "startable"), [("1", True), ("1", False), ("0", True)])
+def test_what_cannot_act_is_searched_with_once_its_life_has_ended_if_its_site_can_start_it(
+    cause: Cause, life: str, startable: bool
+) -> None:
+    history = lost(cause)
+    history.composed(navigation(ODOMETRY))
+    history.all_answer()
+    assert history.hear(Failed(TRACKER, life, Cause.CRASH, "its life has ended", startable)) == []
+    assert history.state.phase is Phase.RUNNING
+    history.hear(Failed(ODOMETRY, "1", Cause.FAIL, "it slips", startable=True))
+    history.composed(REFUSAL)
+    if startable and life == "1":
+        assert history.effects[-1] == Compose(history.state.attempt, frozenset({ODOMETRY}), history.state.target)
+    else:
+        assert history.state.phase is Phase.DISMANTLING
+
+
+def test_what_went_with_its_site_is_searched_with_when_that_is_back() -> None:
+    history = lost(startable=False, patient=True)
+    history.composed(REFUSAL)
+    history.all_answer(Call.RELEASE)
+    assert history.state.phase is Phase.REFUSED
+    assert history.hear(Appeared({})) == [Discover()]
+    history.hear(Failed(TRACKER, "1", Cause.CRASH, "its life has ended", startable=True))
+    history.hear(Discovered())
+    assert history.composed(REFUSAL) == [Compose(history.state.attempt, frozenset(), None)]
+
+
 def out_of_sight() -> History:
     """The tracker, which no site can start, has gone without a word, and nothing can be had instead."""
     history = lost(startable=False)

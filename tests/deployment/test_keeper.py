@@ -215,6 +215,49 @@ def test_of_two_records_of_one_revision_that_counts_by_which_the_components_act(
     assert keepers.lab.active() == TASK | {"tracker"}
 
 
+@pytest.mark.parametrize("ends", ["before", "after", "with its site"])
+def test_the_next_site_has_what_was_lost_before_started_if_its_life_has_ended_meanwhile(
+    tmp_path: Path, ends: str
+) -> None:
+    """The record of the task names the loss, with the life, which ends before or after the next site goes on."""
+    lab = home(tmp_path, "odometry")
+    room = living_room(lab, "1", lambda node: lab.component("tracker"))
+    lab.component("tracker")
+    keepers = Keepers(lab, tmp_path / "disks")
+    keeper = keepers.settled()
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}
+    keepers.end(keeper)
+    lab.let_pass(2.0 if ends == "after" else 0.0)
+    lab.crash("tracker")
+    if ends == "with its site":
+        room.close()
+        lab.let_pass(2.0)
+        living_room(lab, "2", lambda node: lab.component("tracker"))
+    lab.let_pass(3.0)
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_what_was_lost_and_ended_with_its_site_is_started_as_soon_as_that_is_back(tmp_path: Path) -> None:
+    lab = home(tmp_path)
+    room = living_room(lab, "1", lambda node: lab.component("tracker"))
+    keepers = Keepers(lab, tmp_path / "disks")
+    keeper = keepers.settled()
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(0.02)
+    keepers.end(keeper)
+    lab.crash("tracker")
+    room.close()
+    lab.let_pass(3.0)
+    assert not keepers.running()
+    living_room(lab, "2", lambda node: lab.component("tracker"))
+    assert lab.until(lambda: bool(keepers.running()), 1.0)
+    assert lab.active() == TASK | {"tracker"}
+
+
 def kept_beside_a_slow_tracker(tmp_path: Path) -> tuple[Keepers, str, Bus]:
     """A task that runs with odometry, the site that keeps it, and that of odometry.
 

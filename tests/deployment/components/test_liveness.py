@@ -21,6 +21,7 @@ from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Page
 from selfconf.sdk.runtime.supervision import GRACE
+from tests.deployment.simulated import home, living_room
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
 
@@ -76,6 +77,36 @@ def test_a_new_life_of_a_lost_component_may_be_chosen_again(lab: Lab) -> None:
     lab.let_pass(1.0)
     assert agent.state.phase is Phase.RUNNING
     assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_lost_component_whose_life_ends_may_be_started_and_chosen_again(tmp_path: Path) -> None:
+    """It had failed; its process ends while another takes its place, and its site can start it."""
+    lab = home(tmp_path, "odometry")
+    living_room(lab, "1", lambda node: lab.component("tracker"))
+    lab.component("tracker")
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    lab.crash("tracker")
+    lab.let_pass(1.0)
+    assert lab.active() == TASK | {"odometry"}
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
+
+
+def test_a_lost_component_that_lives_on_is_not_chosen_again_though_its_site_could_start_it(tmp_path: Path) -> None:
+    lab = home(tmp_path, "odometry")
+    living_room(lab, "1", lambda node: lab.component("tracker"))
+    lab.component("tracker")
+    agent = lab.agent()
+    assert lab.running(agent)
+    for name in ("tracker", "odometry"):
+        lab.components[name].fail("lost")
+        lab.let_pass(1.0)
+    assert agent.state.phase is Phase.REFUSED
 
 
 def test_a_component_that_is_restarted_while_it_acts_is_activated_and_set_anew(lab: Lab) -> None:

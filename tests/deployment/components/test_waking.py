@@ -88,6 +88,30 @@ def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_c
     assert asked == [Wake(tracker), Wake(tracker, life)]
 
 
+def test_a_site_hears_in_which_life_a_component_was_lost_that_ended_only_afterwards(tmp_path: Path) -> None:
+    """So it counts as a crash, and what fails and ends each time is not started without a limit."""
+    lab, asked = home(tmp_path, "odometry"), list[Wake]()
+
+    def listen(request: Request) -> None:
+        asked.append(decode(request.payload, Wake))
+        request.finish()
+
+    living_room(lab, "1", lambda _: lab.component("tracker"))
+    lab.network.node().serve(lab.keys.wake("living-room"), listen)
+    lab.component("tracker")
+    assert lab.running(lab.agent())
+    life = lab.runtimes["tracker"].life
+    lab.components["tracker"].fail("lost")
+    lab.let_pass(1.0)
+    lab.crash("tracker")
+    lab.let_pass(1.0)
+    lab.components["odometry"].fail("it slips")
+    assert lab.until(lambda: lab.active() == TASK | {"tracker"})
+    lab.let_pass(1.0)
+    assert asked == [Wake(iri("person-tracker"), life)]
+    assert [event.component for event in lab.acts("lost")] == [iri("person-tracker"), iri("absolute-odometry")]
+
+
 def test_a_site_hears_of_a_life_that_it_has_started_and_that_ended_before_it_obeyed_anything(tmp_path: Path) -> None:
     lab, lives, asked = Lab(tmp_path), list[str](), list[Wake]()
     lab.site("astrid", *TASK)
