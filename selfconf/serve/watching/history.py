@@ -10,6 +10,7 @@ which failures have ended it; so its own does (prov:qualifiedInvalidation).
 from __future__ import annotations
 
 import time
+from bisect import bisect_left, insort
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -44,6 +45,8 @@ class History:
             self._store = ox.Store(str(folder))
         except (OSError, RuntimeError) as error:  # the latter is how Oxigraph says that a store is broken
             raise AuthorError(f"cannot keep a history in {folder} ({error}); does another server use it?") from None
+        self._in_order = sorted((self._generated(name), name) for name in self._names())
+        """When each configuration was generated, and its name; the oldest first. To ask the store takes long."""
         self._current: dict[str, str] = {}
         """The configuration that is deployed, by the graph that states it."""
         self._unsettled = {name for name in self._names() if not self._has_ended(name)}
@@ -98,6 +101,7 @@ class History:
             self._current[graph] = name
             if not any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))):
                 self._store.extend(ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads)
+                insort(self._in_order, (self._generated(name), name))
                 over |= self._forget_oldest()
         return over
 
@@ -122,13 +126,14 @@ class History:
 
     def _forget_oldest(self) -> dict[str, bytes]:
         """Forget what is too old or one too many, and return it as graphs that are empty now."""
-        names = sorted(self._names(), key=self._generated)
         limit = str(ox_term(moment(self._clock() - KEPT_FOR)))
-        old = sum(self._generated(name) < limit for name in names)
-        over = [name for name in names[: max(old, len(names) - MOST_KEPT)] if name not in self._current.values()]
-        for name in over:
-            self._store.remove_graph(ox.NamedNode(name))
-        return dict.fromkeys(over, b"")
+        old, current = bisect_left(self._in_order, (limit, "")), set(self._current.values())
+        oldest = self._in_order[: max(old, len(self._in_order) - MOST_KEPT)]
+        over = [entry for entry in oldest if entry[1] not in current]
+        for entry in over:
+            self._in_order.remove(entry)
+            self._store.remove_graph(ox.NamedNode(entry[1]))
+        return {name: b"" for _, name in over}
 
     def _names(self) -> list[str]:
         return [graph.value for graph in self._store.named_graphs() if isinstance(graph, ox.NamedNode)]

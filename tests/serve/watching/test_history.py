@@ -82,6 +82,25 @@ def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, monkeypatch: pyte
     assert set(kept.past()) == {"urn:c:3", "urn:c:4", "urn:c:5"}
 
 
+def test_what_a_change_takes_does_not_grow_with_what_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept, asked, generated = History(tmp_path), list[str](), History._generated
+    for number in range(40):
+        kept.note({GRAPH: told(number)})
+    monkeypatch.setattr(History, "_generated", lambda self, name: asked.append(name) or generated(self, name))
+    kept.note({GRAPH: told(40)})
+    assert asked == ["urn:c:40"]
+    kept.close()
+
+
+def test_the_oldest_go_first_for_the_next_server_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = History(tmp_path)
+    for number in (2, 3, 1):
+        first.note({GRAPH: told(number)})
+    first.close()
+    monkeypatch.setattr(history, "MOST_KEPT", 3)
+    assert set(History(tmp_path).note({GRAPH: told(4)})) == {"urn:c:1"}
+
+
 def test_what_is_older_than_a_year_goes_unless_it_runs_still(tmp_path: Path) -> None:
     now = [1.77e9]  # in February 2026
     kept = History(tmp_path, lambda: now[0])
