@@ -51,6 +51,12 @@ class Upward:
             closed = self._closed[term] = frozenset(seen)
         return closed
 
+    def above_all(self, terms: frozenset[IRI]) -> frozenset[IRI]:
+        """Some terms and everything above them."""
+        if self._parents.keys().isdisjoint(terms):
+            return terms
+        return frozenset[IRI]().union(*map(self.above, terms))
+
     def __bool__(self) -> bool:
         return bool(self._parents)
 
@@ -72,6 +78,10 @@ class Hierarchy:
             return self._classes.above(offered)
         response = offered.response
         return frozenset((offered,) if response is None else map(Operation.of, self._classes.above(response)))
+
+    def classes_of(self, types: frozenset[IRI]) -> frozenset[IRI]:
+        """The classes that a component of some types is of: these, and every class above them."""
+        return self._classes.above_all(types)
 
     def superproperties(self, offered: IRI) -> frozenset[IRI]:
         """`offered` and every property above it."""

@@ -25,6 +25,14 @@ def test_what_lies_above_is_followed_to_its_end_and_a_circle_is_an_equivalence()
     assert above.superproperties(b) == {b}
 
 
+def test_what_is_of_some_types_is_of_every_class_above_each_of_them() -> None:
+    a, b, c, d = (IRI(f"urn:{name}") for name in "abcd")
+    above = Hierarchy([(a, b), (b, c)])
+    for types in (frozenset[IRI](), frozenset((d,)), frozenset((a, d)), frozenset((c, d)), frozenset((a, b))):
+        assert above.classes_of(types) == frozenset[IRI]().union(*map(above.superclasses, types))
+        assert NOTHING_ABOVE.classes_of(types) == types
+
+
 def test_an_operation_serves_where_what_it_answers_is_wanted() -> None:
     low, high = IRI("urn:low"), IRI("urn:high")
     above = Hierarchy([(low, high)])

@@ -80,7 +80,7 @@ class ClassClosure(dict[TypeSet, frozenset[IRI]]):
         self._hierarchy = hierarchy
 
     def __missing__(self, types: TypeSet) -> frozenset[IRI]:
-        self[types] = found = frozenset[IRI]().union(*map(self._hierarchy.superclasses, types))
+        self[types] = found = self._hierarchy.classes_of(types)
         return found
 
 
