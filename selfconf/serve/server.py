@@ -31,7 +31,7 @@ from selfconf.serve.look_endpoint import Onlookers
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.sparql.endpoint import SparqlEndpoint
 from selfconf.serve.watching.change import EcologyChange
-from selfconf.serve.watching.history import History
+from selfconf.serve.watching.history import CANNOT_WRITE, History
 from selfconf.serve.watching.watcher import EcologyWatcher
 from selfconf.termination import PARENT_CHECK, ending_signals, orphaned, started_by_another
 
@@ -104,7 +104,7 @@ class Record:
             return
         try:
             past = self._history.note(change.graphs, change.events)
-        except (OSError, RuntimeError):  # the latter is how Oxigraph says that a store cannot be written
+        except CANNOT_WRITE:
             log.exception("a change is missing in the history")
         else:
             self._replace(past)

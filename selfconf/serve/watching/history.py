@@ -5,10 +5,14 @@ and when, which configuration it revises, which failures have influenced it, and
 one takes its place, or its configurator has gone, it gets the time of its end (prov:invalidatedAtTime). One that was
 running when the server ended gets none, for when it ended was not seen. Where none takes its place, no other graph says
 which failures have ended it; so its own does (prov:qualifiedInvalidation).
+
+A store that could not write once, as on a full disk, refuses to from then on, so it is opened anew. What could not be
+noted is noted then, as far as it is deployed still.
 """
 
 from __future__ import annotations
 
+import logging
 import time
 from bisect import bisect_left, insort
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -24,12 +28,16 @@ from selfconf.rdf.turtle import ox_term
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
 from selfconf.serve.watching.change import Body
 
+log = logging.getLogger(__name__)
+
 DEPLOYED = "urn:selfconf:selfconf/"
 """What the names of the graphs begin with in which configurators tell what they have deployed."""
 MOST_KEPT = 5000
 """How many configurations are kept; then the oldest one goes."""
 KEPT_FOR = 366 * 86_400.0
 """Seconds for which a configuration is kept that was generated then, and is not deployed any more."""
+CANNOT_WRITE = (OSError, RuntimeError)
+"""What a store raises that cannot be opened or written; the latter where it is broken."""
 _GENERATED, _ENDED = ox.NamedNode(PROV.generatedAtTime), ox.NamedNode(PROV.invalidatedAtTime)
 _PARTS = (ox.NamedNode(SC.component), ox.NamedNode(SC.recruited))
 
@@ -39,25 +47,42 @@ class History:
 
     def __init__(self, folder: Path, clock: Callable[[], float] = time.time) -> None:
         """Raises AuthorError for a folder that cannot be used."""
-        self._clock = clock
+        self._clock, self._folder = clock, folder
+        self._opened: ox.Store | None = None
+        self._in_order: list[tuple[str, str]] = []
+        """When each configuration was generated, and its name; the oldest first. To ask the store takes long."""
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._store = ox.Store(str(folder))
-        except (OSError, RuntimeError) as error:  # the latter is how Oxigraph says that a store is broken
+            self._open()
+        except CANNOT_WRITE as error:
             raise AuthorError(f"cannot keep a history in {folder} ({error}); does another server use it?") from None
-        self._in_order = sorted((self._generated(name), name) for name in self._names())
-        """When each configuration was generated, and its name; the oldest first. To ask the store takes long."""
         self._current: dict[str, str] = {}
         """The configuration that is deployed, by the graph that states it."""
         self._unsettled = {name for name in self._names() if not self._has_ended(name)}
         """Those that ran when the last server ended: they may run still."""
         self._losses: dict[str, dict[str, Body]] = {}
         """By the graph that states a configuration, the latest loss of each component that has a part in it."""
+        self._to_note: dict[str, bytes] = {}
+        """What each graph says that could not be noted yet."""
+
+    @property
+    def _store(self) -> ox.Store:
+        return self._open() if self._opened is None else self._opened
+
+    def _open(self) -> ox.Store:
+        self._opened = ox.Store(str(self._folder))
+        self._in_order = sorted((self._generated(name), name) for name in self._names())
+        return self._opened
 
     def close(self) -> None:
         """Write everything down, and leave the folder to others."""
-        self._store.flush()
-        del self._store
+        try:
+            if self._opened is not None:
+                self._opened.flush()
+        except CANNOT_WRITE:
+            log.exception("the latest changes may be missing in the history")
+        finally:
+            self._opened = None
 
     def past(self) -> dict[str, bytes]:
         """Every configuration that has ended, as N-Triples by its name."""
@@ -72,15 +97,23 @@ class History:
     def note(self, graphs: Mapping[str, bytes], events: Iterable[Body] = ()) -> dict[str, bytes]:
         """Note what has happened to tasks, then what configurators tell of what they have deployed.
 
-        Returns what has ended by that.
+        Returns what has ended by that. Raises one of CANNOT_WRITE where it cannot be written; then it is noted later.
         """
+        self._to_note.update((graph, told) for graph, told in graphs.items() if graph.startswith(DEPLOYED))
+        try:
+            return self._note_all(events)
+        except CANNOT_WRITE:
+            self._opened = None
+            raise
+
+    def _note_all(self, events: Iterable[Body]) -> dict[str, bytes]:
         for event in events:
             if event["act"] == "lost":
                 self._note_loss(event)
         over: dict[str, bytes] = {}
-        for graph, triples in graphs.items():
-            if graph.startswith(DEPLOYED):
-                over |= self._note(graph, triples)
+        for graph, triples in list(self._to_note.items()):
+            over |= self._note(graph, triples)
+            del self._to_note[graph]
         return over
 
     def _note(self, graph: str, triples: bytes) -> dict[str, bytes]:
@@ -89,14 +122,15 @@ class History:
         name = next((q.subject.value for q in quads if (q.predicate, q.object) == (kind, wanted)), None)
         if name is not None and self._has_ended(name):
             return {}  # told late: another has taken its place already
-        before = self._current.pop(graph, None)
+        before = self._current.get(graph)
         over: dict[str, bytes] = {}
         if before is not None and before != name:
-            node, losses = ox.NamedNode(before), self._losses.pop(graph, {})
-            self._store.add(ox.Quad(node, _ENDED, ox_term(moment(self._clock())), node))
-            if name is None:
-                self._store.extend(self._failures(node, losses))
+            node = ox.NamedNode(before)
+            failures = [] if name is not None else self._failures(node, self._losses.get(graph, {}))
+            self._store.extend([ox.Quad(node, _ENDED, ox_term(moment(self._clock())), node), *failures])
             over[before] = self._triples(before)
+            del self._current[graph]
+            self._losses.pop(graph, None)
         if name is not None:
             self._current[graph] = name
             if not any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))):
@@ -131,8 +165,8 @@ class History:
         oldest = self._in_order[: max(old, len(self._in_order) - MOST_KEPT)]
         over = [entry for entry in oldest if entry[1] not in current]
         for entry in over:
-            self._in_order.remove(entry)
             self._store.remove_graph(ox.NamedNode(entry[1]))
+            self._in_order.remove(entry)
         return {name: b"" for _, name in over}
 
     def _names(self) -> list[str]:

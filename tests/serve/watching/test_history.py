@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 from pathlib import Path
 
 import pytest
@@ -99,6 +100,25 @@ def test_the_oldest_go_first_for_the_next_server_too(tmp_path: Path, monkeypatch
     first.close()
     monkeypatch.setattr(history, "MOST_KEPT", 3)
     assert set(History(tmp_path).note({GRAPH: told(4)})) == {"urn:c:1"}
+
+
+def test_what_a_full_disk_did_not_take_is_noted_once_there_is_room(tmp_path: Path) -> None:
+    kept, room = History(tmp_path), resource.getrlimit(resource.RLIMIT_FSIZE)
+    kept.note({GRAPH: told(1)})
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 10, room[1]))  # no file may grow beyond that
+    try:
+        for number in (2, 3):
+            with pytest.raises(history.CANNOT_WRITE):
+                kept.note(
+                    {GRAPH: told(number) + told(number).replace(b"urn:role", b"urn:" + bytes(1 << 10).hex().encode())}
+                )
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, room)
+    assert list(kept.note({GRAPH + "2": told(4)})) == ["urn:c:1"]
+    assert list(kept.note({GRAPH: b""})) == ["urn:c:3"]
+    kept.close()
+    ends = {name: triples.count(b"invalidatedAtTime") for name, triples in History(tmp_path).past().items()}
+    assert ends == {"urn:c:1": 1, "urn:c:3": 1}
 
 
 def test_what_is_older_than_a_year_goes_unless_it_runs_still(tmp_path: Path) -> None:
