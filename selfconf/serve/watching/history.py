@@ -118,26 +118,32 @@ class History:
 
     def _note(self, graph: str, triples: bytes) -> dict[str, bytes]:
         quads = list(ox.parse(triples, format=ox.RdfFormat.N_TRIPLES))
-        kind, wanted = ox.NamedNode(TYPE), ox.NamedNode(SC.Configuration)
-        name = next((q.subject.value for q in quads if (q.predicate, q.object) == (kind, wanted)), None)
+        name = _configuration(quads)
         if name is not None and self._has_ended(name):
             return {}  # told late: another has taken its place already
         before = self._current.get(graph)
-        over: dict[str, bytes] = {}
-        if before is not None and before != name:
-            node = ox.NamedNode(before)
-            failures = [] if name is not None else self._failures(node, self._losses.get(graph, {}))
-            self._store.extend([ox.Quad(node, _ENDED, ox_term(moment(self._clock())), node), *failures])
-            over[before] = self._triples(before)
+        ended = "" if before is None or before == name else before
+        is_new = name is not None and not any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name)))
+        added = [*self._end(graph, ended, replaced=name is not None)] if ended else []
+        if name is not None and is_new:
+            added += [ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads]
+        self._store.extend(added)  # all of it or nothing: where this fails, nothing has changed
+        if ended:
             del self._current[graph]
             self._losses.pop(graph, None)
         if name is not None:
             self._current[graph] = name
-            if not any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))):
-                self._store.extend(ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads)
+            if is_new:
                 insort(self._in_order, (self._generated(name), name))
-                over |= self._forget_oldest()
-        return over
+        over = {ended: self._triples(ended)} if ended else {}
+        return over | (self._forget_oldest() if is_new else {})
+
+    def _end(self, graph: str, name: str, replaced: bool) -> Iterator[ox.Quad]:
+        """The end of a configuration, now; with what has failed in it, where no other one has replaced it."""
+        node = ox.NamedNode(name)
+        yield ox.Quad(node, _ENDED, ox_term(moment(self._clock())), node)
+        if not replaced:
+            yield from self._failures(node, self._losses.get(graph, {}))
 
     def _note_loss(self, event: Body) -> None:
         for graph, name in self._current.items():
@@ -182,6 +188,13 @@ class History:
 
     def _triples(self, name: str) -> bytes:
         return self._store.dump(format=ox.RdfFormat.N_TRIPLES, from_graph=ox.NamedNode(name)) or b""
+
+
+def _configuration(quads: Iterable[ox.Quad]) -> str | None:
+    """The configuration that some quads describe, if they do."""
+    kind, wanted = ox.NamedNode(TYPE), ox.NamedNode(SC.Configuration)
+    found = (q.subject for q in quads if (q.predicate, q.object) == (kind, wanted))
+    return next((subject.value for subject in found if isinstance(subject, ox.NamedNode)), None)
 
 
 def _configurator(graph: str) -> str:

@@ -117,8 +117,10 @@ def test_what_a_full_disk_did_not_take_is_noted_once_there_is_room(tmp_path: Pat
     assert list(kept.note({GRAPH + "2": told(4)})) == ["urn:c:1"]
     assert list(kept.note({GRAPH: b""})) == ["urn:c:3"]
     kept.close()
-    ends = {name: triples.count(b"invalidatedAtTime") for name, triples in History(tmp_path).past().items()}
+    later = History(tmp_path)
+    ends = {name: triples.count(b"invalidatedAtTime") for name, triples in later.past().items()}
     assert ends == {"urn:c:1": 1, "urn:c:3": 1}
+    assert set(later.settle()) == {"urn:c:4"}
 
 
 def test_what_is_older_than_a_year_goes_unless_it_runs_still(tmp_path: Path) -> None:
