@@ -2,11 +2,11 @@
 
     python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--half HALF] [--write]
 
-Each engine runs in a process of its own, on the problems of `further_families`, `later_families`, `last_families` and
-`newest_families`, and is asked two questions: which configuration is the first one, or that there is none, which is
-what selfconf answers; and, where there is one, for any configuration, which is easier. An engine is stopped at the
-limit, or at `PATIENCE` times the best time so far where that is sooner, since what is slower does not change how
-selfconf compares to the best.
+Each engine runs in a process of its own, on the problems of `further_families`, `later_families`, `last_families`,
+`newest_families` and `installation_families`, and is asked two questions: which configuration is the first one, or that
+there is none, which is what selfconf answers; and, where there is one, for any configuration, which is easier. An
+engine is stopped at the limit, or at `PATIENCE` times the best time so far where that is sooner, since what is slower
+does not change how selfconf compares to the best.
 `--write` writes `docs/benchmarks/further.md`.
 """
 
@@ -26,6 +26,7 @@ from benchmarks.search import engines as anything
 from benchmarks.search import first
 from benchmarks.search.families import Instance
 from benchmarks.search.further_families import CHOOSING, REPORTING, SMALL, UNSEEN, Family, instances
+from benchmarks.search.installation_families import INSTALLATION_CHOOSING, INSTALLATION_REPORTING, INSTALLATION_SMALL
 from benchmarks.search.last_families import LAST_CHOOSING, LAST_REPORTING, LAST_SMALL
 from benchmarks.search.later_families import LATER_CHOOSING, LATER_REPORTING, LATER_SMALL
 from benchmarks.search.measure import Measured, made, measure
@@ -50,8 +51,12 @@ HALVES: dict[str, Mapping[str, Family]] = {
     "reporting last": LAST_REPORTING,
     "choosing newest": NEWEST_CHOOSING,
     "reporting newest": NEWEST_REPORTING,
+    "choosing installations": INSTALLATION_CHOOSING,
+    "reporting installations": INSTALLATION_REPORTING,
 }
 """The families by what they are for."""
+SMALLEST = {**SMALL, **LATER_SMALL, **LAST_SMALL, **NEWEST_SMALL, **INSTALLATION_SMALL}
+"""One small instance of each, to see that everything runs."""
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "further.md"
 
 SETTING = """\
@@ -63,8 +68,8 @@ one thread. An engine that takes {patience:g} times as long as the best before i
 time is written as `>`. Ratios are of those instances that take selfconf or the best other engine {work:g} ms at least.
 
 The families `choosing` are those on which ideas and thresholds of the search were chosen; `reporting` were only
-measured; `unseen` were made after the search was finished, and those called `later`, `last` and `newest` once more
-each, to choose on and to measure. [Luck, and what was
+measured; `unseen` were made after the search was finished, and those called `later`, `last`, `newest` and
+`installations` once more each, to choose on and to measure. [Luck, and what was
 missing](../search.md#luck-and-what-was-missing) says why it lost, and what helped."""
 
 
@@ -222,9 +227,7 @@ def main() -> int:
     seeds = 1 if options.smoke else options.seeds
     engines = anything.installed()
     everything: list[Asked] = []
-    for half, families in (
-        {"smoke": {**SMALL, **LATER_SMALL, **LAST_SMALL, **NEWEST_SMALL}}.items() if options.smoke else HALVES.items()
-    ):
+    for half, families in {"smoke": SMALLEST}.items() if options.smoke else HALVES.items():
         chosen = {name: sizes for name, sizes in families.items() if options.only in name}
         if options.half not in (None, half):
             continue

@@ -10,6 +10,7 @@
 * `counted_needs` are needs that every solution has to supply by a slot each (`CountedNeeds`); `supplied` removes
   options that leave some of them unsupplied, or says which of them have too few slots (an `Undersupply`), and `limits`
   says how many slots may be spent on options that supply none.
+* `within_capacity` removes options that leave demands unmet, as each role can serve so many of them.
 * `exclusive_groups` are groups of options of which at most one can play, and what counting them proves.
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
   `least_by_clauses` find any or the least solution by several of them, `least_of_clauses` the least one of the clauses
@@ -19,6 +20,7 @@
 """
 
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
+from selfconf.search.engines.capacity_counting import within_capacity
 from selfconf.search.engines.case_splitting import value_cases
 from selfconf.search.engines.clause_learning import ClauseSolver, solver_available
 from selfconf.search.engines.exclusion import exclusive_groups
@@ -56,4 +58,5 @@ __all__ = [
     "supplied",
     "unmatchable",
     "value_cases",
+    "within_capacity",
 ]

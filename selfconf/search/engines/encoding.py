@@ -27,7 +27,7 @@ with (`Encoding.count`) when the clauses turn out to be hard without.
 
 *Limits.* Of the options that supply none of some needs, though they fill a slot for these, no more play than there are
 slots to spare (`need_counting`): a bound, left out with guards as well. Needs that only roles of one slot each may
-supply are counted when the clauses turn out to be hard.
+supply are counted when the clauses turn out to be hard, and so is how much each role can serve (`capacity_counting`).
 
 *Order.* Where only the least solution is asked for, or any, interchangeable roles are played in order (`symmetry`).
 
@@ -44,6 +44,7 @@ from functools import reduce
 from operator import and_, or_
 from typing import NamedTuple
 
+from selfconf.search.engines.capacity_counting import within_capacity
 from selfconf.search.engines.counting_order import counting_order
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.group_counting import ExclusiveGroups
@@ -386,13 +387,14 @@ class Encoding:
         return [statement for statement in self.statements[before:] if isinstance(statement, list)]
 
     def _count_needs(self) -> None:
-        """Add what follows from counting needs that roles of one slot may supply."""
+        """Add what follows from counting needs that roles of one slot may supply, and what each role can serve."""
         counted = counted_needs(self.reduced, single=True)
-        left = supplied(self.reduced, counted)
-        if isinstance(left, Undersupply):
+        left, able = supplied(self.reduced, counted), within_capacity(self.reduced)
+        if isinstance(left, Undersupply) or able is None:
             self.statements += [[self.literal()], [-self.top]]
             return
         self._rule_out(left)
+        self._rule_out(able)
         self._limits(limits(self.reduced, counted))
 
     def _rule_out(self, left: ReducedProblem) -> None:

@@ -151,7 +151,7 @@ def _fed_by_one(reduced: ReducedProblem, shared: bool) -> dict[int, set[int]]:
     None are returned if these are few, or if no three roles may have conflicts with each other.
     """
     scopes = reduced.needs.scopes
-    alone = _feeding_alone(reduced)
+    alone = feeding_alone(reduced)
     if not _any_three(alone, _sharing(reduced) if alone and shared else ()):
         return {}
     found: defaultdict[int, set[int]] = defaultdict(set)
@@ -163,7 +163,7 @@ def _fed_by_one(reduced: ReducedProblem, shared: bool) -> dict[int, set[int]]:
     return often if sum(map(len, often.values())) * SHARE_EXCLUDING >= len(used) else {}
 
 
-def _feeding_alone(reduced: ReducedProblem) -> dict[NeedScope, int]:
+def feeding_alone(reduced: ReducedProblem) -> dict[NeedScope, int]:
     """Return the scopes that one other role with one slot alone feeds, with that role."""
     asked = Counter(reduced.slots)
     alone: dict[NeedScope, int] = {}

@@ -77,7 +77,7 @@ def counted_needs(given: ReducedProblem, single: bool = False) -> list[CountedNe
     able = {need: frozenset(role for role, _ in supports[need]) for need in _chosen(supports)}
     return [
         CountedNeeds(needs, slots)
-        for needs in _connected(able)
+        for needs in parts_by_role(able)
         for slots in [[role for role in sorted(frozenset().union(*needs.values())) for _ in range(asked[role])]]
         if len(slots) <= SPARE_SLOTS * len(needs)
     ]
@@ -152,8 +152,8 @@ def _chosen(supports: Mapping[int, set[Support]]) -> Iterator[int]:
             shared.update(*[these for _, these in supports[need]])
 
 
-def _connected(able: Mapping[int, frozenset[int]]) -> Iterator[dict[int, frozenset[int]]]:
-    """Yield the needs in parts that have no role in common."""
+def parts_by_role(able: Mapping[int, frozenset[int]]) -> Iterator[dict[int, frozenset[int]]]:
+    """Yield needs, given by number with the roles that are able to supply them, in parts with no role in common."""
     having: defaultdict[int, list[int]] = defaultdict(list)
     for need, roles in able.items():
         for role in roles:

@@ -56,6 +56,7 @@ from selfconf.search.engines import (
     supplied,
     unmatchable,
     value_cases,
+    within_capacity,
 )
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
@@ -231,9 +232,10 @@ def _by_clauses(given: ReducedProblem, budget: Budget, by_clauses: Engine) -> li
         given = probed(given)
         if given.wiped_out() is not None or hall_set(given.slots, given.components()) is not None:
             return None
-    matching = _matching(given)
-    if exclusive_groups(given).impossible:
+    able = within_capacity(given)
+    if able is None or able.wiped_out() is not None or exclusive_groups(able).impossible:
         return None
+    given, matching = able, _matching(able)
     return first_solution(given, budget, matching=matching, counted=counted_needs(given))
 
 
