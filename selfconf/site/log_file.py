@@ -35,30 +35,45 @@ def forget_oldest(folder: Path, kept: Collection[str]) -> None:
 
 
 class LogFile:
-    """A file that lines are added to. It is made with its first line."""
+    """A file that lines are added to. It is made with its first line, and anew where it was removed or moved away."""
 
     def __init__(self, path: Path, most_bytes: int = MOST_BYTES) -> None:
         self.path, self._most = path, most_bytes
         self._descriptor: int | None = None
         self._size = 0
         self._failing = False
+        self._cut = False
+        """Whether the last line was written in part, as the disk was full."""
 
     def write(self, lines: bytes) -> None:
         """Add whole lines. Where that cannot be done, say so once, and go on without them."""
         try:
-            if self._descriptor is None:
+            if not self._is_open():
+                self.close()
                 self._open()
             if self._size and self._size + len(lines) > self._most:
                 self.close()
                 self._put_aside()
                 self._open()
             if self._descriptor is not None:
-                self._size += os.write(self._descriptor, lines)
+                self._add(self._descriptor, b"\n" + lines if self._cut else lines)
             self._failing = False
         except OSError as error:
             if not self._failing:
                 log.error("cannot write %s: %s", self.path, error.strerror)
             self._failing = True
+
+    def _add(self, descriptor: int, lines: bytes) -> None:
+        written = os.write(descriptor, lines)
+        self._size += written
+        self._cut = lines[written - 1 : written] != b"\n"
+
+    def _is_open(self) -> bool:
+        """Whether what is written goes to the file of that name: a person, or a program, may have put it elsewhere."""
+        try:
+            return self._descriptor is not None and os.path.samestat(os.fstat(self._descriptor), self.path.stat())
+        except FileNotFoundError:
+            return False
 
     def close(self) -> None:
         """Write no more until there are further lines."""
@@ -69,7 +84,7 @@ class LogFile:
     def _open(self) -> None:
         self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         self._descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o600)
-        self._size = os.fstat(self._descriptor).st_size
+        self._size, self._cut = os.fstat(self._descriptor).st_size, False
 
     def _put_aside(self) -> None:
         aside = [self.path, *(self.path.with_name(f"{self.path.name}.{number + 1}") for number in range(PUT_ASIDE))]

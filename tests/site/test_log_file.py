@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,33 @@ def test_where_nothing_can_be_written_that_is_said_once(tmp_path: Path, caplog: 
         log.write(b"two\n")
     assert len(caplog.records) == 1
     assert "cannot write" in caplog.text
+
+
+def test_a_file_that_was_removed_or_moved_away_is_made_anew(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "home.log"
+    log = LogFile(path)
+    log.write(b"one\n")
+    path.unlink()
+    log.write(b"two\n")
+    path.rename(tmp_path / "by-hand.log")
+    path.parent.rmdir()
+    log.write(b"three\n")
+    assert path.read_bytes() == b"three\n"
+    assert (tmp_path / "by-hand.log").read_bytes() == b"two\n"
+
+
+def test_a_line_that_a_full_disk_has_cut_does_not_run_into_the_next_one(tmp_path: Path) -> None:
+    path, room = tmp_path / "home.log", resource.getrlimit(resource.RLIMIT_FSIZE)
+    log = LogFile(path)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (6, room[1]))
+    try:
+        for line in (b"one\n", b"lost in part\n", b"lost\n"):
+            log.write(line)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, room)
+    for line in (b"two\n", b"three\n"):
+        log.write(line)
+    assert path.read_bytes() == b"one\nlo\ntwo\nthree\n"
 
 
 def test_the_oldest_logs_of_sites_that_have_ended_are_forgotten(tmp_path: Path) -> None:
