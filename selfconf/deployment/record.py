@@ -15,6 +15,9 @@ from selfconf.protocol.messages import Status
 from selfconf.rdf.provenance import Deployment, configuration_iri, deployment_triples
 from selfconf.rdf.turtle import to_turtle
 
+FAILURES_KEPT = 256
+"""The newest failures of so many components are kept: where ever new components come and go they have no end."""
+
 
 class DeploymentRecord:
     """Keeps the record of one task, and serves it on the bus."""
@@ -35,7 +38,7 @@ class DeploymentRecord:
         self._revises: tuple[IRI, Configuration] | None = None
         """The configuration before the deployed one, or the last one if none is deployed; earlier ones are not kept."""
         self._failures: dict[IRI, tuple[IRI, str, str, float]] = {}
-        """The newest failure of each component, the newest last: a task that runs for months has many of each."""
+        """The newest failure of each component, the newest last, of the FAILURES_KEPT that have failed last."""
         self._heard = False
         """Whether an observer wants to receive each configuration: one that asks may ask too late."""
         self._publisher = bus.publisher(keys.configuration(name), Urgency.SIGNAL, self._matched)
@@ -65,6 +68,8 @@ class DeploymentRecord:
         """Note a component that was lost."""
         self._failures.pop(component, None)
         self._failures[component] = component, cause, detail, time
+        if len(self._failures) > FAILURES_KEPT:
+            del self._failures[next(iter(self._failures))]
 
     def _matched(self, heard: bool) -> None:
         self._heard = heard

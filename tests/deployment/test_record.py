@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from selfconf.bus.port import Replies
 from selfconf.configurator.state import Phase
+from selfconf.deployment.record import FAILURES_KEPT
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import Status
 from selfconf.rdf.turtle import document as turtle
@@ -109,6 +110,17 @@ def test_what_is_deployed_names_the_newest_failure_of_each_component_and_keeps_n
         iri("absolute-odometry"),
     }
     assert [str(record.value(failure, SC.detail)) for failure in failures] == ["broken 9", "broken 9"]
+
+
+def test_of_components_that_never_come_back_the_latest_failures_are_told(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    for number in range(FAILURES_KEPT + 2):
+        agent._record.lost(iri(f"passer-by-{number}"), "crash", "", float(number))
+    (sample,) = ask(lab, lab.keys.configuration()).samples
+    told = turtle.parse(sample.payload, "told")
+    gone = {told.value(failure, SC.component) for failure in told.instances(SC.Failure)}
+    assert gone == {iri(f"passer-by-{number}") for number in range(2, FAILURES_KEPT + 2)}
 
 
 def test_no_broad_question_changes_anything(lab: Lab) -> None:
