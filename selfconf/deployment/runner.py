@@ -8,8 +8,9 @@ import secrets
 import socket
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from itertools import islice
 
 from selfconf.bus.port import Bus, Urgency
 from selfconf.configurator import (
@@ -83,6 +84,8 @@ RETURN = 3.0
 """Seconds for which a task that does not wait is not refused for lack of what has gone without a word.
 
 By then that has turned itself off (`selfconf.deployment.components.calls.GONE`), so the refusal need not doubt it."""
+LOSSES_TOLD = 1000
+"""How many losses are named at most, the newest: where ever new components come and go they have no end."""
 PULSE = 0.25
 """How often, in seconds, a configurator looks whether it has been suspended."""
 SUSPENDED = 1.0
@@ -321,8 +324,12 @@ class TaskRunner:
 
     @property
     def losses(self) -> Mapping[IRI, str]:
-        """Why each component that was lost was lost, for people, as of now."""
-        return FrozenMapping({c: f"{loss.cause.value}, {loss.detail}" for c, loss in self.state.lost.items()})
+        """Why each component was lost, for people, as of now; of very many those that were lost last."""
+        return FrozenMapping({c: f"{loss.cause.value}, {loss.detail}" for c, loss in self._newest_losses()})
+
+    def _newest_losses(self) -> Iterable[tuple[IRI, Loss]]:
+        lost = self.state.lost
+        return islice(lost.items(), max(0, len(lost) - LOSSES_TOLD), None)
 
     def _notice(self, known: Mapping[IRI, Loss]) -> None:
         """Record and report every component that the machine has just given up, whatever the cause.
@@ -433,7 +440,7 @@ class TaskRunner:
             host=socket.gethostname(),
             process=os.getpid(),
             components=tuple(self.state.held),
-            lost={component: loss.cause.value for component, loss in self.state.lost.items()},
+            lost={component: loss.cause.value for component, loss in self._newest_losses()},
             task=self.identity.task,
             priority=self.identity.priority,
             beginning=self.identity.beginning,

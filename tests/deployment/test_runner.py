@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,10 +10,11 @@ import pytest
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies
 from selfconf.configurator.events import Failed
-from selfconf.configurator.state import Phase, Policy
+from selfconf.configurator.state import Loss, Phase, Policy
+from selfconf.deployment.runner import LOSSES_TOLD
 from selfconf.model.refusal import TooFewEligible
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import CallAnswer, Cause, Release, Verdict
+from selfconf.protocol.messages import CallAnswer, Cause, Release, Status, Verdict
 from selfconf.render.run_events import event_body
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.tasks import TASK
@@ -247,3 +249,12 @@ def test_a_task_is_refused_though_it_cannot_hear_who_holds_what_it_needs(lab: La
     lab.network.cut(first.bus, second.bus)
     assert lab.until(lambda: second.state.phase is Phase.REFUSED, 5.0)
     assert second.state.attempt < 10
+
+
+def test_of_very_many_losses_the_newest_are_told_so_that_the_status_can_be_sent(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    lost = {iri(f"{'passing-by' * 10}-{number}"): Loss(Cause.CRASH) for number in range(20_000)}
+    agent.state = replace(agent.state, lost=lost)
+    told = decode(encode(agent.status()), Status).lost
+    assert list(told) == list(agent.losses) == list(lost)[-LOSSES_TOLD:]
