@@ -87,6 +87,8 @@ class Joining:
         self.bus = self._opened(listen, relays)
         self._reached_at = relays[0] if relays else ""
         self._file: Path | None = None
+        self._said_to_relay = False
+        """Whether the file of this site says that it relays, unless another site has written it since."""
         self.log = ""
         """The log of the site, for others on this machine."""
         self._trouble = ""
@@ -145,6 +147,7 @@ class Joining:
             from_here=self.bus.from_here,
         )
         self._file = this_machine.announce(mine)
+        self._said_to_relay = relays
 
     def _announce_anew(self) -> None:
         """Write it down once more, as it has changed or is lost; where that cannot be, it is tried again later."""
@@ -240,7 +243,7 @@ class Joining:
             return
         if self._trouble or not self._file.exists():
             self._announce_anew()
-        if self.bus.endpoint and not this_machine.relays(self._file):
+        if self._is_replaced():
             self._look()
         elif not self._asking and (self.bus.endpoint or self.bus.link):
             self._ask_hub()
@@ -293,7 +296,16 @@ class Joining:
 
     def _in_order(self) -> bool:
         """Whether there is nothing to change; a turn is not taken then, as one that is stopped in it keeps it."""
-        return not self._lacks_hub() if not self.bus.endpoint else self._file is None or this_machine.relays(self._file)
+        return not (self._is_replaced() if self.bus.endpoint else self._lacks_hub())
+
+    def _is_replaced(self) -> bool:
+        """Whether this site relays, and another has written into its file that it does not, as it has its place.
+
+        Where the disk is full the file of a site that has begun to relay still says what was so before.
+        """
+        if self._file is None or not (self.bus.endpoint and self._said_to_relay):
+            return False
+        return not this_machine.relays(self._file)
 
     def _lacks_hub(self) -> bool:
         """Whether this site is connected to no hub of its ecology: to none, or while no site of this machine relays."""
@@ -310,10 +322,10 @@ class Joining:
 
     def _give_place(self) -> None:
         """Relay no more, if another site has taken the place meanwhile."""
-        mine = [site for site in this_machine.local_sites(self._ecology) if site.site == self._name]
-        if mine and not mine[0].relays:
+        if self._is_replaced():
+            before = self.bus.endpoint
             self.bus.relay_no_more()
-            self._reached_at = next(iter(self._relays()), mine[0].endpoint)
+            self._reached_at = next(iter(self._relays()), before)
             self._announce_anew()
 
     def _take_place(self) -> None:

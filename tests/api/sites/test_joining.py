@@ -140,6 +140,7 @@ def test_a_place_is_taken_though_nothing_can_be_written(machine: Machine, monkey
     monkeypatch.setattr(this_machine, "announce_for", full)
     machine.leave("a")
     assert machine.until(lambda: machine.relaying() == ["b"] and machine.united())
+    assert not machine.until(lambda: not machine.relaying(), seconds=1.0)  # its file says still that it does not relay
 
 
 def test_a_place_is_taken_though_the_hub_of_another_ecology_listens_at_a_usual_port(machine: Machine) -> None:
