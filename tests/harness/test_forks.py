@@ -106,7 +106,7 @@ def outcome(folder: Path, text: str, *options: str) -> subprocess.CompletedProce
 
 
 def test_a_test_that_hangs_or_dies_has_failed_and_the_others_go_on_and_errors_are_told(tmp_path: Path) -> None:
-    bounded = "-o", "faulthandler_timeout=0.3", "-o", "faulthandler_exit_on_timeout=true"
+    bounded = "-o", "faulthandler_timeout=1", "-o", "faulthandler_exit_on_timeout=true"
     ended = outcome(tmp_path, TROUBLE, *bounded, "--junitxml", str(tmp_path / "report.xml"))
     assert ended.returncode == 1, ended.stderr
     assert "2 failed, 10 passed, 1 warning, 2 errors" in ended.stdout
