@@ -17,6 +17,8 @@ from selfconf.protocol.messages import Cause
 
 PROCESS_ENDS = (Cause.CRASH, Cause.HUNG)
 """The causes for which a component is started again: a site ends a process that hangs."""
+GOES_ON = (Cause.YIELD, Cause.LET_GO)
+"""The causes for which a component has not failed: another task asks for it, or it has let go of this one."""
 
 
 def heed_failure(state: State, event: Failed) -> Reaction:
@@ -35,10 +37,8 @@ def heed_failure(state: State, event: Failed) -> Reaction:
     if startable:  # the next life has not made the deployment begin anew
         state = replace(state, repeats={c: times for c, times in state.repeats.items() if c != event.component})
     loss = Loss(event.cause, event.detail, event.life or held.life, event.cause is Cause.YIELD, startable=startable)
-    if event.cause not in (Cause.YIELD, Cause.LET_GO):
+    if event.cause not in GOES_ON:
         return lose(state, event.component, loss)
-    if not held.reserved:
-        return state, ()  # another task is asked to let go of it, perhaps for this one
     return _let_go(state, event.component, loss)
 
 
@@ -53,9 +53,14 @@ def _ended_since(state: State, event: Failed) -> State:
 
 
 def _passes_over(held: Held, event: Failed) -> bool:
-    """Whether it is another life than the one that is held which has failed, or one silent that may not have begun."""
+    """Whether it is another life than the one that is held which has failed, or one silent that may not have begun.
+
+    Or it is another task that is asked to let go of it, perhaps for this one, which has neither reserved it nor applied
+    to it: an apply that has not been answered yet may be its reservation.
+    """
     another = bool(event.life and held.life and event.life != held.life)
-    return another or (event.cause is Cause.SILENCE and not held.confirmed)
+    others = event.cause in GOES_ON and not (held.reserved or held.active)
+    return another or others or (event.cause is Cause.SILENCE and not held.confirmed)
 
 
 def _lost_already(state: State, component: IRI) -> Reaction:

@@ -215,6 +215,18 @@ def test_a_better_configuration_that_does_not_come_about_leaves_what_ran(cause: 
     assert history.all_answer() == [Running(navigation(ODOMETRY))]
 
 
+@pytest.mark.parametrize("cause", [Cause.YIELD, Cause.LET_GO])
+def test_what_is_being_started_for_something_better_is_let_go_of_for_another_task(cause: Cause) -> None:
+    """It has answered nothing yet, as its code takes its time, and is held by the apply."""
+    history = History(TASK).running(navigation(ODOMETRY))
+    history.hear(Improvable(), Discovered())
+    history.composed(navigation())
+    assert applied(history.answer(TRACKER, Call.WAKE)) == [TRACKER]
+    effects = history.hear(Failed(TRACKER, "1", cause))
+    assert released(effects) == [TRACKER]
+    assert history.all_answer() == [Running(navigation(ODOMETRY))]
+
+
 @pytest.mark.parametrize("cause", [Cause.CRASH, Cause.YIELD])
 def test_what_is_to_run_again_does_not_suffer_from_the_loss_of_what_it_does_without(cause: Cause) -> None:
     history = History(replace(TASK, policy=Policy.DISMANTLE)).running(navigation(ODOMETRY))

@@ -223,6 +223,25 @@ def test_a_shared_actuator_acts_again_for_a_task_that_is_whole_before_another_is
         assert (whole.state.phase, lacking.state.phase) == (Phase.RUNNING, phase)
 
 
+def test_what_is_being_started_for_something_better_is_yielded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not only once its code has started, for which an author may have asked for minutes."""
+    alone = ADVERTISEMENTS["tracker"].replace(" ;", " ; sc:shareable false ;", 1)
+    monkeypatch.setitem(ADVERTISEMENTS, "tracker", alone)
+    lab = Lab(tmp_path)
+    lab.navigation()
+    lab.crash("tracker")
+    low = lab.agent(upgrade=2.0)
+    assert lab.running(low)
+    slow_code(lab, "tracker")
+    lab.components["tracker"].slow = 7.0
+    assert lab.until(lambda: lab.runtimes["tracker"].activation.hold(low.identity.task) is not None, 10.0)
+    high = lab.agent(WATCH, bound=(), priority=5)
+    assert lab.until(lambda: lab.runtimes["tracker"].activation.hold(low.identity.task) is None, 1.0)
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.until(lambda: high.state.phase is Phase.RUNNING, 20.0)
+    assert low.state.phase is Phase.RUNNING
+
+
 def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
     """It lives, but hears nothing of what it is asked."""
     low = lab.agent()

@@ -92,9 +92,11 @@ class ComponentMessages:
             return False
         if fail.cause is Cause.LET_GO:
             return fail.epoch > 0  # else it has obeyed a release, which those need to know that follow its outputs
-        held = self._state().held.get(fail.component)
+        if fail.cause is not Cause.YIELD or fail.task:
+            return True
         # An older component names no task with a yield, and this one may be the one that asks.
-        return fail.cause is not Cause.YIELD or (held is not None and held.reserved)
+        held = self._state().held.get(fail.component)
+        return held is not None and held.reserved
 
     def _received_moved(self, sample: Sample) -> None:
         try:
