@@ -36,7 +36,8 @@ class RunNotices:
         self._served = bus.serve(keys.notices(name), self._answer)
 
     def close(self) -> None:
-        """Tell nothing any more."""
+        """Tell nothing any more, whatever is put yet: a call may be answered after its task has ended."""
+        self._heard = False
         self._latest.clear()
         self._served()
         self._publisher.undeclare()

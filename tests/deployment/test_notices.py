@@ -55,6 +55,19 @@ def test_how_a_run_has_ended_is_heard_though_the_network_drops_what_it_may(lab: 
     assert [(notice.sequence, notice.event["act"]) for notice in heard] == [(2, "stopped")]
 
 
+def test_what_is_put_after_the_end_is_told_to_no_one(lab: Lab) -> None:
+    """On a site that hands its task over, a component may answer a call after that."""
+    heard: list[Notice] = []
+    lab.network.node().subscribe(lab.keys.notices(), lambda sample: heard.append(decode(sample.payload, Notice)))
+    told = RunNotices(lab.network.node(), lab.keys, "c1", "tidy~c1")
+    lab.let_pass(0.1)
+    told.put(TaskStopped())
+    told.close()
+    told.put(AnswerRejected("after the end"))
+    lab.let_pass(0.1)
+    assert [notice.event["act"] for notice in heard] == ["stopped"]
+
+
 def test_who_comes_late_is_told_the_latest_events(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
