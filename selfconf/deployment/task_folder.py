@@ -24,7 +24,7 @@ class TaskFolder:
         self._folder = folder
         self.records: dict[str, TaskRecord] = {}
         """The newest record of each task, by the identity of the task."""
-        for path in sorted(folder.glob("*.json")) if folder is not None and folder.is_dir() else ():
+        for path in _kept_in(folder) if folder is not None else ():
             try:
                 record = decode(path.read_bytes(), TaskRecord)
             except (OSError, PeerError) as error:
@@ -88,6 +88,22 @@ class TaskFolder:
             del self.records[record.task]
             if self._folder is not None:
                 self._path(self._folder, record.task).unlink(missing_ok=True)
+
+
+def _kept_in(folder: Path) -> list[Path]:
+    """The files of the tasks that are kept in a folder, sorted; none where it is not there yet, or cannot be read."""
+    try:  # no glob: it finds nothing in a folder that it may not read
+        return sorted(path for path in folder.iterdir() if path.suffix == ".json")
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        log.error(
+            "the tasks in %s cannot be read, and this site runs none of them: %s; let its user read and write there, or"
+            " give the site another folder for its tasks",
+            folder,
+            error.strerror,
+        )
+        return []
 
 
 def _synchronize(path: Path) -> None:

@@ -66,6 +66,22 @@ def test_a_file_that_is_no_record_is_passed_over_and_that_is_said_to_people(
     assert "`selfconf run --detach`" in caplog.text
 
 
+@pytest.mark.parametrize("trouble", [PermissionError(errno.EACCES, "Permission denied"), NotADirectoryError()])
+def test_a_folder_that_cannot_be_read_is_named_and_the_site_goes_on_without_its_tasks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, trouble: OSError
+) -> None:
+    TaskFolder(tmp_path).learn(FIRST)
+
+    def refuse(path: object = ".") -> list[str]:
+        raise trouble
+
+    monkeypatch.setattr(os, "listdir", refuse)
+    monkeypatch.setattr(os, "scandir", refuse)  # who is root may read every folder
+    with caplog.at_level(logging.ERROR):
+        assert TaskFolder(tmp_path).records == {}
+    assert f"the tasks in {tmp_path} cannot be read, and this site runs none of them" in caplog.text
+
+
 def test_a_record_is_on_the_disk_before_it_has_its_name_and_the_name_before_it_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
