@@ -30,6 +30,8 @@ def test_the_drive_rests_for_as_long_as_a_repair_takes_more_than_a_moment(
     assert drive.said[-1] == (("stopped",) if rests else ("velocity", {"v": 0.3}))
     assert ("stopped",) not in control.said
     assert agent.state.held[iri("astrid-drive")].reserved, "it is held on"
+    acting = [event.component for event in lab.acts("activated")]
+    assert acting.count(iri("astrid-drive")) == 1, "and what has come to rest is not said to be active"
     lab.until(lambda: agent.state.phase is Phase.RUNNING)
     control.emit("set.velocity", {"v": 0.1})
     lab.let_pass(0.1)

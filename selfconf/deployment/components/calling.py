@@ -123,19 +123,9 @@ class Calling:
 
     def answered(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
         """A component has answered a call, or its state shows that it has obeyed: report it, and step."""
-        detail = answer.detail or answer.verdict.value
-        if answer.verdict is not Verdict.DONE:
-            if call is Call.APPLY:
-                self._report(CallDeclined(component, detail))
-        elif call is Call.RELEASE:
-            if self.lives.has_obeyed(component, answer.life):  # else this task has only waited for it
-                goes_on_for = task_name(answer.task) if answer.active else ""
-                self._report(ComponentReleased(component, detail, goes_on_for))
+        self._tell(component, call, message, answer)
+        if answer.verdict is Verdict.DONE and call is Call.RELEASE:
             self.lives.released(component)
-        elif isinstance(message, Apply):
-            if message.values:
-                self._report(ParametersSet(component, detail))
-            self._report(ComponentActivated(component, detail))
         if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
             self.lives.obeyed(component, answer.life, message.epoch != self.state().epoch)
         if answer.verdict is Verdict.DONE and call is Call.APPLY:
@@ -147,6 +137,22 @@ class Calling:
         newest, epoch, verdict = answer.epoch, message.epoch, answer.verdict
         said = answer.detail, holder, answer.shared, acts
         self.step(Answered(component, call, epoch, verdict, answer.life, newest, *said))
+
+    def _tell(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
+        """Report what a component has done by its answer; one that is to rest has its parameters, and does not act."""
+        detail = answer.detail or answer.verdict.value
+        if answer.verdict is not Verdict.DONE:
+            if call is Call.APPLY:
+                self._report(CallDeclined(component, detail))
+        elif call is Call.RELEASE:
+            if self.lives.has_obeyed(component, answer.life):  # else this task has only waited for it
+                goes_on_for = task_name(answer.task) if answer.active else ""
+                self._report(ComponentReleased(component, detail, goes_on_for))
+        elif isinstance(message, Apply):
+            if message.values:
+                self._report(ParametersSet(component, detail))
+            if not message.rests:
+                self._report(ComponentActivated(component, detail))
 
     def outlived(self, component: IRI, life: str, answer: CallAnswer) -> None:
         """Believe that a life has ended, as all were asked, and only another one has answered.
