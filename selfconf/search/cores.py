@@ -16,9 +16,10 @@ What else 1 to 4 give is made irreducible by QuickXplain (Junker, AAAI 2004), un
 only: then the rest is possible without any one of its roles. So is the set of all constraints where there is no such
 engine: a question of the kind "can these hold together?" for about k log(n / k) subsets, k being what remains of n.
 Each is decided on a subproblem with only these constraints in force, which is small when they are few.
-Irreducible (a minimal unsatisfiable subset) does not mean smallest. The smallest is looked for afterwards, with a
-budget of its own (`smallest_core`). Where the budget for making it irreducible ends, the core is the smallest set that
-was met until then.
+Irreducible (a minimal unsatisfiable subset) does not mean smallest. It is, if all other constraints can hold without
+any one of it, as then no set does without that one; else the smallest is looked for afterwards, with a budget of its
+own (`smallest_core`). Where the budget for making it irreducible ends, the core is the smallest set that was met until
+then.
 """
 
 from __future__ import annotations
@@ -61,6 +62,8 @@ SMALLEST_STEPS = 20_000
 """Steps spent at most on looking for a smaller reason."""
 SMALLEST_OPTIONS = 5_000
 """In how many options at most a smaller reason is looked for."""
+INDISPENSABLE_STEPS = 3_000
+"""Steps of depth-first search at most to find a reason to be the smallest without a solver."""
 QUESTION_STEPS = 1000
 """Steps of depth-first search for one question before clauses are written."""
 
@@ -78,8 +81,8 @@ class FeasibilityOracle:
         self.single = False
         """Whether needs are counted that only roles of one slot each may supply."""
 
-    def feasible(self, constraints: Iterable[Constraint]) -> bool | Undecided:
-        """Return whether constraints can hold together, all others being dropped."""
+    def feasible(self, constraints: Iterable[Constraint], aided: bool = True) -> bool | Undecided:
+        """Return whether constraints can hold together, all others being dropped, where need be `aided` by a solver."""
         wanted = set(constraints)
         distinct = Distinct() in wanted
         if self.readings.steps == 0:
@@ -90,7 +93,7 @@ class FeasibilityOracle:
             return False
         if isinstance(supplied(part, counted_needs(part, self.single)), Undersupply):
             return False
-        aided = solver_available()
+        aided = aided and solver_available()
         self.budget.spend(len(wanted) + sum(map(len, part.options)))
         if self.budget.steps == 0:
             return Undecided(0)
@@ -198,7 +201,7 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
     nothing fails.
     """
     given = oracle.given
-    if len(known) <= 2:
+    if len(known) <= 2 or _each_indispensable(oracle, known):
         return known, True
     if not solver_available() or sum(map(len, given.options)) > SMALLEST_OPTIONS:
         return known, False
@@ -231,6 +234,17 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
 
         found, proved = smallest_core(irreducible, [*constraint_of], held, budget)
         return tuple(constraint_of[guard] for guard in found), proved
+
+
+def _each_indispensable(oracle: FeasibilityOracle, known: Collection[Constraint]) -> bool:
+    """Return whether depth-first search soon finds that without any one of some constraints all others can hold.
+
+    Then no set that cannot hold together does without one of them. Mostly that is so, and to load a solver takes longer
+    than to find it out.
+    """
+    quick = FeasibilityOracle(oracle.given, oracle.budget.part(INDISPENSABLE_STEPS), oracle.readings)
+    every = all_of(oracle.given)
+    return all(quick.feasible([one for one in every if one != left_out], aided=False) is True for left_out in known)
 
 
 def _core_by_deletion(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
+
 from benchmarks.search.families import distinct
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.requirement import InputFed
+from selfconf.search import cores
 from selfconf.search.budget import Budget
 from selfconf.search.cores import FeasibilityOracle
 from selfconf.search.explain import refusal
@@ -65,3 +68,26 @@ def test_that_roles_outnumber_their_components_is_not_found_out_anew_to_prove_a_
     (reason,) = found.reasons
     assert found.smallest, "pigeonholes are hard for a solver, but that one role fewer has components enough is not"
     assert len(reason.roles) == 20
+
+
+def test_no_solver_is_loaded_where_each_requirement_of_a_reason_is_soon_seen_to_be_indispensable(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def loaded(*_: object, **__: object) -> None:
+        raise AssertionError("to load a solver takes several times as long as such a refusal")
+
+    monkeypatch.setattr(cores, "ClauseSolver", loaded)
+    speakers = [component("left", "i:Sound"), component("right", "i:Sound")]
+    roles = {"radio": [component("radio", outputs="o:Sound")], "r": speakers, "s": speakers, "t": speakers}
+    found = refusal(LazyReduction(problem(roles, "radio>r radio>s radio>t")))
+    (reason,) = found.reasons
+    assert {role.short for role in reason.roles} == {"r", "s", "t"}
+    assert found.smallest
+
+
+def test_a_smaller_reason_is_found_where_the_first_one_is_dispensable() -> None:
+    pair, lone = [component("a"), component("b")], [component("c")]
+    found = refusal(LazyReduction(problem({"r": pair, "s": pair, "t": pair, "u": lone, "v": lone})))
+    (reason,) = found.reasons
+    assert {role.short for role in reason.roles} == {"u", "v"}
+    assert found.smallest
