@@ -104,8 +104,8 @@ class Record:
             return
         try:
             past = self._history.note(change.graphs, change.events)
-        except CANNOT_WRITE:
-            log.exception("a change is missing in the history")
+        except CANNOT_WRITE as error:
+            log.error("a change is missing in the history: %s", error)
         else:
             self._replace(past)
 

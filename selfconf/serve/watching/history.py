@@ -7,7 +7,8 @@ running when the server ended gets none, for when it ended was not seen. Where n
 which failures have ended it; so its own does (prov:qualifiedInvalidation).
 
 A store that could not write once, as on a full disk, refuses to from then on, so it is opened anew. What could not be
-noted is noted then, as far as it is deployed still.
+noted is noted then, as far as it is deployed still. So it is where the folder was removed, or has another name by now:
+a store that is open would write on into files that nothing finds.
 """
 
 from __future__ import annotations
@@ -38,6 +39,8 @@ KEPT_FOR = 366 * 86_400.0
 """Seconds for which a configuration is kept that was generated then, and is not deployed any more."""
 CANNOT_WRITE = (OSError, RuntimeError)
 """What a store raises that cannot be opened or written; the latter where it is broken."""
+_IN_EACH_STORE = "CURRENT"
+"""The file that says which state of a store of RocksDB is the latest."""
 _GENERATED, _ENDED = ox.NamedNode(PROV.generatedAtTime), ox.NamedNode(PROV.invalidatedAtTime)
 _PARTS = (ox.NamedNode(SC.component), ox.NamedNode(SC.recruited))
 
@@ -52,7 +55,6 @@ class History:
         self._in_order: list[tuple[str, str]] = []
         """When each configuration was generated, and its name; the oldest first. To ask the store takes long."""
         try:
-            folder.mkdir(parents=True, exist_ok=True)
             self._open()
         except CANNOT_WRITE as error:
             raise AuthorError(f"cannot keep a history in {folder} ({error}); does another server use it?") from None
@@ -70,6 +72,7 @@ class History:
         return self._open() if self._opened is None else self._opened
 
     def _open(self) -> ox.Store:
+        self._folder.mkdir(parents=True, exist_ok=True)
         self._opened = ox.Store(str(self._folder))
         self._in_order = sorted((self._generated(name), name) for name in self._names())
         return self._opened
@@ -79,8 +82,8 @@ class History:
         try:
             if self._opened is not None:
                 self._opened.flush()
-        except CANNOT_WRITE:
-            log.exception("the latest changes may be missing in the history")
+        except CANNOT_WRITE as error:
+            log.error("the latest changes may be missing in the history: %s", error)
         finally:
             self._opened = None
 
@@ -101,10 +104,22 @@ class History:
         """
         self._to_note.update((graph, told) for graph, told in graphs.items() if graph.startswith(DEPLOYED))
         try:
+            self._look_whether_removed()
             return self._note_all(events)
         except CANNOT_WRITE:
             self._opened = None
             raise
+
+    def _look_whether_removed(self) -> None:
+        """Begin anew where the store that is open is in its folder no more, with what is deployed now."""
+        if self._opened is None or (self._folder / _IN_EACH_STORE).exists():
+            return
+        log.warning("the history in %s is not there any more; a new one begins there", self._folder)
+        deployed = {graph: self._triples(name) for graph, name in self._current.items()}
+        self._opened = None
+        self._current.clear()
+        for graph, triples in deployed.items():
+            self._note(graph, triples)
 
     def _note_all(self, events: Iterable[Body]) -> dict[str, bytes]:
         for event in events:

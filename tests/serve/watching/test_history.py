@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+import shutil
 from pathlib import Path
 
 import pytest
@@ -121,6 +122,37 @@ def test_what_a_full_disk_did_not_take_is_noted_once_there_is_room(tmp_path: Pat
     ends = {name: triples.count(b"invalidatedAtTime") for name, triples in later.past().items()}
     assert ends == {"urn:c:1": 1, "urn:c:3": 1}
     assert set(later.settle()) == {"urn:c:4"}
+
+
+@pytest.mark.parametrize("renamed", [False, True])
+def test_a_history_that_was_removed_begins_anew_with_what_is_deployed(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, renamed: bool
+) -> None:
+    place, renamed_to = tmp_path / "history", tmp_path / "last-year"
+    kept = History(place)
+    for number, graph in ((1, GRAPH), (2, GRAPH), (3, GRAPH + "2")):
+        kept.note({graph: told(number)})
+    place.rename(renamed_to)
+    if not renamed:
+        shutil.rmtree(renamed_to, ignore_errors=True)  # the store may be writing into it
+    assert list(kept.note({GRAPH: told(4)})) == ["urn:c:2"]
+    assert [record.getMessage() for record in caplog.records] == [
+        f"the history in {place} is not there any more; a new one begins there"
+    ]
+    kept.close()
+    later = History(place)
+    assert set(later.past()) == {"urn:c:2"}
+    assert set(later.settle()) == {"urn:c:3", "urn:c:4"}
+    if renamed:
+        assert set(History(renamed_to).past()) == {"urn:c:1"}
+
+
+def test_what_cannot_be_written_at_the_end_is_a_sentence(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    kept = History(tmp_path / "history")
+    kept.note({GRAPH: told(1)})
+    (tmp_path / "history").rename(tmp_path / "last-year")
+    kept.close()
+    assert [(record.levelname, record.exc_info) for record in caplog.records] == [("ERROR", None)]
 
 
 def test_what_is_older_than_a_year_goes_unless_it_runs_still(tmp_path: Path) -> None:
