@@ -139,7 +139,10 @@ class Calling:
         self.step(Answered(component, call, epoch, verdict, answer.life, newest, *said))
 
     def _tell(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
-        """Report what a component has done by its answer; one that is to rest has its parameters, and does not act."""
+        """Report what a component has done by its answer.
+
+        One that is to rest has its parameters, and does not act. What one says that was given up meanwhile is over.
+        """
         detail = answer.detail or answer.verdict.value
         if answer.verdict is not Verdict.DONE:
             if call is Call.APPLY:
@@ -148,7 +151,7 @@ class Calling:
             if self.lives.has_obeyed(component, answer.life):  # else this task has only waited for it
                 goes_on_for = task_name(answer.task) if answer.active else ""
                 self._report(ComponentReleased(component, detail, goes_on_for))
-        elif isinstance(message, Apply):
+        elif isinstance(message, Apply) and component in self.state().held:
             if message.values:
                 self._report(ParametersSet(component, detail))
             if not message.rests:

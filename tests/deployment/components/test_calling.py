@@ -46,6 +46,16 @@ def test_a_component_that_refuses_to_start_is_replaced(lab: Lab) -> None:
     assert [str(cause) for cause in record.values(failure, SC.cause)] == ["refused"]
 
 
+def test_a_component_that_fails_while_it_starts_is_not_said_to_be_active_after_that(lab: Lab) -> None:
+    """It answers the call all the same, and that comes after its FAIL."""
+    tracker = lab.components["tracker"]
+    tracker.started = lambda: tracker.fail("it is dark")  # type: ignore[method-assign]  # its code fails at once
+    assert lab.running(lab.agent())
+    lab.let_pass(1.0)
+    said = [event.act for event in lab.events if getattr(event, "component", None) == iri("person-tracker")]
+    assert said == ["watching", "activating", "lost", "released"]
+
+
 def test_a_component_that_takes_long_to_start_is_waited_for_as_long_as_it_lives(lab: Lab) -> None:
     busy_in_started(lab, "tracker", STARTING - CALL)
     agent = lab.agent()
