@@ -25,7 +25,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import in_command, options_named, setting
 from selfconf.query.limits import ENGINE_DOWN, too_large, too_slow
 from selfconf.query.results import shown
-from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, only_reads, says
+from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, declared_prefixes, only_reads, says
 from selfconf.render import Names
 
 ANSWER_SECONDS = 60.0
@@ -95,7 +95,9 @@ def _answered(question: Question) -> int:
     with contextlib.suppress(ValueError, OSError):  # some systems have no such limit
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (question.memory, question.memory))
-    names = Names({**(question.prefixes or {}), **QUERY_PREFIXES})
+    own = declared_prefixes(question.text)
+    # A table shortens by the first prefix of a namespace: that of the query goes before the one that is lent for it.
+    names = Names({**own, **(question.prefixes or {}), **QUERY_PREFIXES, **own})
     try:
         with _answering(question) as found:
             text, cut = shown(found, question.form, names, question.rows)

@@ -12,6 +12,7 @@ from selfconf.model.term import IRI
 from selfconf.query import Question, answer
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.vocabulary import SC
 
 pytestmark = pytest.mark.process
 
@@ -28,6 +29,17 @@ def dataset() -> Dataset:
 
 def ask(dataset: Dataset, text: str, form: str = "table", rows: int = 100) -> str:
     return answer(dataset, Question(text, form, rows, seconds=30)).text
+
+
+def test_a_table_shortens_by_the_prefixes_of_its_query(dataset: Dataset) -> None:
+    text = "PREFIX u: <urn:> PREFIX : <urn:> SELECT ?s ?p WHERE { ?s ?p <urn:b> }"
+    assert ask(dataset, text).splitlines()[-1].split() == ["u:a", "u:p"]
+    assert ask(dataset, "SELECT ?s ?p WHERE { ?s ?p <urn:b> }").splitlines()[-1].split() == ["<urn:a>", "<urn:p>"]
+
+
+def test_a_prefix_of_a_query_goes_before_one_that_is_lent(dataset: Dataset) -> None:
+    text = f"PREFIX sc: <urn:> PREFIX s: <{SC.base}> SELECT ?s ?c WHERE {{ ?s ?p <urn:b> BIND (s:Role AS ?c) }}"
+    assert ask(dataset, text).splitlines()[-1].split() == ["sc:a", "s:Role"]
 
 
 JOIN = " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(30))

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Container
 
+from selfconf.rdf.sparql.prologue import PROLOGUE
 from selfconf.rdf.sparql.read_only import without
 
 BEGINNINGS = ("PREFIX", "BASE", "SELECT", "ASK", "CONSTRUCT", "DESCRIBE")
-_PROLOGUE = re.compile(r"\A(?:\s*(?:prefix\s+[^\s:]*\s*:|base)\s*<[^<>\s]*>)*\s*", re.IGNORECASE)
 _DECLARED = re.compile(r"\bprefix\s+([^\s:]*)\s*:", re.IGNORECASE)
 _PREFIX = re.compile(r"(?<![\w?$@:.-])((?:[^\W\d_][\w.-]*)?):(?!//)")
 _COMPLAINT = re.compile(r"error at (\d+):(\d+): expected (?:one of )?(.*)", re.DOTALL)
@@ -19,7 +19,7 @@ LONGEST_EXCERPT = 30
 
 def mistake(text: str, complaint: str, known: Container[str]) -> str:
     """What is wrong with a query that Oxigraph complains of; `known` are the prefixes it need not declare."""
-    code = _PROLOGUE.sub("", without(text, "#"), count=1)
+    code = PROLOGUE.sub("", without(text, "#"), count=1)
     if not code:
         return "it is empty"
     if re.split(r"[^\w:]", code, maxsplit=1)[0].upper() not in BEGINNINGS:
