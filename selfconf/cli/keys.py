@@ -25,9 +25,10 @@ LONGEST_DAYS = 3650.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    init = _action(actions, "init", "make an authority, in a folder of its own")
+    init = _action(actions, "init", "make an authority, in a folder of its own", "keys")
     init.add_argument("folder", metavar="DIR", type=Path, help="the folder to make")
-    issue = _action(actions, "issue", "issue a certificate, into a folder for its holder")
+    issued = "conf.alice --keys keys --out alice-keys"
+    issue = _action(actions, "issue", "issue a certificate, into a folder for its holder", issued)
     issue.add_argument(
         "holder", metavar="HOLDER", help="site.NAME, conf.NAME (runs tasks), read.NAME (looks on), or a component's IRI"
     )
@@ -43,21 +44,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     _add_days(issue)
     add_keys_argument(issue)
-    renew = _action(actions, "renew", "issue a holder's certificate anew, for the same key; programs go on meanwhile")
+    anew = "issue a holder's certificate anew, for the same key; programs go on meanwhile"
+    renew = _action(actions, "renew", anew, "alice-keys --keys keys")
     renew.add_argument("folder", metavar="DIR", type=Path, help="the folder of the holder")
     _add_days(renew)
     add_keys_argument(renew)
-    show = _action(actions, "show", "show the holder of a folder of keys, until when, and what is wrong with it")
+    shown = "show the holder of a folder of keys, until when, and what is wrong with it"
+    show = _action(actions, "show", shown, "alice-keys")
     show.add_argument("folder", metavar="DIR", type=Path, help="a folder of keys")
     show.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
-    revoke = _action(actions, "revoke", "let no program in any more under a name, until its certificates have expired")
+    revoked = "let no program in any more under a name, until its certificates have expired"
+    revoke = _action(actions, "revoke", revoked, "conf.alice --keys keys")
     revoke.add_argument("holder", metavar="HOLDER", help="as for `issue`")
     add_keys_argument(revoke)
 
 
-def _action(actions: Any, name: str, does: str) -> argparse.ArgumentParser:
+def _action(actions: Any, name: str, does: str, example: str) -> argparse.ArgumentParser:
     parser: argparse.ArgumentParser = actions.add_parser(
-        name, help=does, description=f"{does[0].upper()}{does[1:]}.", allow_abbrev=False
+        name,
+        help=does,
+        description=f"{does[0].upper()}{does[1:]}.",
+        epilog=f"example:\n  selfconf keys {name} {example}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
     )
     return parser
 

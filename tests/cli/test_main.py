@@ -12,6 +12,7 @@ from selfconf.cli.main import COMMANDS, command, main, parser
 from tests.cli.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
+ACTIONS = ("keys init", "keys issue", "keys renew", "keys show", "keys revoke", "bridge wot", "bridge ros2")
 LOADED = """
 import sys
 from selfconf.cli.main import main
@@ -38,10 +39,10 @@ def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f"\n    {name}" in said for name in COMMANDS)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", [*COMMANDS, *ACTIONS])
 def test_every_command_has_help_with_an_example(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
-        main([name, "--help"])
+        main([*name.split(), "--help"])
     assert ended.value.code == 0
     assert "example:\n" in capsys.readouterr().out
 
