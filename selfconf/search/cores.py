@@ -198,10 +198,11 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
     """Return a smallest set of constraints that cannot hold together, given an irreducible one, and whether it is one.
 
     Of a set of two neither is enough: every role has as many candidates as it asks for, and where none has to be played
-    nothing fails.
+    nothing fails. A set of three is one of the smallest if no two fail. Beyond, a solver is asked only where some
+    requirement of the set is not seen to be indispensable: to load it takes longer than all the rest.
     """
     given = oracle.given
-    if len(known) <= 2 or _each_indispensable(oracle, known):
+    if len(known) <= 2 or (len(known) == 3 and not _two_may_fail(given)) or _each_indispensable(oracle, known):
         return known, True
     if not solver_available() or sum(map(len, given.options)) > SMALLEST_OPTIONS:
         return known, False
@@ -236,11 +237,29 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
         return tuple(constraint_of[guard] for guard in found), proved
 
 
+def _two_may_fail(given: ReducedProblem) -> bool:
+    """Return False if any two constraints can hold together.
+
+    Two that cannot are a role that has to be played and a need that nothing supports, without which too few of its
+    options go; or such a role and a variable of which its options admit no value, or, where it has several slots, no
+    value in common, which is not looked at.
+    """
+    supported = {need for kind in given.kinds() for need in kind.supports}
+    for role, slots in Counter(given.slots).items():
+        kinds = [option.kind for option in given.options[role]]
+        unmet = Counter(need for kind in kinds for need in kind.needs if need not in supported)
+        if any(len(kinds) - having < slots for having in unmet.values()):
+            return True
+        for variable, common in enumerate(given.values):
+            if slots > 1 or not any(kind.admits[variable] & common for kind in kinds):
+                return True
+    return False
+
+
 def _each_indispensable(oracle: FeasibilityOracle, known: Collection[Constraint]) -> bool:
     """Return whether depth-first search soon finds that without any one of some constraints all others can hold.
 
-    Then no set that cannot hold together does without one of them. Mostly that is so, and to load a solver takes longer
-    than to find it out.
+    Then no set that cannot hold together does without one of them. Mostly that is so.
     """
     quick = FeasibilityOracle(oracle.given, oracle.budget.part(INDISPENSABLE_STEPS), oracle.readings)
     every = all_of(oracle.given)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import combinations, islice
+
 import pytest
+from hypothesis import given
 
 from benchmarks.search.families import distinct
 from selfconf.model.refusal import Refusal, Undecided
@@ -11,9 +14,10 @@ from selfconf.search import cores
 from selfconf.search.budget import Budget
 from selfconf.search.cores import FeasibilityOracle
 from selfconf.search.explain import refusal
+from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, all_of
 from selfconf.search.strategies import first
-from tests.search.worlds import component, problem
+from tests.search.worlds import agreement, component, problem, problems
 
 
 def test_of_needs_that_nothing_supports_the_fewest_are_named_that_keep_all_out() -> None:
@@ -70,19 +74,53 @@ def test_that_roles_outnumber_their_components_is_not_found_out_anew_to_prove_a_
     assert len(reason.roles) == 20
 
 
-def test_no_solver_is_loaded_where_each_requirement_of_a_reason_is_soon_seen_to_be_indispensable(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+@pytest.fixture
+def unloaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let no solver be loaded, which takes several times as long as a small refusal."""
+
     def loaded(*_: object, **__: object) -> None:
-        raise AssertionError("to load a solver takes several times as long as such a refusal")
+        raise AssertionError("a solver was asked")
 
     monkeypatch.setattr(cores, "ClauseSolver", loaded)
+
+
+@pytest.mark.usefixtures("unloaded")
+def test_no_solver_is_loaded_where_each_requirement_of_a_reason_is_soon_seen_to_be_indispensable() -> None:
     speakers = [component("left", "i:Sound"), component("right", "i:Sound")]
     roles = {"radio": [component("radio", outputs="o:Sound")], "r": speakers, "s": speakers, "t": speakers}
     found = refusal(LazyReduction(problem(roles, "radio>r radio>s radio>t")))
     (reason,) = found.reasons
     assert {role.short for role in reason.roles} == {"r", "s", "t"}
     assert found.smallest
+
+
+@pytest.mark.usefixtures("unloaded")
+def test_no_solver_is_loaded_for_one_of_several_reasons_of_three_requirements() -> None:
+    one, other = [component("a")], [component("b")]
+    found = refusal(LazyReduction(problem({"r": one, "s": one, "t": other, "u": other})))
+    assert found.smallest
+
+
+def test_a_reason_of_two_requirements_is_found_where_the_first_one_has_three() -> None:
+    eyes = [component("a", "i:Infrared"), component("b", "i:Radar")]
+    ears = [component("c", "i:Sound")]
+    roles = {"source": [component("x", outputs="o:Light")], "eye": eyes, "ear": ears}
+    found = refusal(LazyReduction(problem(roles, "source>eye source>ear")))
+    (reason,) = found.reasons
+    assert [one.wanted.signals[0].short for one in reason.requirements if isinstance(one, InputFed)] == ["Sound"]
+
+
+@agreement()
+@given(problems())
+def test_no_smaller_set_fails_than_a_reason_that_is_said_to_be_the_smallest(problem_: Problem) -> None:
+    given_ = LazyReduction(problem_).reduced
+    oracle, every = FeasibilityOracle(given_, Budget()), all_of(given_)
+    if oracle.feasible(every) or not all(oracle.feasible([one]) for one in every):
+        return
+    found, proved = cores.smallest_of(oracle, cores.core(oracle))
+    assert proved
+    # With more constraints no more holds, so that sets of one fewer are enough.
+    assert all(oracle.feasible(some) for some in islice(combinations(every, len(found) - 1), 400))
 
 
 def test_a_smaller_reason_is_found_where_the_first_one_is_dispensable() -> None:
