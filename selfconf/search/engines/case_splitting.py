@@ -9,7 +9,10 @@ see at once that it leaves too few.
 solution of all is the least among those of the cases.
 
 *When.* Where most combinations leave enough components, nothing is gained by looking at them one by one: there are no
-cases then, and clause learning gets the parameters as they are.
+cases then, and clause learning gets the parameters as they are. Nor are any looked at where each combination should
+leave each slot at least as many options as one component has roles, at most: then components are enough, by Hall's
+theorem, as some slots with d options each have as many components as they are, if each of these is an option of d of
+them at most. What arc consistency sees beside, clause learning sees as well.
 
 *Which.* Parameters on which all have to agree: of the roles that constrain one, most options do so. Where a few people
 of each role have hours for something, whatever hour is given leaves all the others.
@@ -20,8 +23,10 @@ few of these.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from functools import reduce
+from itertools import chain
 from operator import or_
 
 from selfconf.model.immutable import replace
@@ -51,7 +56,7 @@ def value_cases(given: ReducedProblem) -> list[ReducedProblem] | None:
     for count, variable in choices:
         if count > 1 and (most := most // count) > 0:
             chosen.append(variable)
-    if not chosen:
+    if not chosen or not _may_be_scarce(given, chosen):
         return None
     cases: list[ReducedProblem] = []
     refuted = 0
@@ -71,6 +76,22 @@ def _agreed_on(given: ReducedProblem) -> Iterator[int]:
         options = sum([len(given.options[role]) for role in {role for role, _, _ in constrained}])
         if SHARE_FREE * (options - len(constrained)) <= options:
             yield variable
+
+
+def _may_be_scarce(given: ReducedProblem, variables: list[int]) -> bool:
+    """Return whether some values of some variables are likely to leave slots too few components."""
+    most = max(Counter(chain.from_iterable(given.components())).values(), default=0)
+    values = [(variable, _values(given, variable)) for variable in variables]
+    for role, slots in Counter(given.slots).items():
+        admits = [option.kind.admits for option in given.options[role]]
+        left = float(len(admits))
+        for variable, each in values:
+            masks = [masks[variable] for masks in admits]
+            if masks.count(ANY_VALUE) < len(masks):
+                left *= min(sum([mask & value > 0 for mask in masks]) for value in each) / len(masks)
+        if left < slots * most:
+            return True
+    return False
 
 
 def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProblem | None]:

@@ -210,14 +210,27 @@ def test_a_parameter_that_few_constrain_has_no_cases() -> None:
     assert len(cases(8) or ()) == len(["nine", "ten", "any other hour"])
 
 
+def test_where_each_value_leaves_more_than_enough_components_there_are_no_cases() -> None:
+    variable = Variable(iri("site"), (iri("s"), iri("t")))
+
+    def cases(people: int) -> list[ReducedProblem] | None:
+        pool = [Candidate(profile(f"p{number}", (), [number]), (1 << number % 2,)) for number in range(people)]
+        sinks = [Candidate(profile(f"sink{number}", [number]), (ANY_VALUE,)) for number in range(people)]
+        return value_cases(pruned(reduced(counted([pool, pool, sinks], [1, 1, 1], [(0, 2)], (variable,)))))
+
+    # Each may play two roles, and those of one site are half of the pool.
+    assert len(cases(3) or ()) == len(["s"])
+    assert cases(6) is None
+
+
 def test_all_values_that_no_option_states_are_one_case(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(case_splitting, "SHARE_FREE", 1)
     variable = Variable(iri("site"), (iri("s"), iri("t")))
     pool = [Candidate(profile(f"p{number}"), (ANY_VALUE if number else ~1,)) for number in range(4)]
-    cases = value_cases(pruned(reduced(counted([pool, pool], [1, 1], [], (variable,)))))
+    cases = value_cases(pruned(reduced(counted([pool, pool], [2, 1], [], (variable,)))))
     assert cases
     assert [case.values for case in cases] == [(1,), (2,)]
-    assert [len(case.options[0]) for case in cases] == [2, 3]
+    assert [len(case.options[0]) for case in cases] == [3, 4]
 
 
 def test_a_parameter_of_which_no_option_states_a_value_has_no_cases() -> None:
