@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence, Set
+from fractions import Fraction
 from functools import reduce
 from heapq import heapify, heappop, heappush
 from itertools import chain
@@ -27,6 +28,8 @@ from selfconf.search.reduction import (
 )
 from selfconf.search.supply import Issuers
 
+Price = Callable[[int], tuple[Fraction, ...]]
+"""What a recruit costs, by its number, level by level."""
 UNSAID = Input("", ())
 """What a choice of suppliers is wanted for, where its number says all."""
 
@@ -72,9 +75,13 @@ class RecruitChoice:
         configuration: Configuration,
         running: Collection[IRI],
         among: Collection[int] | None = None,
+        price: Price | None = None,
     ) -> None:
-        """`among` are the only recruits that are looked at, where some were chosen by what else they are worth."""
-        self.problem, self.plain, self.running = problem, configuration, running
+        """`among` are the only recruits that are looked at, where some were chosen by what else they are worth.
+
+        By its `price`, if there is one, a recruit comes before others rather than because it runs or is preferred.
+        """
+        self.problem, self.plain, self.running, self._price = problem, configuration, running, price
         self.players = dict(players_of(problem, configuration))
         self.recruits: Sequence[Recruit] = problem.supply.recruits
         outputs = [output for _, profile in self.players.values() for output in profile.outputs]
@@ -181,10 +188,14 @@ class RecruitChoice:
         return self._from_players[wanted]
 
     def ordered(self, numbers: Iterable[int]) -> list[int]:
-        """Recruits in the order in which they are chosen: those that run, then by preference and IRI."""
-        if not self.running:
+        """Recruits in the order in which they are chosen: by price, then those that run, by preference and IRI."""
+        if self._price is None and not self.running:
             return sorted(numbers)
-        return sorted(numbers, key=lambda number: (self.recruits[number].component not in self.running, number))
+        return sorted(numbers, key=self._rank)
+
+    def _rank(self, number: int) -> tuple[tuple[Fraction, ...], bool, int]:
+        prices = () if self._price is None else self._price(number)
+        return prices, self.recruits[number].component not in self.running, number
 
     def placed(self, chosen: Collection[int]) -> list[int]:
         """The chosen recruits that are fed without a cycle among them, each after those that feed it."""

@@ -23,7 +23,7 @@ from selfconf.search.engines import CandidateSearch, FoundedSolver, least_of_cla
 from selfconf.search.extension import solved, with_further_players
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting.fewest_recruits import fewest
-from selfconf.search.recruiting.recruit_choice import RecruitChoice
+from selfconf.search.recruiting.recruit_choice import Price, RecruitChoice
 from selfconf.search.reduction import (
     ReducedProblem,
     assigned,
@@ -40,16 +40,20 @@ REPAIR_STEPS = 5_000
 
 
 def recruited(
-    problem: Problem, configuration: Configuration, running: Configuration | None = None, steps: int = RECRUIT_STEPS
+    problem: Problem,
+    configuration: Configuration,
+    running: Configuration | None = None,
+    steps: int = RECRUIT_STEPS,
+    price: Price | None = None,
 ) -> tuple[Configuration, bool] | None:
     """Return a configuration with the recruits that it needs, and whether they are proved to be the fewest.
 
-    None where its players have inputs that no recruits can feed. Of equally few recruits those of the `running`
-    configuration come before all others; so do its players, of the further ones.
+    None where its players have inputs that no recruits can feed. Of equally few recruits those of a lower `price` come
+    before others, then those of the `running` configuration; so do its players, of the further ones.
     """
     if not any(role.recruits for role in problem.roles):
         return configuration, True
-    choice = RecruitChoice(problem, configuration, () if running is None else running.recruits)
+    choice = RecruitChoice(problem, configuration, () if running is None else running.recruits, price=price)
     if not choice.possible:
         return None
     chosen, proved = fewest(choice, Budget(steps))
@@ -57,7 +61,10 @@ def recruited(
 
 
 def first_recruited(
-    problem: Problem, steps: int = RECRUIT_STEPS, running: Configuration | None = None
+    problem: Problem,
+    steps: int = RECRUIT_STEPS,
+    running: Configuration | None = None,
+    price: Price | None = None,
 ) -> Configuration | Undecided | None:
     """Return the configuration of the first players that recruits can feed, or None.
 
@@ -70,7 +77,7 @@ def first_recruited(
         return Undecided(steps)
     if playing is None:
         return None
-    found = recruited(problem, solved(problem, playing), running, steps)
+    found = recruited(problem, solved(problem, playing), running, steps, price)
     assert found is not None
     return found[0]
 

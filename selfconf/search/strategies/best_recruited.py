@@ -10,14 +10,15 @@ that excludes recruits which only feed each other (`FoundedSolver`). Weighted op
 least cost, and a bound at any time; then the players are minimised, and with these the number of recruits. A weight
 below zero is the weight of doing without.
 
-Without a solver library, players and recruits are chosen one after the other, and nothing is proved.
+Without a solver library, players and recruits are chosen one after the other, of as few recruits the cheaper ones, and
+nothing is proved.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.cost import cost, unknown
@@ -180,15 +181,16 @@ class _CheapestSearch:
 def with_priced_recruits(
     problem: Problem, optimum: Optimum, steps: int, running: Configuration | None
 ) -> Optimum | Undecided | None:
-    """Return the best players with the fewest recruits for them, or the first that have some; None if none have.
+    """Return the best players with few recruits for them, cheap ones first, or the first that have some; None if none.
 
     For when there is no solver library: then nothing is proved that recruits could make cheaper.
     """
     steps = min(steps, RECRUIT_STEPS)
-    whole = recruited(problem, optimum.configuration, running, steps)
+    price = cache(partial(recruit_cost, problem, running=running))
+    whole = recruited(problem, optimum.configuration, running, steps, price)
     if whole is not None:
         return priced(problem, optimum, whole[0])
-    other = first_recruited(problem, steps, running)
+    other = first_recruited(problem, steps, running, price)
     # Of these players nothing is known but that they come first.
     return priced(problem, replace(optimum, proved=False), other) if isinstance(other, Configuration) else other
 

@@ -160,15 +160,28 @@ def test_the_cheapest_recruits_may_be_more_than_the_fewest() -> None:
     assert answer.configuration.recruits == (iri("x"), iri("y"))
 
 
+def dear_before_cheap() -> Problem:
+    """A player whose need either of two recruits feeds, of which the dear one comes first by IRI."""
+    user = stated(component("user", "s:S"), latency=0)
+    some = (stated(component(name, "", "s:S"), latency=cost) for name, cost in (("a-dear", 5), ("cheap", 1)))
+    helped = with_recruits(problem({"user": [user]}), *some)
+    template = replace(helped.task.template, cost=((CostTerm(LATENCY),),))
+    return Problem(replace(helped.task, template=template), helped.partition)
+
+
 def test_of_recruits_that_issue_the_same_the_cheapest_is_taken() -> None:
     pytest.importorskip("pysat")
-    user = stated(component("user", "s:S"), latency=0)
-    dear, cheap = (stated(component(name, "", "s:S"), latency=cost) for name, cost in (("dear", 5), ("cheap", 1)))
-    helped = with_recruits(problem({"user": [user]}), dear, cheap)
-    template = replace(helped.task.template, cost=((CostTerm(LATENCY),),))
-    answer = best.best_configuration(Problem(replace(helped.task, template=template), helped.partition))
+    answer = best.best_configuration(dear_before_cheap())
     assert isinstance(answer, Optimum)
     assert (answer.cost, answer.proved) == ((Fraction(1),), True)
+    assert answer.configuration.recruits == (iri("cheap"),)
+
+
+@pytest.mark.usefixtures("no_solvers")
+def test_without_a_solver_the_cheapest_of_equally_few_recruits_is_taken() -> None:
+    answer = best.best_configuration(dear_before_cheap())
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.proved) == ((Fraction(1),), False)
     assert answer.configuration.recruits == (iri("cheap"),)
 
 
