@@ -103,12 +103,13 @@ class Acceptance:
             slow: dict[Port, NotJudged] = {}
             try:
                 conforming = shape.conforming(outputs, seen, slow)
-                for (component, name), why in slow.items():
-                    said = f"its output {name!r} feeds no input that accepts some outputs only: {why.reason}"
-                    self.not_judged.setdefault(component, NotJudged(said))
-                return conforming
             except AuthorError as error:
                 self._shapes[text] = _cannot_be_judged(error)
+                return set()
+            for (component, name), why in slow.items():
+                said = f"its output {name!r} feeds no input whose sc:accepts cannot be judged of it: {why.reason}"
+                self.not_judged.setdefault(component, NotJudged(said))
+            return conforming
         return set()
 
     def _shape(self, text: str) -> OutputShape | NotJudged:

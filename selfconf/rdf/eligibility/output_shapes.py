@@ -113,12 +113,15 @@ class OutputShape:
         Raises TemplateError where none can be judged, as then it is the shape that is at fault.
         """
         passed: list[Port] = []
+        obstacles: list[Obstacle | None] = []
         for looks, some in seen.alike(self._paths, outputs).items():
             obstacle = self._obstacle(looks)
+            obstacles.append(obstacle)
             if obstacle is None:
                 passed += some
             elif isinstance(obstacle, NotJudged) and not_judged is not None:
                 not_judged.update(dict.fromkeys(some, obstacle))
+        _raise_where_none_is_judged(obstacles)
         return {*passed} if self._tests.complete or not passed else self._by_pyshacl(passed, seen, not_judged)
 
     def possible_for(self, output: Output, named: bool) -> bool:
@@ -174,9 +177,16 @@ class OutputShape:
                 for one in wrong.get(node, ()):
                     if not_judged is not None and isinstance(one, NotJudged):
                         not_judged[port] = one
-        if not found and all(isinstance(one, NotJudged) for one in reasons):
-            raise TemplateError(str(reasons[0]), file="sc:accepts")  # no output is to blame
+        if not found:
+            _raise_where_none_is_judged(reasons)
         return found
+
+
+def _raise_where_none_is_judged(found: Sequence[object]) -> None:
+    """Raises TemplateError where no output can be judged by a shape: then no output is to blame, but the shape."""
+    reasons = [one.reason for one in found if isinstance(one, NotJudged)]
+    if found and len(reasons) == len(found):
+        raise TemplateError(reasons[0], file="sc:accepts")
 
 
 def _steps(document: Document, path: Term) -> Iterator[IRI]:

@@ -108,8 +108,27 @@ def test_an_output_that_takes_too_long_to_judge_feeds_nothing_and_is_named() -> 
     ((component, why),) = partitioner.not_judged.items()
     assert component == home("slow")
     assert why.reason.startswith(
-        "its output 'o' feeds no input that accepts some outputs only: matching the sh:pattern"
+        "its output 'o' feeds no input whose sc:accepts cannot be judged of it: matching the sh:pattern"
     )
+
+
+def test_a_pattern_that_takes_too_long_for_every_output_keeps_its_own_component_out() -> None:
+    port = 'sc:hasOutput [ sc:name "o" ; sc:signalType :Pose ]'
+    model = "sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :model ) ; sh:pattern"
+    slow, quick = (
+        f'sc:hasInput [ sc:name "i" ; sc:signalType :Pose ; sc:accepts [ {model} "{like}" ] ] ]'
+        for like in ("^(?:(a|b|ab)+)\\\\1?$", "^a")
+    )
+    ads = f""":one a sc:Component, :Sensor ; :model "{"ab" * 40}!" ; {port} .
+        :a a sc:Component, :Display ; {slow} . :b a sc:Component, :Display ; {quick} ."""
+    ecology = AdvertisementIndex.of(read_advertisements((PREFIXES + ads).encode(), "ads")[0])
+    partitioner = Partitioner(template(TASK).document, NOTHING_ABOVE)
+    sensors, displays = partitioner.partition(ecology).candidates
+    assert [one.profile.component for one in displays] == [home("b")]
+    assert [bool(one.profile.outputs[0].conforms) for one in sensors] == [True]
+    ((component, why),) = partitioner.not_judged.items()
+    assert component == home("a")
+    assert why.reason.startswith("what its input accepts cannot be judged: matching the sh:pattern")
 
 
 ON = "sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :on ) ; sh:in ( :Astrid ) ]"
