@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined, seconds_option
 from selfconf.cli.terminal import Terminal, complain, display, styled_state
+from selfconf.errors import NetworkError
 
 if TYPE_CHECKING:
     from selfconf.api.living.component_states import ComponentState
@@ -43,7 +44,13 @@ def run(given: argparse.Namespace) -> int:
             before, looked = ecology.component_states(), time.monotonic()
             while True:
                 time.sleep(given.every)  # the time over which signals are counted
-                now, moment = ecology.component_states(), time.monotonic()
+                try:
+                    now, moment = ecology.component_states(), time.monotonic()
+                except NetworkError as error:
+                    if screen is None:
+                        raise
+                    screen.renew(f"{error}\n")  # until it is back
+                    continue
                 rates = _rates(before, now, moment - looked)
                 if given.format == "json":
                     body = [{**one.body(), "rates": rates[one.component]} for one in now]

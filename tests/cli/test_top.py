@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -58,6 +59,29 @@ def test_on_a_terminal_the_table_is_renewed_until_ctrl_c(inhabited: Home) -> Non
     assert program.returncode == 0, said
     assert b"Traceback" not in said
     assert b"\x1b[32malive" in shown
+
+
+def test_on_a_terminal_it_goes_on_once_the_site_is_back(home: Home) -> None:
+    site = home.site("peis-home", "ads")
+    ours, theirs = os.openpty()
+    command = [sys.executable, "-m", "selfconf", "top", "--every", "0.2", *home.arguments()]
+    program = subprocess.Popen(command, stdout=theirs, env={**home.environment, "TERM": "xterm"})
+    os.close(theirs)
+
+    def shown(words: bytes) -> None:
+        so_far, deadline = b"", time.monotonic() + 60.0
+        while words not in so_far:
+            assert time.monotonic() < deadline, so_far[-500:]
+            so_far += os.read(ours, 1 << 16)
+
+    shown(b"of 7 components")
+    site.end(signal.SIGKILL)
+    shown(b"cut off from the ecology")
+    home.site("peis-home", "ads")
+    shown(b"of 7 components")
+    program.send_signal(signal.SIGINT)
+    assert program.wait(60) == 0
+    os.close(ours)
 
 
 def test_a_time_that_is_none_is_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:

@@ -103,8 +103,13 @@ class LivingEcology(Ecology):
         self._bus.close()
 
     def discover(self) -> Discovery:
-        """Acts 1 and 2 of the paper: ask everything that is alive what it advertises. Raises NetworkError."""
+        """Acts 1 and 2 of the paper: ask everything that is alive what it advertises.
+
+        Raises NetworkError, also where the site is gone by which this program reaches the ecology: to be cut off looks
+        like an ecology in which nothing lives.
+        """
         found = self._synchronous.wait(self._view.discover)
+        self._check_link()
         self.discovery = replace(found, missing=self._view.silent_sites(found))
         suspended = {*self.discovery.missing} - {*found.missing}
         missing = (
@@ -120,8 +125,12 @@ class LivingEcology(Ecology):
         return {component: found.advertisement for component, found in self.discover().found.items()}
 
     def holders(self) -> Mapping[IRI, Holder]:
-        """The tasks that hold components, by component: of several that share one, the first in rank."""
+        """The tasks that hold components, by component: of several that share one, the first in rank.
+
+        Raises NetworkError, as `discover` does.
+        """
         replies = self._synchronous.ask(self._view.keys.configurator_call("*", "status"))
+        self._check_link()
         return holders_in(replies, self._view.keys)
 
     def state(self, component: str) -> str:
@@ -391,6 +400,11 @@ class LivingEcology(Ecology):
         if name is not None:
             checked_text(name, "the name of a task")
         return self._complaining(self._tasks, self._tasks.stop(name))
+
+    def _check_link(self) -> None:
+        """Raise NetworkError where what has been asked may have had no answers for want of a link."""
+        if not self._bus.link:
+            raise NetworkError(f"cut off from the ecology {self.name!r} while it was asked; try again")
 
     def _sites_answer(self, pause: float) -> bool:
         """Whether any site of the ecology lives, as it is found after a pause in seconds."""

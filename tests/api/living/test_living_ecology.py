@@ -13,6 +13,7 @@ from selfconf import LivingEcology, Refusal, join, template, this_machine
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
 from selfconf.bus.port import Request
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.discovery import ecology_view
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.this_machine import LocalSite
@@ -163,6 +164,17 @@ def living(house: Home) -> Iterator[LivingEcology]:
     """The ecology, joined."""
     with join(house.ecology, connect=[house.endpoint()]) as living:
         yield living
+
+
+def test_an_ecology_that_cannot_be_reached_any_more_is_not_taken_for_an_empty_one(
+    living: LivingEcology, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as cut_off:
+        cut_off.setattr(ZenohBus, "link", "")
+        for asked in (living.discover, living.component_states, living.holders):
+            with pytest.raises(NetworkError, match="cut off from the ecology"):
+                asked()
+    assert living.discover().found
 
 
 @pytest.mark.parametrize("many", [0, ecology_view.MANY_LIVES], ids=["large", "small"])
