@@ -56,6 +56,8 @@ class Discovered:
     holders: Mapping[IRI, Holder] = field(default_factory=dict)
     sharers: Mapping[IRI, Holder] = field(default_factory=dict)
     """Those that hold components which can be shared."""
+    unseen: bool = False
+    """Whether something that is held for the task was not advertised: its site may be out of sight for a moment."""
 
 
 @immutable

@@ -157,6 +157,8 @@ class State:
     """The components whose outputs are issued by others than before, since the deployment that goes on began."""
     rests: bool = False
     """Whether the actuators inside of a composite are to rest, as what the composite is part of is incomplete."""
+    unseen: bool = False
+    """Whether something that was held was not advertised when the ecology was last asked."""
     news: bool = False
     """Whether something has appeared since the ecology was last asked."""
     improving: bool = False
@@ -193,7 +195,7 @@ class State:
     @property
     def may_await_return(self) -> bool:
         """Whether the end of the task waits for what has gone without a word: it may have been cut off for a moment."""
-        gone = any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
+        gone = self.unseen or any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
         return gone and not (self.patient or self.inside) and self.put_off < MOST_PUT_OFF
 
     @property

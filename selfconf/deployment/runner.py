@@ -389,7 +389,7 @@ class TaskRunner:
             case AwaitRelease():
                 self._calls.await_release(effect)
             case AwaitReturn():
-                self.bus.later(RETURN, lambda: self._step(StayedAway(effect.attempt)))
+                self.bus.later(RETURN, partial(self._stayed_away, effect.attempt))
             case ApplyTo():
                 self._apply(effect)
             case ReleaseFrom():
@@ -408,6 +408,11 @@ class TaskRunner:
         """Apply to a component, unless what feeds it may act no more since a pause: all is applied to anew soon."""
         if effect.rests or not self._liveness.unsure:
             self._calls.apply(effect)
+
+    def _stayed_away(self, attempt: int) -> None:
+        """End the wait of a search that has found nothing; if this node is cut off, it will be made anew."""
+        if not self._liveness.cut_off:
+            self._step(StayedAway(attempt))
 
     def _finish(self, effect: Finish) -> None:
         refusal, lost, owed = effect.refusal, self.losses, self._out_of_control

@@ -86,7 +86,8 @@ class TaskDiscovery:
         self._tell(discovery)
         number = self._asked
         shared = {component: holder for component, holder in holders.items() if self.shareable(component)}
-        held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared)
+        unseen = any(component not in discovery.found for component in self._state().held)
+        held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared, unseen)
 
         def known() -> None:
             self._heed_ended_lives()

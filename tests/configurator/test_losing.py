@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from selfconf.configurator.effects import AwaitReturn, Compose, Discover, Finish, ReleaseFrom, WakeUp
-from selfconf.configurator.events import Answered, Appeared, Call, Discovered, Failed, StayedAway
+from selfconf.configurator.events import Answered, Appeared, Call, Discovered, Failed, Reconnected, StayedAway
 from selfconf.configurator.state import MOST_PUT_OFF, Phase, State
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import CONTROL, DRIVE, ODOMETRY, REFUSAL, TRACKER, History, navigation, released
@@ -105,6 +105,17 @@ def test_what_has_not_come_back_in_time_is_a_reason_to_refuse() -> None:
     history.all_answer()
     assert history.state.phase is Phase.REFUSED
     assert history.effects[-1] == Finish(REFUSAL)
+
+
+def test_what_is_held_and_not_advertised_any_more_may_be_out_of_sight_for_a_moment() -> None:
+    history = History(State()).running()
+    history.hear(Reconnected(), Discovered(unseen=True))
+    assert history.composed(REFUSAL) == [AwaitReturn(history.state.attempt)]
+    assert history.hear(Appeared({}))[-1] == Discover()
+    history.hear(Discovered())
+    history.composed(navigation())
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
 
 
 def test_what_comes_and_goes_is_not_waited_for_for_ever() -> None:

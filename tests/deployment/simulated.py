@@ -16,10 +16,19 @@ from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
 
 
 def living_room(
-    lab: Lab, life: str, wake: Callable[[MemoryBus], object], name: str = "living-room", refusal: str = ""
+    lab: Lab,
+    life: str,
+    wake: Callable[[MemoryBus], object],
+    name: str = "living-room",
+    refusal: str = "",
+    unheard: int = 0,
 ) -> MemoryBus:
-    """A site that can start the tracker, as `wake` does, unless it refuses to for a reason; its node."""
+    """A site that can start the tracker, as `wake` does, unless it refuses to for a reason; its node.
+
+    So many calls to start it are `unheard`.
+    """
     tracker, node = iri("person-tracker"), lab.network.node()
+    calls = iter(range(1, 100))
     page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
 
     def advertise(request: Request) -> None:
@@ -28,6 +37,8 @@ def living_room(
         request.finish()
 
     def asked(request: Request) -> None:
+        if next(calls) <= unheard:
+            return
         if refusal:
             request.refuse(refusal)
         else:

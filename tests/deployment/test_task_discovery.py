@@ -6,9 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.configurator.state import Phase
 from selfconf.deployment.retries import LET_GO_OF
+from selfconf.deployment.runner import RETURN
 from selfconf.render.run_events import event_body
-from tests.deployment.tasks import DRIVEN, SPARE, contended
+from tests.deployment.tasks import DRIVEN, SPARE, TASK, contended
 from tests.lab import Lab, iri
 
 
@@ -45,3 +47,27 @@ def test_a_task_that_looks_again_and_again_for_something_better_tells_once_what_
     lab.let_pass(10 * LET_GO_OF)
     assert [event.act for event in lab.events[before:]] == ["query", "discovered"]
     assert lab.events[-1].sites == ("another", "shared")  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("away", [2.5, 9.0])
+def test_a_task_is_refused_only_after_a_while_where_nobody_advertises_what_it_holds(
+    tmp_path: Path, away: float
+) -> None:
+    """A hub that was opened anew may let nothing through for a moment."""
+    lab = Lab(tmp_path)
+    site = lab.site("astrid", *TASK, "tracker")
+    for name in TASK | {"tracker"}:
+        lab.component(name)
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.isolate(agent)
+    lab.let_pass(0.5)
+    lab.rejoin(agent)
+    lab.isolate(site)
+    lab.let_pass(away)
+    assert agent.state.ended is (away > RETURN)
+    lab.rejoin(site)
+    lab.let_pass(3.0)
+    assert (agent.state.phase is Phase.RUNNING) is (away < RETURN)
+    assert lab.active() == (TASK | {"tracker"} if away < RETURN else set())
+    assert lab.acts("lost") == []

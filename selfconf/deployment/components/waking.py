@@ -17,6 +17,8 @@ from selfconf.protocol.messages import Verdict, Wake
 
 WAKE_CALL = 2.0
 """Seconds that a site may take to answer."""
+WAKE_ATTEMPTS = 3
+"""How often a site is asked that does not answer: a question is lost that meets a hub which is opened anew."""
 WAKING = 15.0
 """Seconds that a component that a site starts may take to live."""
 SITE_BACK = 3.0
@@ -105,15 +107,24 @@ class Waking:
         too_late = f"it was started, but does not live after {WAKING:.0f} s"
         waiting = self._waiting[effect.component] = _Start(effect, found.site)
         waiting.end = self._bus.later(WAKING, lambda: self._give_up(waiting, too_late))
+        self._ask_site(waiting, WAKE_ATTEMPTS)
+
+    def _ask_site(self, waiting: _Start, attempts: int) -> None:
+        """Ask a site to start a component, so many times until it answers; one that has started it does nothing."""
+        component = waiting.effect.component
 
         def answered(replies: Replies) -> None:
             if replies.errors:
-                self._lives.gone(effect.component)  # its site can tell that no process of it runs
-            if not replies.samples:
+                self._lives.gone(component)  # its site can tell that no process of it runs
+            if replies.samples or self._waiting.get(component) is not waiting:
+                return
+            if attempts > 1 and not (replies.errors or replies.complete):
+                self._ask_site(waiting, attempts - 1)
+            else:
                 self._give_up(waiting, replies.errors[0] if replies.errors else "its site does not answer")
 
-        wake = Wake(effect.component, self._lives.lost_life(effect.component))
-        self._bus.ask(self._ecology.keys.wake(found.site), encode(wake), WAKE_CALL, answered)
+        wake = Wake(component, self._lives.lost_life(component))
+        self._bus.ask(self._ecology.keys.wake(waiting.site), encode(wake), WAKE_CALL, answered)
 
     def _give_up(self, waiting: _Start, detail: str) -> None:
         """Do without a component that was to be started, unless it lives by now or is being started anew."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.state import Phase
-from selfconf.deployment.components.waking import SITE_BACK, WAKING
+from selfconf.deployment.components.waking import SITE_BACK, WAKE_ATTEMPTS, WAKING
 from selfconf.deployment.runner import TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
@@ -68,6 +70,16 @@ def test_a_site_is_asked_once_for_what_it_starts_however_often_the_deployment_be
     assert lab.running(agent)
     assert len(asked) == len(lab.acts("waking")) == 1
     assert lab.active() == TASK | {"tracker"}
+
+
+@pytest.mark.parametrize("unheard", range(WAKE_ATTEMPTS + 1))
+def test_a_site_is_asked_again_where_it_has_not_answered(tmp_path: Path, unheard: int) -> None:
+    lab = home(tmp_path, "odometry")
+    living_room(lab, "1", lambda _: lab.component("tracker"), unheard=unheard)
+    assert lab.running(lab.agent())
+    given_up = unheard == WAKE_ATTEMPTS
+    assert lab.active() == TASK | {"odometry" if given_up else "tracker"}
+    assert [event.detail for event in lab.acts("unreachable")] == ["its site does not answer"] * given_up
 
 
 def test_a_site_hears_which_life_a_task_has_lost_when_it_is_asked_to_start_the_component_again(tmp_path: Path) -> None:
