@@ -18,6 +18,7 @@ from typing import Any
 import pytest
 
 from selfconf.access import Authority, PrincipalKind, introduce
+from selfconf.access.certificate_files import HOST_AUTHORITY
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh import ZenohBus, client
@@ -93,10 +94,12 @@ class Program:
     """A process whose lines on stdout can be waited for."""
 
     def __init__(self, command: list[str], environment: dict[str, str], folder: Path) -> None:
+        self._command = command
         self._read_end, write_end = os.pipe()
         self._process = _begun(command, environment, folder, write_end)
         os.close(write_end)
         self._unread, self._joined = b"", False
+        self._said: list[str] = []
         self._complaints: list[str] = []
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
@@ -114,6 +117,7 @@ class Program:
                 return None
             self._unread += more
         line, _, self._unread = self._unread.partition(b"\n")
+        self._said.append(line.decode(errors="replace"))
         return line
 
     @property
@@ -125,6 +129,16 @@ class Program:
     def complaints(self) -> str:
         """What it has said on stderr."""
         return "".join(self._complaints)
+
+    def read_what_is_there(self) -> None:
+        """Take the lines on stdout that wait to be read."""
+        while self._read_end >= 0 and self._line(0.0) is not None:
+            pass
+
+    @property
+    def account(self) -> str:
+        """Its command, how the lines on stdout that were read begin, and what it has said on stderr."""
+        return "\n".join((" ".join(self._command), *(f"  {line[:200]}" for line in self._said), self.complaints))
 
     def act(self, act: str) -> dict[str, Any]:
         """The next account of an act on stdout; those before it are passed over."""
@@ -298,6 +312,10 @@ class Home:
 
     # Observing.
 
+    def left_behind(self) -> list[str]:
+        """What is in the runtime folder, but for the key with which sites issue to components, which stays."""
+        return sorted(path.name for path in self.runtime.iterdir() if not path.name.startswith(HOST_AUTHORITY))
+
     def ask(self, key: str, payload: bytes = b"", seconds: float = 10.0) -> Replies:
         """Ask the ecology something."""
         if self._bus is None or not self._bus.link:
@@ -341,11 +359,15 @@ class Home:
         return True
 
     def close(self) -> None:
-        """End everything that was started."""
+        """End everything that was started; what it has said is shown with a test that has failed."""
         if self._bus is not None:
             self._bus.close()
+        for program in self._programs:
+            program.read_what_is_there()
         for program in reversed(self._programs):
             program.end(signal.SIGKILL)
+        for program in self._programs:
+            print(program.account)
 
 
 def component_of(name: str) -> IRI:

@@ -82,7 +82,7 @@ def test_a_domain_without_a_router_is_one_sentence(capsys: pytest.CaptureFixture
     site, trouble = bridge.complaints.splitlines()
     assert f"ecology {home.ecology} serves" in site
     assert "127.0.0.1:1" in trouble
-    assert list(home.runtime.iterdir()) == []
+    assert home.left_behind() == []
 
 
 @ros2

@@ -33,7 +33,7 @@ def test_it_says_what_it_serves_and_where_and_leaves_nothing_behind(home: Home) 
     assert site.end(signal.SIGINT) == 0
     where = f"ecology {home.ecology} serves {len(ADVERTISEMENTS)} advertisements on {meeting['endpoint']}"
     assert site.complaints == f"site peis-home of {where}\n"
-    assert list(home.runtime.iterdir()) == []
+    assert home.left_behind() == []
 
 
 def test_sites_of_one_ecology_on_one_machine_find_each_other(home: Home, capsys: pytest.CaptureFixture[str]) -> None:

@@ -189,8 +189,13 @@ class _Telling:
         self.warnings: list[dict[str, Any]] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Note how a phase went; that one before or after a test went well is news where its duration is asked for."""
-        if self._all or report.when == "call" or not report.passed:
+        """Note how a phase went.
+
+        That one before or after a test went well is news where its duration is asked for, and that after a failure has
+        what was printed then.
+        """
+        failed = any(data["outcome"] == "failed" for data in self.reports)
+        if self._all or report.when == "call" or not report.passed or failed:
             data = self._config.hook.pytest_report_to_serializable(config=self._config, report=report)
             self.reports.append(data)
 
