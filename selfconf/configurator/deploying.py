@@ -121,10 +121,12 @@ def proceed(state: State) -> Reaction:
 def take_offered(state: State, component: IRI) -> Reaction:
     """Reserve a component while others are woken, out of turn, if it is kept for this task: not for as long as that.
 
-    No circle comes of it, as a task does not wait for a component that comes before one that it holds.
+    No circle comes of it, as a task does not wait for a component that comes before one that it holds. One that is held
+    from before and not wanted any more is left to its release.
     """
     calls = {(component, Call.WAKE), (component, Call.RESERVE)}
-    known = component in state.offered and component in state.held and not state.held[component].reserved
+    wanted = state.plan is not None and component in state.plan.inputs and not state.held[component].reserved
+    known = wanted and component in state.offered
     wakes = any(call is Call.WAKE for _, call in state.pending)
     if not (wakes and known and calls.isdisjoint(state.pending)):
         return state, ()

@@ -194,3 +194,14 @@ def test_a_search_that_ends_while_everything_runs_changes_nothing_if_it_finds_no
         history.hear(Improvable(), Discovered())
         assert history.hear(Composed(history.state.attempt, outcome)) == []
         assert history.state.phase is Phase.RUNNING
+
+
+def test_what_is_free_and_held_from_before_but_not_wanted_any_more_is_left_to_its_release() -> None:
+    history = History().accepted()
+    history.composed(navigation())
+    assert any(call is Call.WAKE for _, call in history.state.pending)
+    history.state = replace(history.state, held={**history.state.held, ODOMETRY: Held({}, asked=True)})
+    assert history.hear(Freed(ODOMETRY)) == []
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert ODOMETRY not in history.state.held
