@@ -85,7 +85,15 @@ class Hub:
         return [self.endpoint] if self.security is None else [self.endpoint, self.from_here]
 
     def _open(self) -> Any:
-        return open_session("router", listen=self._listens_at, shared_memory=True, security=self.security)
+        """Open the session, and end the connections that were made meanwhile: they are made anew at once.
+
+        What connects while a router of Zenoh 1.10 still begins, as clients do that have lost the hub before, may stay
+        connected and hear nothing of it, for good.
+        """
+        session = open_session("router", listen=self._listens_at, shared_memory=True, security=self.security)
+        for endpoint in self._listens_at:
+            cut_connections(endpoint, listens_on=True)
+        return session
 
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate: Zenoh reads them only as a session is opened, so it is opened anew.
@@ -246,15 +254,17 @@ class _Uplink:
             _close(session)
 
 
-def cut_connections(endpoint: str, *, from_here: bool = False) -> None:
+def cut_connections(endpoint: str, *, from_here: bool = False, listens_on: bool = False) -> None:
     """End what is left of the connections that others have made to an endpoint of this process.
 
-    `from_here`: those that this process has made to an endpoint of another one. Nothing is done where it has no port.
+    `from_here`: those that this process has made to an endpoint of another one; `listens_on`: it can be connected to
+    as before. Nothing is done where it has no port.
     """
     port = endpoint_port(endpoint)
     for connection in () if port is None else sockets_at(port, from_here=from_here):
         with suppress(OSError):  # it is not connected any more
-            connection.shutdown(socket.SHUT_RDWR)
+            if not (listens_on and connection.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN)):
+                connection.shutdown(socket.SHUT_RDWR)
 
 
 def _close(session: Any) -> None:

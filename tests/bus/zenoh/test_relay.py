@@ -16,8 +16,10 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, client, with_port
 from selfconf.bus.zenoh import relay as relaying
+from selfconf.bus.zenoh.descriptors import sockets_at
 from selfconf.bus.zenoh.door import MOST_AT_DOOR
 from selfconf.bus.zenoh.relay import Hub, Relay
+from selfconf.bus.zenoh.session import HANDSHAKE_MS, open_session
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import endpoint_port
 from tests.bus.zenoh.test_bus import until
@@ -83,6 +85,33 @@ def test_nobody_stays_connected_to_a_hub_that_has_broken_inside_and_was_closed(m
         assert until(lambda: not connected.link, connected)
     finally:
         connected.close()
+        hub.close()
+
+
+def test_what_has_connected_while_a_hub_was_opened_is_to_connect_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A client that connects while a router begins may hear nothing of it."""
+    early: list[socket.socket] = []
+
+    def opened(*arguments: Any, listen: list[str], **options: Any) -> Any:
+        session = open_session(*arguments, listen=listen, **options)
+        port = endpoint_port(listen[0])
+        assert port is not None
+        early.append(socket.create_connection(("127.0.0.1", port)))
+        deadline = time.monotonic() + 10.0
+        while len(list(sockets_at(port))) < 2 and time.monotonic() < deadline:
+            time.sleep(0.005)  # nothing tells when Zenoh has accepted a connection
+        return session
+
+    monkeypatch.setattr(relaying, "open_session", opened)
+    hub = Hub(ANYWHERE_ON_LOOPBACK)
+    try:
+        early[0].settimeout(10.0)
+        began = time.monotonic()
+        assert early[0].recv(1) == b""
+        assert time.monotonic() - began < HANDSHAKE_MS / 2000, "it was ended, and not only given up"
+        client([hub.endpoint]).close()
+    finally:
+        early[0].close()
         hub.close()
 
 
