@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,10 @@ import selfconf as sc
 from selfconf import LivingEcology, Refusal, join, template, this_machine
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
+from selfconf.api.living import living_ecology
 from selfconf.bus.port import Request
 from selfconf.bus.zenoh import ZenohBus
-from selfconf.discovery import ecology_view
+from selfconf.discovery import Discovery, ecology_view
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.this_machine import LocalSite
 from tests.cli.processes import Home
@@ -170,11 +171,27 @@ def test_an_ecology_that_cannot_be_reached_any_more_is_not_taken_for_an_empty_on
     living: LivingEcology, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as cut_off:
+        cut_off.setattr(living_ecology, "LINK_BACK", 0.2)
         cut_off.setattr(ZenohBus, "link", "")
         for asked in (living.discover, living.component_states, living.holders):
             with pytest.raises(NetworkError, match="cut off from the ecology"):
                 asked()
     assert living.discover().found
+
+
+def test_an_ecology_is_asked_again_where_its_hub_was_opened_anew_meanwhile(
+    living: LivingEcology, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked, discover = list[str](), living._view.discover
+
+    def discovered(done: Callable[[Discovery], None]) -> None:
+        asked.append("once")
+        discover(done)
+
+    monkeypatch.setattr(living._view, "discover", discovered)
+    monkeypatch.setattr(ZenohBus, "link", property(lambda _: f"hub {min(len(asked), 2)}"))
+    assert living.discover().found
+    assert len(asked) == 3
 
 
 @pytest.mark.parametrize("many", [0, ecology_view.MANY_LIVES], ids=["large", "small"])
