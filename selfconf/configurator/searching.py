@@ -41,8 +41,9 @@ def heed_discovery(state: State, event: Discovered) -> Reaction:
     )
     taken = {component: holder for component, holder in taken.items() if component not in state.held}
     lost = {component: loss for component, loss in state.lost.items() if not loss.busy}
-    known = replace(state, taken=taken, sharers=sharers, lost=lost, free=frozenset(), improving=False)
-    known = replace(known, unseen=event.unseen)
+    known = replace(
+        state, taken=taken, sharers=sharers, lost=lost, unseen=event.unseen, free=frozenset(), improving=False
+    )
     return phases.compose(known) if state.phase is Phase.DISCOVERING else _improve(known)
 
 
