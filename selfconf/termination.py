@@ -129,7 +129,10 @@ class Termination:
     def __init__(
         self, bus: Bus, then: Callable[[], None] | None = None, told: Callable[[], None] = lambda: None
     ) -> None:
-        """`told` wakes what waits for the end, and is called where a signal is noticed, or on the bus's thread."""
+        """`told` wakes what waits for the end: on the bus's thread and, without `then`, where a signal is noticed too.
+
+        That is on the main thread, which may be about to wait: then only the call on the other thread wakes it.
+        """
         self._bus, self._then, self._told, self._ending = bus, then, told, False
         self._parent = os.getppid()
         for number in ending_signals():
@@ -148,10 +151,10 @@ class Termination:
         self._bus.wake_up(self._end)
 
     def _end(self) -> None:
-        if not self._ending:
-            self._ending = True
-            if self._then is not None:
-                self._then()
+        first, self._ending = not self._ending, True
+        if first and self._then is not None:
+            self._then()
+        if first or self._then is None:
             self._told()
 
     def _look(self) -> None:

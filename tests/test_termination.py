@@ -131,10 +131,10 @@ def test_this_program_takes_memory() -> None:
 
 
 @pytest.mark.usefixtures("handlers")
-def test_whoever_waits_for_the_end_is_woken_by_the_signal_itself() -> None:
-    network, said = Network(0), list[str]()
-    ended = Termination(network.node(), told=lambda: said.append("told"))
+def test_whoever_waits_for_the_end_is_woken_by_the_signal_and_by_the_bus_as_it_may_be_about_to_wait() -> None:
+    network, woken = Network(0), list[bool]()
+    ended = Termination(network.node(), told=lambda: woken.append(ended()))
     signal.raise_signal(signal.SIGTERM)
-    assert (ended(), said) == (True, ["told"])
+    assert woken == [True]
     network.run(lambda: False, 1.0)
-    assert said == ["told"]
+    assert woken == [True, True]

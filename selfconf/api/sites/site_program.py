@@ -48,8 +48,8 @@ log = logging.getLogger(__name__)
 
 Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
 """Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
-WORK_CHECK = 1.0
-"""How often, in seconds, a site looks whether it is to end; it hears at once, but for a signal at a bad moment."""
+WORK_CHECK = 60.0
+"""How often, in seconds, a site looks whether it is to end, or has work, of which it hears at once: it is to sleep."""
 
 
 @immutable
