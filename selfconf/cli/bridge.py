@@ -7,6 +7,7 @@ import importlib.util
 from pathlib import Path
 
 from selfconf.cli.options import domain
+from selfconf.cli.parsing import add_parser
 from selfconf.cli.site_options import add_site_arguments
 from selfconf.cli.terminal import complaining_aside
 from selfconf.errors import InstallationError
@@ -23,14 +24,8 @@ LISTENING = "where to listen, as for `selfconf site`"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     worlds = parser.add_subparsers(dest="world", metavar="WORLD", required=True)
-    wot = worlds.add_parser(
-        "wot",
-        help="Things of the W3C's Web of Things, by their descriptions, over HTTP",
-        description="Let Things play in an ecology, by their descriptions, over HTTP.",
-        epilog=f"example:\n{WOT_EXAMPLE}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
+    does = "let Things of the W3C's Web of Things play in an ecology, by their descriptions, over HTTP"
+    wot = add_parser(worlds, "wot", does, WOT_EXAMPLE)
     wot.add_argument(
         "sources",
         metavar="SOURCE",
@@ -59,14 +54,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a host to which a description may lead that was fetched from another one; repeatable",
     )
     add_site_arguments(wot, LISTENING, "--sites")
-    ros2 = worlds.add_parser(
-        "ros2",
-        help="nodes of ROS 2 over rmw_zenoh: jazzy, kilted and lyrical",
-        description="Let the nodes of a ROS 2 domain play in an ecology, over rmw_zenoh.",
-        epilog=f"example:\n{ROS2_EXAMPLE}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
+    does = "let the nodes of a ROS 2 domain play in an ecology, over rmw_zenoh: jazzy, kilted and lyrical"
+    ros2 = add_parser(worlds, "ros2", does, ROS2_EXAMPLE)
     ros2.add_argument(
         "--connect",
         dest="router",  # of ROS 2, and not where a site listens, as `connect` of the project file says

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_keys_argument
+from selfconf.cli.parsing import add_parser
 from selfconf.errors import AuthorError
 from selfconf.model.wording import utc_text
 
@@ -59,16 +60,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_keys_argument(revoke)
 
 
-def _action(actions: Any, name: str, does: str, example: str) -> argparse.ArgumentParser:
-    parser: argparse.ArgumentParser = actions.add_parser(
-        name,
-        help=does,
-        description=f"{does[0].upper()}{does[1:]}.",
-        epilog=f"example:\n  selfconf keys {name} {example}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
-    return parser
+def _action(
+    actions: argparse._SubParsersAction[argparse.ArgumentParser], name: str, does: str, example: str
+) -> argparse.ArgumentParser:
+    return add_parser(actions, name, does, f"  selfconf keys {name} {example}")
 
 
 def _add_days(parser: argparse.ArgumentParser) -> None:

@@ -12,18 +12,14 @@ import sys
 import traceback
 from collections.abc import Collection, Sequence
 from keyword import iskeyword
-from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NoReturn
 
 from selfconf.aside_writer import AsideHandler
+from selfconf.cli.parsing import CommandLine, Parser, add_parser
 from selfconf.cli.settings import Settings, found_settings
 from selfconf.cli.terminal import complain, for_programs, guard, silence
 from selfconf.errors import SelfconfError, SiteMisusedError, reason
 from selfconf.model.setting_names import options_named
-
-if TYPE_CHECKING:
-    from _typeshed import SupportsWrite
 
 COMMANDS = {
     "new": "write the first files of a component, a template or an ontology, to be changed to what you want",
@@ -54,58 +50,6 @@ FOR_PEOPLE = ("text", "table")
 """The formats that no program reads."""
 
 
-class Parser(argparse.ArgumentParser):
-    """Says in one sentence what is wrong with the arguments; the usage is a question of its own."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self.register("type", Path, _path)
-
-    def parse_known_args(  # type: ignore[override]  # of its overloads one is used here
-        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
-    ) -> tuple[argparse.Namespace, list[str]]:
-        """Parse the arguments; where a command takes several of a kind, they may stand after its options, too.
-
-        By itself argparse has given them none, or those before the first option, once it comes to an option.
-        """
-        given, unknown = super().parse_known_args(args, namespace)
-        several = next((one.dest for one in self._actions if one.nargs in ("*", "+") and not one.option_strings), "")
-        if several and all(word == "-" or not word.startswith("-") for word in unknown):
-            setattr(given, several, [*(getattr(given, several) or ()), *unknown])
-            unknown = []
-        return given, unknown
-
-    def error(self, message: str) -> NoReturn:
-        """End with exit code 2."""
-        self.exit(2, f"{self.prog}: {message}; see `{self.prog} --help`\n")
-
-    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
-        """Print what `--help` and `--version` say; argparse by itself passes over what cannot be written."""
-        elsewhere = file is not sys.stdout
-        if elsewhere:
-            super()._print_message(message, file)
-            return
-        try:
-            print(message, end="", flush=True)
-        except BrokenPipeError:
-            silence(sys.stdout)
-        except OSError as error:
-            silence(sys.stdout)
-            self.exit(2, f"{self.prog}: {reason(error)}\n")
-
-
-class CommandLine(Parser):
-    """Takes a command, whose own parser takes what stands after it."""
-
-    def parse_known_args(  # type: ignore[override]  # of its overloads one is used here
-        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
-    ) -> tuple[argparse.Namespace, list[str]]:
-        """Parse the arguments; an option before the command is none, for its value would be taken for the command."""
-        if args and args[0].startswith("-") and args[0] not in self._option_string_actions:
-            self.error("the first word is the command, and options stand after it")
-        return super().parse_known_args(args, namespace)
-
-
 class Version(argparse.Action):
     """`--version`, which looks the version up only when it is asked for: that takes as long as all other arguments."""
 
@@ -122,15 +66,8 @@ def command(name: str) -> ModuleType:
 
 def command_parser(name: str, subparsers: argparse._SubParsersAction[Parser], settings: Settings) -> None:
     """Add the parser of one command with its options, which have their values from the settings where not typed."""
-    module, does = command(name), COMMANDS[name]
-    parser = subparsers.add_parser(
-        name,
-        help=does,
-        description=f"{does[0].upper()}{does[1:]}.",
-        epilog=f"example:\n{module.EXAMPLE}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
+    module = command(name)
+    parser = add_parser(subparsers, name, COMMANDS[name], module.EXAMPLE)
     module.add_arguments(parser)
     settings.declare(parser)
     parser.add_argument("--debug", action="store_true", help="show tracebacks and what happens inside")
@@ -200,13 +137,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         complain(f"selfconf {given.command}: interrupted")
         return INTERRUPTED
-
-
-def _path(word: str) -> Path:
-    """What an argument of type Path stands for; an empty one, as of a variable that is not set, is a mistake."""
-    if not word:
-        raise argparse.ArgumentTypeError("an empty text is no path; the current folder is '.'")
-    return Path(word)
 
 
 def _advice(unknown: Sequence[str]) -> str:

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.cli.main import COMMANDS, command, main, parser
-from tests.cli.command import run
+from selfconf.cli.main import COMMANDS, command, main
 
 ROOT = Path(__file__).resolve().parents[2]
 ACTIONS = ("keys init", "keys issue", "keys renew", "keys show", "keys revoke", "bridge wot", "bridge ros2")
@@ -63,57 +62,3 @@ def test_a_command_that_there_is_not_is_misuse(capsys: pytest.CaptureFixture[str
         main(["validat"])
     assert ended.value.code == 2
     assert "validate" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["validat"], "'validate'"),
-        ([], "COMMAND"),
-        (["validate", "--formt"], "see `selfconf validate --help`"),
-        (["--debug", "validate", "t.ttl"], "the first word is the command, and options stand after it"),
-        (["--ads", "t.ttl", "validate"], "the first word is the command, and options stand after it"),
-        (["configure", "t.ttl", "--strategy", "worst"], "'worst'"),
-        (["run", "t.ttl", "--priority", "9" * 23], "a whole number from -1000000 to 1000000"),
-        (["run", "t.ttl", "--priority", "high"], "'high' is no priority"),
-        (["configure", ""], "TEMPLATE: an empty text is no path; the current folder is '.'"),
-        (["configure", "t.ttl", "--ads", ""], "--ads: an empty text is no path"),
-    ],
-)
-def test_misuse_is_one_sentence_that_points_to_the_help(
-    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(capsys, *arguments).is_one_sentence(words, "--help`")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "dest", "values"),
-    [
-        (["import", "wot", "--out", "o", "a", "b"], "sources", ["a", "b"]),
-        (["import", "wot", "a", "--out", "o", "b"], "sources", ["a", "b"]),
-        (["import", "--out", "o", "wot", "a"], "sources", ["a"]),
-        (["import", "ros2", "--out", "o"], "sources", []),
-        (["validate", "a", "--ontology", "o", "b", "--cache", "-"], "paths", ["a", "b", "-"]),
-        (["site", "restart", "--ecology", "home", "tracker"], "paths", ["restart", "tracker"]),
-        (["bridge", "wot", "a", "--rate", "2", "b"], "sources", ["a", "b"]),
-        (["bridge", "wot", "--rate", "2", "a", "b"], "sources", ["a", "b"]),
-    ],
-)
-def test_of_what_a_command_takes_several_some_may_stand_after_its_options(
-    arguments: list[str], dest: str, values: list[str]
-) -> None:
-    assert getattr(parser(arguments[:1]).parse_args(arguments), dest) == values
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["validate", "a", "--cache", "b", "--formt", "json"], "unrecognized arguments: b --formt json;"),
-        (["bridge", "wot", "--rate", "2"], "required: SOURCE"),
-        (["configure", "--ads", "A", "B", "--ontology", "O", "T"], "repeat it for each: --ads A --ads B"),
-    ],
-)
-def test_a_word_too_many_is_refused_where_a_command_takes_no_more(
-    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(capsys, *arguments).is_one_sentence(words)
