@@ -16,6 +16,7 @@ from selfconf.access.certificates import Certificate
 from selfconf.api.sites.joining import REACHED
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
+from selfconf.bus.zenoh import GREETING
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
@@ -215,6 +216,8 @@ def test_a_site_whose_certificate_has_expired_takes_the_place_of_no_hub(home: Ho
     assert home.until(lambda: "has expired at " in attic.complaints)
     files = [home.runtime / f"{home.ecology}@{name}.json" for name in ("kitchen", "attic")]
     relaying = [True, False]
-    assert not home.until(lambda: [json.loads(one.read_text())["relays"] for one in files] != relaying, 2 * REACHED)
+    assert not home.until(
+        lambda: [json.loads(one.read_text())["relays"] for one in files] != relaying, 2 * (GREETING + REACHED)
+    )
     home.authority.renew(home.folder / "attic")
     assert home.until(lambda: "is good until " in attic.complaints)

@@ -8,9 +8,10 @@ go cost two processors and do not recover from a common stall; fifty clients of 
 A site with an endpoint of its own, or that connects to another machine, relays beside the others.
 
 A relay that hangs receives nothing. A site that has had no hub for `HUNG` seconds takes its place on another port and
-writes into its file that it relays no more; when it goes on it reads that, and closes its hub. The others may still be
-waiting for the one that hangs to answer them, so they let the new one have `REACHED` seconds: else each would take the
-place of the one before, and nothing would relay for longer than a moment.
+writes into its file that it relays no more; when it goes on it reads that, and closes its hub. All others, and the site
+itself, may still be waiting for the one that hangs to answer them, at each endpoint where it listens. So all let the
+new one have the time of these handshakes and `REACHED` seconds: else each would take the place of the one before, or
+that one would take its own hub for broken, and nothing would relay for longer than a moment.
 
 What sites write into the runtime folder may be lost, as when that is emptied, or a disk is full: a site whose file is
 not there writes it again, and relays as well where it cannot be written.
@@ -37,7 +38,7 @@ from pathlib import Path
 
 from selfconf import rendezvous, this_machine
 from selfconf.bus.port import Undo
-from selfconf.bus.zenoh import Hub, Security, ZenohBus, client, cut_connections, router
+from selfconf.bus.zenoh import GREETING, Hub, Security, ZenohBus, client, cut_connections, router
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys
 from selfconf.this_machine import LocalSite
@@ -64,8 +65,8 @@ BUSY = 0.5
 """Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear it."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
-REACHED = 2.0
-"""Seconds until a site has surely reached one that has begun to relay since: longer than a handshake is waited for."""
+REACHED = 0.5
+"""Seconds until a site has surely reached one that has begun to relay, beyond handshakes with those that hang."""
 
 
 class Joining:
@@ -245,7 +246,7 @@ class Joining:
             self._announce_anew()
         if self._is_replaced():
             self._look()
-        elif not self._asking and (self.bus.endpoint or self.bus.link):
+        elif not self._asking and (self.bus.link or (self.bus.endpoint and self._hangs())):
             self._ask_hub()
 
     def _ask_hub(self) -> None:
@@ -330,11 +331,23 @@ class Joining:
 
     def _take_place(self) -> None:
         """Relay, if no site does, or if the one that does hangs."""
-        relays, now = self._relays(), self.bus.now()
+        relays = self._relays()
         if relays != self._awaited:
-            self._awaited, self._hung_at = relays, now + REACHED
-        if (not relays or (self._hung_at is not None and now > self._hung_at)) and self._is_believed():
+            self._await(relays)
+        if (not relays or self._hangs()) and self._is_believed():
             self._relay_at(self._usual, relays)
+
+    def _await(self, relays: list[str]) -> None:
+        """Let those that relay since this moment be reached: those before may have to be given up one by one first."""
+        endpoints = (
+            1 if self._security is None else 2
+        )  # of each that relays: with keys it has one for its own host, too
+        handshakes = endpoints * max(1, len(self._awaited))
+        self._awaited, self._hung_at = relays, self.bus.now() + handshakes * GREETING + REACHED
+
+    def _hangs(self) -> bool:
+        """Whether there is no hub, and has been none for longer than it takes to reach one."""
+        return self._hung_at is not None and self.bus.now() > self._hung_at
 
     def _is_believed(self) -> bool:
         """Whether others would connect to a hub of this site, and it to theirs: not with an expired certificate."""
@@ -365,5 +378,6 @@ class Joining:
                         this_machine.announce_for(other, relays=False)
             known = [relay for relay in relays if relay not in self._usual]
             self.bus.relay(hub, [*known, *strange, *self._elsewhere])
+            self._await([endpoint])
             self._announce_anew()
             return

@@ -3,7 +3,7 @@
 * `client` opens the `ZenohBus` of a program, `router` that of a site with its `Hub`, which keeps the rules and the
   certificate of a `Security`. `cut_connections` ends what is left of the connections to an endpoint.
 * `open_session` opens a bare session; `ANYWHERE_ON_LOOPBACK` is the endpoint of a hub that takes any free port, and
-  `with_port` puts a free port in place of port 0.
+  `with_port` puts a free port in place of port 0; `GREETING` is how long a silent end is waited for.
 * `hear_refusals` reads in Zenoh's log what the hub of this process refuses, and keeps it as a `RefusalLog`.
 """
 
@@ -11,10 +11,11 @@ from selfconf.bus.zenoh.bus import ZenohBus
 from selfconf.bus.zenoh.opening import client, router
 from selfconf.bus.zenoh.refusals import RefusalLog, hear_refusals
 from selfconf.bus.zenoh.relay import Hub, cut_connections
-from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, Security, open_session, with_port
+from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, GREETING, Security, open_session, with_port
 
 __all__ = [
     "ANYWHERE_ON_LOOPBACK",
+    "GREETING",
     "Hub",
     "RefusalLog",
     "Security",

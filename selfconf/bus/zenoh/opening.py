@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh.bus import ZenohBus
 from selfconf.bus.zenoh.relay import Hub
-from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, HANDSHAKE_MS, Security, open_session
+from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, GREETING, Security, open_session
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import endpoint_host, endpoint_port
 
@@ -60,7 +60,7 @@ def client(
         except NetworkError:
             if credentials is not None:
                 _raise_if_refused(connect, credentials)
-            elif time.monotonic() - began > HANDSHAKE_MS / 1000:
+            elif time.monotonic() - began > GREETING:
                 where = ", ".join(filter(_listens, connect)) or ", ".join(connect)
                 raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
     return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security))

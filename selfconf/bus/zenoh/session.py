@@ -44,8 +44,8 @@ PANIC = "PanicException"
 LEASE_MS = 1000
 """After how long without a message a session counts as gone: what is stopped or cut off is noticed after that time."""
 ANYWHERE_ON_LOOPBACK = "tcp/127.0.0.1:0"
-HANDSHAKE_MS = 1500
-"""How long the end that accepts may take to greet, or to answer: beyond that it is no router, or a hung one."""
+GREETING = 1.5
+"""Seconds that the end which accepts may take to greet, or to answer: beyond that it is no router, or a hung one."""
 MOST_ACCEPTED = 2000
 """How many clients may be about to greet at once; one more is turned away. By default it is 100, which a stranger that
 opens a hundred connections and stays silent would have all the time."""
@@ -195,8 +195,8 @@ def _config(
         "transport/link/tx/lease": LEASE_MS,
         # Three messages in a lease: an idle link costs a quarter less than with four, and two may be late.
         "transport/link/tx/keep_alive": 3,
-        "transport/unicast/open_timeout": HANDSHAKE_MS,
-        "transport/unicast/accept_timeout": HANDSHAKE_MS,
+        "transport/unicast/open_timeout": int(GREETING * 1000),
+        "transport/unicast/accept_timeout": int(GREETING * 1000),
         "transport/unicast/accept_pending": MOST_ACCEPTED,
         "transport/shared_memory/enabled": shared_memory,
         "transport/shared_memory/transport_optimization/message_size_threshold": SHARED_FROM,
@@ -213,7 +213,7 @@ def _config(
 
 def _listening(endpoint: str, security: Security | None) -> str:
     """An endpoint to listen at, where a handshake of TLS may take as long as that of Zenoh after it."""
-    return endpoint if security is None else with_settings(endpoint, f"tls_handshake_timeout_ms={HANDSHAKE_MS}")
+    return endpoint if security is None else with_settings(endpoint, f"tls_handshake_timeout_ms={int(GREETING * 1000)}")
 
 
 def _secured(security: Security) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from selfconf.bus.zenoh import relay as relaying
 from selfconf.bus.zenoh.descriptors import sockets_at
 from selfconf.bus.zenoh.door import MOST_AT_DOOR
 from selfconf.bus.zenoh.relay import Hub, Relay
-from selfconf.bus.zenoh.session import HANDSHAKE_MS, open_session
+from selfconf.bus.zenoh.session import GREETING, open_session
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import endpoint_port
 from tests.bus.zenoh.test_bus import until
@@ -108,7 +108,7 @@ def test_what_has_connected_while_a_hub_was_opened_is_to_connect_again(monkeypat
         early[0].settimeout(10.0)
         began = time.monotonic()
         assert early[0].recv(1) == b""
-        assert time.monotonic() - began < HANDSHAKE_MS / 2000, "it was ended, and not only given up"
+        assert time.monotonic() - began < GREETING / 2, "it was ended, and not only given up"
         client([hub.endpoint]).close()
     finally:
         early[0].close()
