@@ -26,7 +26,7 @@ from selfconf.search.engines.clause_learning import ClauseSolver, solver_availab
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.founded import FoundedSolver
 from selfconf.search.engines.hitting_sets import smallest_core
-from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses, least_of_clauses
+from selfconf.search.engines.least_solution import OtherWay, any_by_clauses, least_by_clauses, least_of_clauses
 from selfconf.search.engines.matching import HallSet, MaintainedMatching, hall_set, unmatchable
 from selfconf.search.engines.max_sat import minimise
 from selfconf.search.engines.need_counting import CountedNeeds, Undersupply, counted_needs, limits, supplied
@@ -41,6 +41,7 @@ __all__ = [
     "FoundedSolver",
     "HallSet",
     "MaintainedMatching",
+    "OtherWay",
     "ReducedSearch",
     "Undersupply",
     "any_by_clauses",

@@ -8,9 +8,10 @@ with it.
 *Engines.* Which solver is quick on which problem is luck: on one family MiniCard, which counts by itself, on another
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
-begins. It soon gets support clauses, from which more propagates (`support_clauses`), what trying options alone rules
-out (`probing`), a little later the values that options exclude, and, where roles ask for many, the counting as clauses
-too. After `BRIEF` steps clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process
+begins. It soon gets support clauses, from which more propagates (`support_clauses`), a little later the values that
+options exclude, and, where roles ask for many, the counting as clauses too. After `BRIEF` steps it gets what takes
+longer to find out, and mostly rules out nothing: another way to the answer is asked for (`OtherWay`), as to divide the
+problem, then options are tried alone (`probing`), and what has not been counted is. From then on clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process
 of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits a little longer
 (`ALONE_OF_TWO`), and takes the place of clasp; if no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take
 turns on the other processor. Where there is one processor, all three take turns, each twice as long as before. With a
@@ -21,7 +22,7 @@ is that of the better one at each question.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
 from selfconf.model.refusal import Undecided
@@ -34,12 +35,12 @@ from selfconf.search.engines.turn import Turn
 from selfconf.search.reduction import Option, ReducedProblem
 
 UNSUPPORTED = 100
-"""Conflicts and questions of the first solver before it gets support clauses, and options are tried alone.
+"""Conflicts and questions of the first solver before it gets support clauses.
 
 As many again before it gets the values that options exclude.
 """
 BRIEF = 1_000
-"""Conflicts and questions of the first solver before it has company."""
+"""Conflicts and questions of the first solver before another way is asked for and options are tried; then company."""
 BRIEF_COUNTING = 250
 """Conflicts and questions before it gets numbers as clauses, where some are worth that."""
 BRIEF_COUNTED = 1_500
@@ -58,14 +59,28 @@ FIRST_TURN = 5_000
 """Conflicts of clasp, and then of the first solver, in their first turns on one processor; later turns are longer."""
 
 
-def any_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
-    """Return any solution, one option per slot; None if there is none; Undecided when the budget ends."""
-    return _Descent(reduced, budget, least=False).run()
+OtherWay = Callable[[], list[Option] | Undecided | None]
+"""Another way to the answer of an engine; Undecided if it does not lead there."""
 
 
-def least_by_clauses(reduced: ReducedProblem, budget: Budget) -> list[Option] | Undecided | None:
-    """Return the least solution, one option per slot; None if there is none; Undecided when the budget ends."""
-    return _Descent(reduced, budget).run()
+def any_by_clauses(
+    reduced: ReducedProblem, budget: Budget, otherwise: OtherWay | None = None
+) -> list[Option] | Undecided | None:
+    """Return any solution, one option per slot; None if there is none; Undecided when the budget ends.
+
+    Where the clauses turn out to be hard, `otherwise` is asked before more engines are.
+    """
+    return _Descent(reduced, budget, least=False).run(otherwise)
+
+
+def least_by_clauses(
+    reduced: ReducedProblem, budget: Budget, otherwise: OtherWay | None = None
+) -> list[Option] | Undecided | None:
+    """Return the least solution, one option per slot; None if there is none; Undecided when the budget ends.
+
+    Where the clauses turn out to be hard, `otherwise` is asked before more engines are.
+    """
+    return _Descent(reduced, budget).run(otherwise)
 
 
 def least_of_clauses(clauses: ClauseSolver, budget: Budget) -> list[Option] | Undecided:
@@ -109,35 +124,44 @@ class _Descent:
         """Whether the answer is known."""
         return self.possible is False or len(self.settled) == len(self.slots)
 
-    def run(self) -> list[Option] | Undecided | None:
+    def run(self, otherwise: OtherWay | None = None) -> list[Option] | Undecided | None:
         """Return the solution, None if there is none, or Undecided when the budget ends."""
         encoding = Encoding(self.reduced, ordered=True, patience=COUNTED_IN_VAIN)
         self.plays = encoding.plays
         with ExitStack() as stack:
-            first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
-            self.advance(first, UNSUPPORTED)
+            first = self._search_alone(encoding, stack)
+            if not self.finished and otherwise is not None:
+                chosen = otherwise()
+                if not isinstance(chosen, Undecided):
+                    return chosen
             if not self.finished:
-                first.clauses.extend([*encoding.support(), *encoding.probe()], encoding.top)
-            if encoding.valued:
-                self.advance(first, UNSUPPORTED)
-                if not self.finished:
-                    first.clauses.extend(encoding.exclude(), encoding.top)
-            if any(bound.worth_counting for bound in encoding.bounds):
-                self.advance(first, BRIEF_COUNTING)
-                if not self.finished:
-                    first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
-                self.advance(first, BRIEF_COUNTED)
-            else:
-                self.advance(first, BRIEF)
-            if not self.finished and len(self.settled) * NEARLY >= len(self.slots):
-                self.advance(first, BRIEF)  # to prepare company takes as long as hundreds of conflicts
-            if not self.finished:
-                for clause in encoding.count():
+                for clause in (*encoding.probe(), *encoding.count()):
                     first.clauses.add(clause)
                 self._search_together(first, encoding, stack)
         if self.possible is False:
             return None
         return self.chosen() if self.finished else Undecided(0)
+
+    def _search_alone(self, encoding: Encoding, stack: ExitStack) -> Turn:
+        """Let the first solver work by itself, with more and more clauses, and return how far it is."""
+        first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding)))
+        self.advance(first, UNSUPPORTED)
+        if not self.finished:
+            first.clauses.extend(encoding.support(), encoding.top)
+        if encoding.valued:
+            self.advance(first, UNSUPPORTED)
+            if not self.finished:
+                first.clauses.extend(encoding.exclude(), encoding.top)
+        if any(bound.worth_counting for bound in encoding.bounds):
+            self.advance(first, BRIEF_COUNTING)
+            if not self.finished:
+                first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
+            self.advance(first, BRIEF_COUNTED)
+        else:
+            self.advance(first, BRIEF)
+        if not self.finished and len(self.settled) * NEARLY >= len(self.slots):
+            self.advance(first, BRIEF)  # to prepare company takes as long as hundreds of conflicts
+        return first
 
     def _search_together(self, first: Turn, encoding: Encoding, stack: ExitStack) -> None:
         """Let all solvers work, beside each other or in turns."""

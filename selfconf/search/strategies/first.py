@@ -43,6 +43,7 @@ from selfconf.search.engines import (
     CountedNeeds,
     HallSet,
     MaintainedMatching,
+    OtherWay,
     Undersupply,
     any_by_clauses,
     counted_needs,
@@ -62,7 +63,7 @@ from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, in_order, pruned, reduced
 
-Engine = Callable[[ReducedProblem, Budget], list[Option] | Undecided | None]
+Engine = Callable[[ReducedProblem, Budget, OtherWay | None], list[Option] | Undecided | None]
 
 CANDIDATE_STEPS = 4
 """Steps of search over candidates for each slot reached, before the problem is reduced."""
@@ -218,16 +219,26 @@ def _least_of_sharing(
     excluded = unmatchable(given.slots, given.components())
     assert not isinstance(excluded, HallSet)
     remaining = _without(given, excluded)
-    cases = value_cases(remaining) if dividing else None
-    if cases is not None:
-        return _least_of_cases(cases, budget, by_clauses)
-    return _by_clauses(remaining, budget, by_clauses)
+
+    def divided() -> list[Option] | Undecided | None:
+        cases = value_cases(remaining)
+        return Undecided(0) if cases is None else _least_of_cases(cases, budget, by_clauses)
+
+    return _by_clauses(remaining, budget, by_clauses, divided if dividing else None)
 
 
-def _by_clauses(given: ReducedProblem, budget: Budget, by_clauses: Engine) -> list[Option] | Undecided | None:
-    """Return a solution by clause learning, or by depth-first search without an end where there is no solver."""
+def _by_clauses(
+    given: ReducedProblem, budget: Budget, by_clauses: Engine, divided: OtherWay | None = None
+) -> list[Option] | Undecided | None:
+    """Return a solution by clause learning, or by depth-first search without an end where there is no solver.
+
+    The problem is `divided` where clause learning has not decided it soon, or at once where there is no solver.
+    """
     if solver_available():
-        return by_clauses(given, budget)
+        return by_clauses(given, budget, divided)
+    chosen = Undecided(0) if divided is None else divided()
+    if not isinstance(chosen, Undecided) or budget.steps == 0:
+        return chosen
     if given.shares_components():
         given = probed(given)
         if given.wiped_out() is not None or hall_set(given.slots, given.components()) is not None:
@@ -261,7 +272,9 @@ def _least_of_cases(cases: list[ReducedProblem], budget: Budget, by_clauses: Eng
     if left:
         several = len(left) > 1
         chosen = (
-            by_clauses(_together(left), budget) if several else least_of(left[0], budget, by_clauses, dividing=False)
+            by_clauses(_together(left), budget, None)
+            if several
+            else least_of(left[0], budget, by_clauses, dividing=False)
         )
         if isinstance(chosen, Undecided):
             return chosen
@@ -269,7 +282,7 @@ def _least_of_cases(cases: list[ReducedProblem], budget: Budget, by_clauses: Eng
     return min(found, key=_numbers, default=None)
 
 
-def _left_open(_: ReducedProblem, __: Budget) -> Undecided:
+def _left_open(_: ReducedProblem, __: Budget, ___: OtherWay | None) -> Undecided:
     """Stand in for clause learning where that is to come later."""
     return Undecided(0)
 

@@ -14,7 +14,14 @@ from benchmarks.search.further_families import counted
 from selfconf.model.partition import ANY_VALUE, Candidate, Variable
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines import any_by_clauses, case_splitting, hall_set, least_by_clauses, value_cases
+from selfconf.search.engines import (
+    any_by_clauses,
+    case_splitting,
+    hall_set,
+    least_by_clauses,
+    least_solution,
+    value_cases,
+)
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
 from selfconf.search.strategies import first, solution
@@ -110,9 +117,30 @@ def bound_depots(seed: int, roles: int = 5, asked: int = 2, people: int = 20) ->
     )
 
 
-def test_cases_that_clause_learning_has_to_decide_are_decided_together(monkeypatch: pytest.MonkeyPatch) -> None:
+def hard_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let each problem count as one that no engine decides soon."""
     monkeypatch.setattr(first, "CANDIDATE_STEPS", 0)
     monkeypatch.setattr(first, "REDUCED_PACE", 0.0)
+    for moment in ("UNSUPPORTED", "BRIEF"):
+        monkeypatch.setattr(least_solution, moment, 0)
+
+
+def test_what_clause_learning_decides_soon_is_not_divided(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pysat")
+    problem = bound_depots(3)
+    assert value_cases(pruned(reduced(problem))) is not None
+    hard_at_once(monkeypatch)
+    divided: list[ReducedProblem] = []
+    monkeypatch.setattr(first, "value_cases", divided.append)
+    expected = solution(LazyReduction(problem), Budget(None))
+    assert len(divided) == 1
+    monkeypatch.setattr(least_solution, "UNSUPPORTED", 100)
+    assert solution(LazyReduction(problem), Budget(None)) == expected
+    assert len(divided) == 1
+
+
+def test_cases_that_clause_learning_has_to_decide_are_decided_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    hard_at_once(monkeypatch)
     merged: list[list[ReducedProblem]] = []
     together = first._together
 
@@ -179,8 +207,7 @@ def test_values_that_mostly_leave_too_few_components_have_cases() -> None:
 @pytest.mark.parametrize("seed", [1, 2, 4])
 def test_a_case_is_not_divided_again(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     """Of six parameters four have cases; cases of cases, and of these, took longer than anybody waits."""
-    monkeypatch.setattr(first, "CANDIDATE_STEPS", 0)
-    monkeypatch.setattr(first, "REDUCED_PACE", 0.0)
+    hard_at_once(monkeypatch)
     divided: list[ReducedProblem] = []
 
     def noted(given: ReducedProblem) -> list[ReducedProblem] | None:
