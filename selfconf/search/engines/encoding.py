@@ -370,12 +370,12 @@ class Encoding:
             self.statements += exclusions_of_values(admitting, values, self._any_of)
         return self.statements[before:]
 
-    def probe(self) -> list[list[int] | Implied]:
+    def probe(self) -> list[list[int]]:
         """Rule out options that were tried alone, where roles share components, and return the clauses."""
         before = len(self.statements)
         if self.reduced.shares_components():
             self._rule_out(probed(self.reduced))
-        return self.statements[before:]
+        return self._clauses_since(before)
 
     def count(self) -> list[list[int]]:
         """Add what follows from counting groups and needs that have not been counted yet, and return the clauses."""
@@ -384,7 +384,11 @@ class Encoding:
             self._exclusive = after
             self._counted(after)
         self._count_needs()
-        return [statement for statement in self.statements[before:] if isinstance(statement, list)]
+        return self._clauses_since(before)
+
+    def _clauses_since(self, number: int) -> list[list[int]]:
+        """Return the clauses that were written after a number of statements."""
+        return [statement for statement in self.statements[number:] if isinstance(statement, list)]
 
     def _count_needs(self) -> None:
         """Add what follows from counting needs that roles of one slot may supply, and what each role can serve."""

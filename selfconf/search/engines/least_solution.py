@@ -11,13 +11,13 @@ CaDiCaL with the counting written as clauses, on a third clasp, which decides in
 begins. It soon gets support clauses, from which more propagates (`support_clauses`), a little later the values that
 options exclude, and, where roles ask for many, the counting as clauses too. After `BRIEF` steps it gets what takes
 longer to find out, and mostly rules out nothing: another way to the answer is asked for (`OtherWay`), as to divide the
-problem, then options are tried alone (`probing`), and what has not been counted is. From then on clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process
-of its own (`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits a little longer
-(`ALONE_OF_TWO`), and takes the place of clasp; if no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take
-turns on the other processor. Where there is one processor, all three take turns, each twice as long as before. With a
-budget of steps it is always in turns, as a step has to mean the same on every machine. What one engine has settled the
-others take over, since the least solution is unique: so the answer is the same whichever engine finds it, and the time
-is that of the better one at each question.
+problem, then options are tried alone (`probing`), and what has not been counted is. From then on clasp works beside it;
+where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
+would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and takes the place of clasp; if
+no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take turns on the other processor. Where there is one
+processor, all three take turns, each twice as long as before. With a budget of steps it is always in turns, as a step
+has to mean the same on every machine. What one engine has settled the others take over, since the least solution is
+unique: so the answer is the same whichever engine finds it, and the time is that of the better one at each question.
 """
 
 from __future__ import annotations
