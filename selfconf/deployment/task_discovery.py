@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from selfconf.configurator import Appeared, Discovered, Failed, Loss
 from selfconf.deployment.components import Liveness
@@ -12,7 +13,7 @@ from selfconf.discovery import Discovery
 from selfconf.model.holder import Holder
 from selfconf.model.run_event import AnswerRejected, AnyRunEvent, EcologyAsked, EcologyDiscovered
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import component_chunk
+from selfconf.protocol.keys import component_chunk, owner_of
 from selfconf.protocol.messages import Cause
 
 
@@ -80,7 +81,7 @@ class TaskDiscovery:
     def _discovered(self, discovery: Discovery, holders: Mapping[IRI, Holder]) -> None:
         if self._state().ended:
             return
-        self._ecology.discovery = discovery
+        self._ecology.discovery = self._with_held(discovery)
         first = not self._ecology.followed
         self._liveness.discovered(discovery)
         self._tell(discovery)
@@ -96,6 +97,17 @@ class TaskDiscovery:
 
         state = self._state()
         self._liveness.select((*state.held, *state.lost) if first else state.held, known)
+
+    def _with_held(self, discovery: Discovery) -> Discovery:
+        """What was found, and, for a task that looks for something better, what it holds of sites that were not heard.
+
+        That a site has not answered in full is no reason to let go of a component that runs.
+        """
+        state, known = self._state(), self._ecology.discovery.found
+        heard = {owner_of(key) for key in discovery.answered}
+        held = state.held.keys() & known.keys() if state.improving else ()
+        unheard = {component: known[component] for component in held if known[component].site not in heard}
+        return replace(discovery, found={**unheard, **discovery.found}) if unheard else discovery
 
     def _heed_ended_lives(self) -> None:
         """Lives of lost components may have ended before this configurator followed them, or their sites were away."""

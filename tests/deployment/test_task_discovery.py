@@ -71,3 +71,19 @@ def test_a_task_is_refused_only_after_a_while_where_nobody_advertises_what_it_ho
     assert (agent.state.phase is Phase.RUNNING) is (away < RETURN)
     assert lab.active() == (TASK | {"tracker"} if away < RETURN else set())
     assert lab.acts("lost") == []
+
+
+def test_a_task_that_looks_for_something_better_keeps_what_runs_while_its_site_is_not_heard(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    living_room = lab.site("living-room", "tracker")
+    for name in TASK | {"tracker", "odometry"}:
+        lab.component(name)
+    assert lab.running(lab.agent(upgrade=0.5))
+    lab.isolate(living_room)
+    lab.site("hall", "odometry")
+    lab.let_pass(10.0)
+    assert lab.active() == TASK | {"tracker"}
+    (tmp_path / "living-room" / "tracker.ttl").unlink()
+    lab.rejoin(living_room)
+    assert lab.until(lambda: lab.active() == TASK | {"odometry"}), "the site says that it is advertised no more"
