@@ -199,7 +199,7 @@ class Wiring:
         fed = self._fed(role)
         if by_signal and not fed:
             return [()] * len(outputs)
-        fits = self._of_signals(outputs, fed) if by_signal else [self._of_outputs(role, some, fed) for some in outputs]
+        fits = self._of_signals(outputs, fed) if by_signal else self._of_outputs(role, outputs, fed)
         return [tuple(numbers) if len(numbers) < 2 else _ascending(numbers) for numbers in fits]
 
     def _fed(self, role: int) -> dict[IRI, tuple[int, ...]]:
@@ -231,23 +231,33 @@ class Wiring:
             for some in outputs
         ]
 
-    def _of_outputs(self, role: int, outputs: tuple[Output, ...], fed: Mapping[IRI, tuple[int, ...]]) -> list[int]:
-        """Return the needs that outputs support, by their signals, their names and what conditions ask of them."""
-        served = self.problem.hierarchy.served
+    def _of_outputs(
+        self, role: int, outputs: Sequence[tuple[Output, ...]], fed: Mapping[IRI, tuple[int, ...]]
+    ) -> list[list[int]]:
+        """Return the needs that the outputs of each class of a role support, by signals, names and conditions."""
+        known: dict[tuple[str, tuple[IRI, ...]], list[int]] = {}
+        found: list[list[int]] = []
+        for some in outputs:
+            numbers: list[int] = []
+            for output in some:
+                port = name, offered = output[:2]
+                fits = known.get(port)
+                if fits is None:  # many candidates of a role have outputs of the same name and types
+                    fits = known[port] = self._fed_by(role, name, offered, fed)
+                numbers += self._met(fits, output) if self._conditions else fits
+            found.append(numbers)
+        return found
+
+    def _fed_by(self, role: int, name: str, offered: tuple[IRI, ...], fed: Mapping[IRI, tuple[int, ...]]) -> list[int]:
+        """Return the needs that an output of a role feeds, by its name and its types, whatever their conditions."""
         by_name, untyped = self._fed_by_name[role], self._untyped[role]
-        numbers: list[int] = []
-        for output in outputs:
-            name, offered = output[:2]
-            fits: list[int] = []
-            for signal in served(offered):
-                fits += fed.get(signal, ())
-                if by_name:
-                    fits += by_name.get((signal, name), ())
-            if untyped:
-                fits += untyped.get((True, name), ())
-                fits += () if offered else untyped.get((False, name), ())
-            numbers += self._met(fits, output) if self._conditions else fits
-        return numbers
+        fits: list[int] = []
+        for signal in self.problem.hierarchy.served(offered):
+            fits += fed.get(signal, ())
+            fits += by_name.get((signal, name), ())
+        fits += untyped.get((True, name), ())
+        fits += () if offered else untyped.get((False, name), ())
+        return fits
 
     def _met(self, needs: Iterable[int], output: Output) -> list[int]:
         """Return those of some needs whose conditions an output meets."""
