@@ -157,6 +157,7 @@ class Doorkeeper:
             known = self._admit(decode(request.payload, Introduction).certificate)
             if not known:
                 self._renew_rules_soon()
+            known = known and not self._warned  # the hub is about to be opened anew, perhaps as it does not know it yet
             mine = self._credentials.certificate.read_text()
             beside = tuple(sorted(self._hub.sites()))
             request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known, beside)))

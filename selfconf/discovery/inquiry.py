@@ -80,7 +80,7 @@ class SiteInquiry:
     def __init__(
         self, ecology: EcologyView, done: Callable[[Discovery], None], again: int = DISCOVERY_ATTEMPTS - 1
     ) -> None:
-        """`again` is how often it begins anew when this node has lost its hub meanwhile, and others with it."""
+        """`again` is how often it begins anew when this node has no hub, or has lost it, and others with it."""
         self._again, self._link = again, ""
         self.ecology, self.bus, self.keys, self._done = ecology, ecology.bus, ecology.keys, done
         self._tokens: tuple[str, ...] = ()
@@ -128,7 +128,7 @@ class SiteInquiry:
         self._end(incomplete)
 
     def _end(self, incomplete: list[SiteLife]) -> None:
-        if self.bus.link != self._link and self._again:
+        if self._again and not self.bus.link == self._link != "":
             self.bus.later(BACK, SiteInquiry(self.ecology, self._done, self._again - 1).start)
         else:
             self.ecology.aside(lambda: self._finish(incomplete))

@@ -108,6 +108,17 @@ def test_who_shows_a_good_certificate_is_let_in_and_shown_that_of_the_site(door:
     assert len(door.enforced) == 1, "nothing has changed since"
 
 
+def test_no_certificate_is_known_while_the_hub_is_about_to_be_opened_anew(door: Door, tmp_path: Path) -> None:
+    """Its holder would ask by a link that ends in the next moment."""
+    shown = door.folder.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice").pem.decode()
+    answers = []
+    while not answers or not answers[-1]:
+        (answer,) = door.introduce(shown).samples
+        answers.append(decode(answer.payload, Introduction).known)
+        assert answers[-1] == bool(door.enforced)
+    assert len(answers) > 2
+
+
 def test_a_hub_that_does_not_open_is_tried_more_and_more_rarely_and_complained_of_once(
     door: Door, tmp_path: Path
 ) -> None:

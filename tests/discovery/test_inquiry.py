@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.memory import Faults, MemoryRequest
+from selfconf.bus.memory import Faults, MemoryBus, MemoryRequest
 from selfconf.bus.port import Request
 from selfconf.discovery import Discovery
 from selfconf.discovery.inquiry import DISCOVERY, LARGEST_ADVERTISEMENT
@@ -43,6 +43,12 @@ def test_what_is_found_is_what_was_advertised(field: Field) -> None:
 def test_an_ecology_without_sites_is_discovered_at_once(field: Field) -> None:
     assert field.discover() == Discovery()
     assert field.network.time < 1.0
+
+
+def test_a_node_that_has_no_hub_as_it_asks_asks_again(field: Field, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(MemoryBus, "link", property(lambda node: "hub" if node.now() > 0.1 else ""))
+    field.ecology.bus.later(0.2, lambda: field.site("living-room", "tracker"))
+    assert set(field.discover().found) == {TRACKER}
 
 
 def test_a_site_without_advertisements_has_answered(field: Field) -> None:
