@@ -18,6 +18,12 @@ ANSWER_PATIENCE = 20.0
 """How long, in seconds, an answer is waited for that the bus itself should end earlier."""
 LONGEST_TURN = 0.05
 """Seconds for which a thread waits at most until others have their turn, or until it notices that the bus is closed."""
+LINK_BACK = 2.0
+"""Seconds within which a hub that is opened anew is there again, or another one in its place."""
+OTHERS_BACK = 0.3
+"""Seconds that others may take to be connected again after this program."""
+ASKED = 3
+"""How often something is asked at most, where the link is lost each time."""
 _Result = TypeVar("_Result")
 
 
@@ -30,6 +36,10 @@ class SynchronousBus:
     def __init__(self, bus: Bus, seconds: float = ROLL_CALL) -> None:
         """`seconds` is how long a roll-call or a question may take, unless it says otherwise."""
         self._bus, self._seconds = bus, seconds
+        self._link = bus.link
+        """The link over which others were last known to be connected too."""
+        self._cut_off = False
+        """Whether the last question waited for a link in vain; the next one does not."""
         self._left = False
         self._process = os.getpid()
         self._turn, self._next_turn = threading.Lock(), threading.Lock()
@@ -90,16 +100,40 @@ class SynchronousBus:
             raise NetworkError("the ecology does not answer")
         return results[0]
 
+    def while_linked(self, ask: Callable[[], _Result]) -> _Result:
+        """What was asked over one link; it is asked again where that was lost meanwhile, by which answers are missed.
+
+        Raises NetworkError where the link is not back in time: to be cut off looks like an ecology in which nothing
+        lives.
+        """
+        for _ in range(ASKED):
+            self._await_link()
+            answer = ask()
+            if self._bus.link == self._link:
+                break
+        return answer
+
+    def _await_link(self) -> None:
+        """Wait until this program is connected, and then, if it was not for a moment, until others are."""
+        if self._link == self._bus.link != "":
+            return
+        deadline = self._bus.now() + (0.0 if self._cut_off else LINK_BACK)
+        self.run(lambda: bool(self._bus.link) or self._bus.now() > deadline)
+        self._link = self._bus.link
+        self._cut_off = not self._link
+        if self._cut_off:
+            raise NetworkError("cut off from the ecology while it was asked; try again")
+        self.pause(OTHERS_BACK)
+
     def ask(self, key: str, payload: bytes = b"", seconds: float | None = None) -> Replies:
-        """Return all answers to a question."""
-
-        def begin(done: Callable[[Replies], None]) -> None:
-            self._bus.ask(key, payload, self._seconds if seconds is None else seconds, done)
-
-        return self.wait(begin)
+        """Return all answers to a question, which may be asked more than once. Raises NetworkError if cut off."""
+        return self.ask_each([(key, payload)], seconds)[0]
 
     def ask_each(self, questions: Sequence[tuple[str, bytes]], seconds: float | None = None) -> list[Replies]:
         """Return the answers to several questions, each a key and a payload, that are asked all at once; in order."""
+        return self.while_linked(lambda: self._asked_once(questions, seconds)) if questions else []
+
+    def _asked_once(self, questions: Sequence[tuple[str, bytes]], seconds: float | None) -> list[Replies]:
         patience = self._seconds if seconds is None else seconds
         found: dict[int, Replies] = {}
 
@@ -112,21 +146,21 @@ class SynchronousBus:
             for index, (key, payload) in enumerate(questions):
                 self._bus.ask(key, payload, patience, partial(answered, index))
 
-        return self.wait(begin) if questions else []
+        return self.wait(begin)
 
     def demand(self, key: str, payload: bytes, trouble: str, seconds: float | None = None) -> None:
-        """Have something done. Raises NetworkError, which begins with the trouble, where no node has done it."""
-        replies = self.ask(key, payload, seconds)
+        """Have something done, once. Raises NetworkError, which begins with the trouble, where no node has done it."""
+        replies = self._asked_once([(key, payload)], seconds)[0]
         if not replies.samples:
             raise NetworkError(f"{trouble}: {'; '.join(replies.errors) or 'it does not answer'}")
 
     def living(self, key: str) -> tuple[str, ...]:
-        """Return the liveliness keys that match a key."""
+        """Return the liveliness keys that match a key. Raises NetworkError if cut off."""
 
         def begin(done: Callable[[tuple[str, ...]], None]) -> None:
             self._bus.roll_call(key, self._seconds, done)
 
-        return self.wait(begin)
+        return self.while_linked(lambda: self.wait(begin))
 
     def pause(self, seconds: float) -> None:
         """Let the bus run for some time."""

@@ -53,6 +53,58 @@ def test_several_questions_are_asked_at_once_and_answered_in_order(network: Netw
     assert bus.ask_each([]) == []
 
 
+@pytest.fixture
+def links(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The links that a bus has, one each time that it is asked, the last one for ever; at first it has the first."""
+    links = ["hub 1"]
+    monkeypatch.setattr(MemoryBus, "link", property(lambda _: links.pop(0) if len(links) > 1 else links[0]))
+    return links
+
+
+def asked_with(links: list[str], *then: str) -> tuple[list[bytes], tuple[str, ...], int]:
+    """What is heard of a question and a roll-call by a bus with some links, and how often the question was asked."""
+    network, asked = Network(), list[bytes]()
+    bus = SynchronousBus(network.node())
+
+    def answer(request: Request) -> None:
+        asked.append(request.payload)
+        request.reply(request.key, b"said")
+        request.finish()
+
+    network.node().serve("k/answers", answer)
+    network.node().announce("k/life/1")
+    links[:] = then
+    heard = [sample.payload for sample in bus.ask("k/answers").samples]
+    return heard, bus.living("k/life/*"), len(asked)
+
+
+@pytest.mark.parametrize(
+    ("then", "times"),
+    [
+        (["hub 1"], 1),  # nothing has happened
+        (["hub 2"], 1),  # it was lost before the question
+        (["hub 1", "hub 2"], 2),  # while that was asked
+        (["hub 1", "", "hub 2"], 2),
+        (["hub 1", "hub 2", "hub 2", "hub 2", "hub 2", "hub 3"], 3),
+    ],
+)
+def test_what_was_asked_as_the_link_was_lost_is_asked_again(links: list[str], then: list[str], times: int) -> None:
+    assert asked_with(links, *then) == ([b"said"], ("k/life/1",), times)
+
+
+@pytest.mark.parametrize("then", [[""], ["hub 1", ""]])
+def test_what_is_cut_off_hears_nothing_and_says_so(links: list[str], then: list[str]) -> None:
+    with pytest.raises(NetworkError, match="cut off from the ecology while it was asked"):
+        asked_with(links, *then)
+
+
+def test_what_is_demanded_is_not_demanded_again_as_the_link_is_lost(network: Network, links: list[str]) -> None:
+    bus = SynchronousBus(network.node())
+    links[:] = ["hub 2", "hub 3"]
+    bus.demand("k/answers", b"", "it did not move")
+    assert links == ["hub 2", "hub 3"]
+
+
 def test_what_is_not_done_is_trouble_with_its_reason(network: Network) -> None:
     bus = SynchronousBus(network.node())
     bus.demand("k/answers", b"", "it did not move")

@@ -53,12 +53,6 @@ if TYPE_CHECKING:
 
 PAUSES = (0.0, 0.1, 0.4)
 """Seconds before each call of the sites, until one answers: one that has just begun may not be known to its hub."""
-LINK_BACK = 2.0
-"""Seconds within which a hub that is opened anew is there again, or another one in its place."""
-OTHERS_BACK = 0.3
-"""Seconds that others may take to be connected again after this program."""
-ASKED = 3
-"""How often something is asked at most, where the link is lost each time."""
 _Result = TypeVar("_Result")
 
 
@@ -114,7 +108,7 @@ class LivingEcology(Ecology):
         Raises NetworkError, also where the site is gone by which this program reaches the ecology: to be cut off looks
         like an ecology in which nothing lives.
         """
-        found = self._while_linked(lambda: self._synchronous.wait(self._view.discover))
+        found = self._synchronous.while_linked(lambda: self._synchronous.wait(self._view.discover))
         self.discovery = replace(found, missing=self._view.silent_sites(found))
         suspended = {*self.discovery.missing} - {*found.missing}
         missing = (
@@ -134,8 +128,7 @@ class LivingEcology(Ecology):
 
         Raises NetworkError, as `discover` does.
         """
-        key = self._view.keys.configurator_call("*", "status")
-        return holders_in(self._while_linked(lambda: self._synchronous.ask(key)), self._view.keys)
+        return holders_in(self._synchronous.ask(self._view.keys.configurator_call("*", "status")), self._view.keys)
 
     def state(self, component: str) -> str:
         """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.
@@ -404,25 +397,6 @@ class LivingEcology(Ecology):
         if name is not None:
             checked_text(name, "the name of a task")
         return self._complaining(self._tasks, self._tasks.stop(name))
-
-    def _while_linked(self, ask: Callable[[], _Result]) -> _Result:
-        """What was asked while this program was connected to one hub; it is asked again where the link was lost.
-
-        Raises NetworkError where that is not back in time.
-        """
-        for _ in range(ASKED):
-            link, answer = self._bus.link, ask()
-            if self._bus.link == link != "":
-                break
-            self._await_link()
-        return answer
-
-    def _await_link(self) -> None:
-        deadline = self._bus.now() + LINK_BACK
-        self._synchronous.run(lambda: bool(self._bus.link) or self._bus.now() > deadline)
-        if not self._bus.link:
-            raise NetworkError(f"cut off from the ecology {self.name!r} while it was asked; try again")
-        self._synchronous.pause(OTHERS_BACK)
 
     def _sites_answer(self, pause: float) -> bool:
         """Whether any site of the ecology lives, as it is found after a pause in seconds."""

@@ -82,13 +82,14 @@ def logs_of_other_sites(
 
     def told(site: str, question: LogQuestion) -> LogPart:
         """What a site tells of its log; nothing new where it does not answer."""
-        replies = bus.ask(keys.log(site), encode(question))
-        trouble = [*replies.errors, *filter(None, [hint])]
+        trouble: list[str] = []
         try:
+            replies = bus.ask(keys.log(site), encode(question))
+            trouble += [*replies.errors, *filter(None, [hint])]
             return decode(replies.samples[0].payload, LogPart)
         except IndexError:
             pass
-        except PeerError as error:
+        except (NetworkError, PeerError) as error:
             trouble.append(str(error))
         if site not in silent:
             silent.add(site)

@@ -10,9 +10,9 @@ import pytest
 
 import selfconf as sc
 from selfconf import LivingEcology, Refusal, join, template, this_machine
+from selfconf.api import synchronous_bus
 from selfconf.api.answer import Answer
 from selfconf.api.ecology import Solutions
-from selfconf.api.living import living_ecology
 from selfconf.bus.port import Request
 from selfconf.bus.zenoh import ZenohBus
 from selfconf.discovery import Discovery, ecology_view
@@ -171,9 +171,10 @@ def test_an_ecology_that_cannot_be_reached_any_more_is_not_taken_for_an_empty_on
     living: LivingEcology, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as cut_off:
-        cut_off.setattr(living_ecology, "LINK_BACK", 0.2)
+        cut_off.setattr(synchronous_bus, "LINK_BACK", 0.2)
         cut_off.setattr(ZenohBus, "link", "")
-        for asked in (living.discover, living.component_states, living.holders):
+        asked_for = (living.discover, living.component_states, living.holders, living.all_tasks, living.deployed)
+        for asked in (*asked_for, lambda: living.tasks, living.stop, lambda: living.why("tracker")):
             with pytest.raises(NetworkError, match="cut off from the ecology"):
                 asked()
     assert living.discover().found
