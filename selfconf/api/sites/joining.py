@@ -185,9 +185,9 @@ class Joining:
 
     def leave(self) -> None:
         """Take back what was written down."""
-        if self._file is not None:
-            this_machine.leave(self._file)
-            self._file = None
+        file, self._file = self._file, None  # first: the thread of the bus writes it anew where it is lost
+        if file is not None:
+            this_machine.leave(file)
 
     def _relays(self) -> list[str]:
         """Where the other sites of this machine that relay are reached."""
@@ -240,9 +240,10 @@ class Joining:
 
     def _look_from_time_to_time(self) -> None:
         self.bus.later(STILL_MINE * (1 if self.bus.endpoint else STILL_HEARD), self._look_from_time_to_time)
-        if self._file is None:
+        file = self._file
+        if file is None:
             return
-        if self._trouble or not self._file.exists():
+        if self._trouble or not file.exists():
             self._announce_anew()
         if self._is_replaced():
             self._look()

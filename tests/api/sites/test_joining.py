@@ -109,6 +109,18 @@ def test_sites_are_found_again_when_the_runtime_folder_was_removed(
     assert machine.until(lambda: this_machine.local_sites("machine") == before)
 
 
+def test_a_site_that_leaves_does_not_announce_itself_anew(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    site, leave = machine.join("a"), this_machine.leave
+
+    def leave_slowly(path: Path) -> None:
+        leave(path)
+        site._look_from_time_to_time()
+
+    monkeypatch.setattr(this_machine, "leave", leave_slowly)
+    machine.leave("a")
+    assert not list(this_machine.runtime_folder().glob("*.json"))
+
+
 def test_a_place_is_taken_once_the_runtime_folder_can_be_used_again(
     machine: Machine, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
