@@ -3,10 +3,10 @@
     python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--half HALF] [--write]
 
 Each engine runs in a process of its own, on the problems of `further_families`, `later_families`, `last_families`,
-`newest_families` and `installation_families`, and is asked two questions: which configuration is the first one, or that
-there is none, which is what selfconf answers; and, where there is one, for any configuration, which is easier. An
-engine is stopped at the limit, or at `PATIENCE` times the best time so far where that is sooner, since what is slower
-does not change how selfconf compares to the best.
+`newest_families`, `installation_families` and `task_families`, and is asked two questions: which configuration is the
+first one, or that there is none, which is what selfconf answers; and, where there is one, for any configuration, which
+is easier. An engine is stopped at the limit, or at `PATIENCE` times the best time so far where that is sooner, since
+what is slower does not change how selfconf compares to the best.
 `--write` writes `docs/benchmarks/further.md`.
 """
 
@@ -32,6 +32,7 @@ from benchmarks.search.later_families import LATER_CHOOSING, LATER_REPORTING, LA
 from benchmarks.search.measure import Measured, made, measure
 from benchmarks.search.newest_families import NEWEST_CHOOSING, NEWEST_REPORTING, NEWEST_SMALL
 from benchmarks.search.report import WORK, Row, table
+from benchmarks.search.task_families import TASK_CHOOSING, TASK_REPORTING, TASK_SMALL
 from selfconf.search.problem import Problem
 
 SEED = 94_211
@@ -53,9 +54,11 @@ HALVES: dict[str, Mapping[str, Family]] = {
     "reporting newest": NEWEST_REPORTING,
     "choosing installations": INSTALLATION_CHOOSING,
     "reporting installations": INSTALLATION_REPORTING,
+    "choosing tasks": TASK_CHOOSING,
+    "reporting tasks": TASK_REPORTING,
 }
 """The families by what they are for."""
-SMALLEST = {**SMALL, **LATER_SMALL, **LAST_SMALL, **NEWEST_SMALL, **INSTALLATION_SMALL}
+SMALLEST = {**SMALL, **LATER_SMALL, **LAST_SMALL, **NEWEST_SMALL, **INSTALLATION_SMALL, **TASK_SMALL}
 """One small instance of each, to see that everything runs."""
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "further.md"
 
@@ -68,8 +71,8 @@ one thread. An engine that takes {patience:g} times as long as the best before i
 time is written as `>`. Ratios are of those instances that take selfconf or the best other engine {work:g} ms at least.
 
 The families `choosing` are those on which ideas and thresholds of the search were chosen; `reporting` were only
-measured; `unseen` were made after the search was finished, and those called `later`, `last`, `newest` and
-`installations` once more each, to choose on and to measure. [Luck, and what was
+measured; `unseen` were made after the search was finished, and those called `later`, `last`, `newest`,
+`installations` and `tasks` once more each, to choose on and to measure. [Luck, and what was
 missing](../search.md#luck-and-what-was-missing) says why it lost, and what helped."""
 
 
