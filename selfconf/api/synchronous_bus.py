@@ -20,8 +20,10 @@ LONGEST_TURN = 0.05
 """Seconds for which a thread waits at most until others have their turn, or until it notices that the bus is closed."""
 LINK_BACK = 2.0
 """Seconds within which a hub that is opened anew is there again, or another one in its place."""
-OTHERS_BACK = 0.3
-"""Seconds that others may take to be connected again after this program."""
+OTHERS_BACK = 1.0
+"""Seconds that others may take to be connected again after this program; on a busy machine 0.3 is not enough."""
+LOSS_TOLD = 0.5
+"""Seconds after the end of a question by which the loss of the link is known that has ended it."""
 ASKED = 3
 """How often something is asked at most, where the link is lost each time."""
 _Result = TypeVar("_Result")
@@ -33,9 +35,12 @@ class SynchronousBus:
     What has come for any of them is done by the one whose turn it is, so none waits for the answers of others.
     """
 
-    def __init__(self, bus: Bus, seconds: float = ROLL_CALL) -> None:
-        """`seconds` is how long a roll-call or a question may take, unless it says otherwise."""
-        self._bus, self._seconds = bus, seconds
+    def __init__(self, bus: Bus, seconds: float = ROLL_CALL, lives: str = "") -> None:
+        """`seconds` is how long a roll-call or a question may take, unless it says otherwise.
+
+        `lives` is a key of lives of which some are seen unless this program is cut off, such as those of sites.
+        """
+        self._bus, self._seconds, self._lives = bus, seconds, lives
         self._link = bus.link
         """The link over which others were last known to be connected too."""
         self._cut_off = False
@@ -100,18 +105,29 @@ class SynchronousBus:
             raise NetworkError("the ecology does not answer")
         return results[0]
 
-    def while_linked(self, ask: Callable[[], _Result]) -> _Result:
+    def while_linked(self, ask: Callable[[], _Result], heard: Callable[[_Result], bool] = bool) -> _Result:
         """What was asked over one link; it is asked again where that was lost meanwhile, by which answers are missed.
 
-        Raises NetworkError where the link is not back in time: to be cut off looks like an ecology in which nothing
-        lives.
+        `heard` says whether there was any answer. Raises NetworkError where the link is not back in time: to be cut off
+        looks like an ecology in which nothing lives.
         """
         for _ in range(ASKED):
             self._await_link()
             answer = ask()
-            if self._bus.link == self._link:
+            if self._bus.link == self._link and (heard(answer) or not self._has_lost_link()):
                 break
         return answer
+
+    def _has_lost_link(self) -> bool:
+        """Whether the link is lost over which nothing was heard: the bus ends all questions moments before it says so.
+
+        To see that others live is quicker than to wait for that.
+        """
+        if not self._lives or self._called_once(self._lives):
+            return False
+        deadline = self._bus.now() + LOSS_TOLD
+        self.run(lambda: self._bus.link != self._link or self._bus.now() > deadline)
+        return self._bus.link != self._link
 
     def _await_link(self) -> None:
         """Wait until this program is connected, and then, if it was not for a moment, until others are."""
@@ -131,7 +147,9 @@ class SynchronousBus:
 
     def ask_each(self, questions: Sequence[tuple[str, bytes]], seconds: float | None = None) -> list[Replies]:
         """Return the answers to several questions, each a key and a payload, that are asked all at once; in order."""
-        return self.while_linked(lambda: self._asked_once(questions, seconds)) if questions else []
+        if not questions:
+            return []
+        return self.while_linked(lambda: self._asked_once(questions, seconds), _any_answer)
 
     def _asked_once(self, questions: Sequence[tuple[str, bytes]], seconds: float | None) -> list[Replies]:
         patience = self._seconds if seconds is None else seconds
@@ -156,11 +174,13 @@ class SynchronousBus:
 
     def living(self, key: str) -> tuple[str, ...]:
         """Return the liveliness keys that match a key. Raises NetworkError if cut off."""
+        return self.while_linked(lambda: self._called_once(key))
 
+    def _called_once(self, key: str) -> tuple[str, ...]:
         def begin(done: Callable[[tuple[str, ...]], None]) -> None:
             self._bus.roll_call(key, self._seconds, done)
 
-        return self.while_linked(lambda: self.wait(begin))
+        return self.wait(begin)
 
     def pause(self, seconds: float) -> None:
         """Let the bus run for some time."""
@@ -170,3 +190,7 @@ class SynchronousBus:
     def now(self) -> float:
         """Seconds of the bus's clock."""
         return self._bus.now()
+
+
+def _any_answer(replies: Sequence[Replies]) -> bool:
+    return any(one.samples or one.errors for one in replies)

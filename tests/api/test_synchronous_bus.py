@@ -10,7 +10,7 @@ from functools import partial
 
 import pytest
 
-from selfconf.api.synchronous_bus import ANSWER_PATIENCE, SynchronousBus
+from selfconf.api.synchronous_bus import ANSWER_PATIENCE, LOSS_TOLD, SynchronousBus
 from selfconf.bus.loop import Loop
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request
@@ -96,6 +96,27 @@ def test_what_was_asked_as_the_link_was_lost_is_asked_again(links: list[str], th
 def test_what_is_cut_off_hears_nothing_and_says_so(links: list[str], then: list[str]) -> None:
     with pytest.raises(NetworkError, match="cut off from the ecology while it was asked"):
         asked_with(links, *then)
+
+
+def test_nothing_is_believed_only_over_a_link_that_is_not_about_to_be_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    network = Network()
+    bus, other = SynchronousBus(network.node(), lives="k/life/*"), network.node()
+
+    def come_back() -> None:
+        other.serve("k/answers", lambda request: (request.reply(request.key, b"said"), request.finish()))
+        other.announce("k/life/1")
+
+    other.later(LOSS_TOLD / 2, come_back)
+    monkeypatch.setattr(MemoryBus, "link", property(lambda _: f"hub {network.time > LOSS_TOLD / 2}"))
+    assert [sample.payload for sample in bus.ask("k/answers").samples] == [b"said"]
+    began = bus.now()
+    assert bus.ask("k/nobody").samples == ()  # others are seen to live, so it is not waited for a loss
+    assert bus.now() - began < LOSS_TOLD
+
+
+def test_where_nobody_lives_nothing_is_believed_after_a_while() -> None:
+    bus = SynchronousBus(Network().node(), lives="k/life/*")
+    assert (bus.ask("k/nobody").samples, bus.living("k/life/*")) == ((), ())
 
 
 def test_what_is_demanded_is_not_demanded_again_as_the_link_is_lost(network: Network, links: list[str]) -> None:

@@ -77,7 +77,7 @@ class LivingEcology(Ecology):
         self._view.suspended_sites = partial(this_machine.suspended_sites, name)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
-        self._synchronous = SynchronousBus(self._bus)
+        self._synchronous = SynchronousBus(self._bus, lives=self._view.keys.any_site_life())
         self._tasks = LivingTasks(self._synchronous, self._view.keys, self.endpoints)
         self._released = ReleasedComponents(self._synchronous, self._view.keys)
         self._configurators = Configurators(self._synchronous, self._view.keys)
@@ -108,7 +108,9 @@ class LivingEcology(Ecology):
         Raises NetworkError, also where the site is gone by which this program reaches the ecology: to be cut off looks
         like an ecology in which nothing lives.
         """
-        found = self._synchronous.while_linked(lambda: self._synchronous.wait(self._view.discover))
+        found = self._synchronous.while_linked(
+            lambda: self._synchronous.wait(self._view.discover), lambda discovery: bool(discovery.found)
+        )
         self.discovery = replace(found, missing=self._view.silent_sites(found))
         suspended = {*self.discovery.missing} - {*found.missing}
         missing = (

@@ -141,8 +141,9 @@ class Run:
 
     def _tasks(self, bus: ZenohBus) -> LivingTasks:
         """The other tasks of the ecology."""
-        asking = SynchronousBus(bus, ROLL_CALL if self._named else TASKS_CALL)
-        return LivingTasks(asking, Keys(self._membership.ecology), self._membership.endpoints)
+        keys = Keys(self._membership.ecology)
+        asking = SynchronousBus(bus, ROLL_CALL if self._named else TASKS_CALL, keys.any_site_life())
+        return LivingTasks(asking, keys, self._membership.endpoints)
 
     def _in_ecology(self) -> _Begun:
         """The run's part in the ecology. Raises ProgrammerError for a run that was not entered."""
