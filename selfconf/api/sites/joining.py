@@ -65,7 +65,7 @@ BUSY = 0.5
 """Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear it."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
-REACHED = 0.5
+REACHED = 1.0
 """Seconds until a site has surely reached one that has begun to relay, beyond handshakes with those that hang."""
 
 
@@ -245,7 +245,8 @@ class Joining:
             return
         if self._trouble or not file.exists():
             self._announce_anew()
-        if self._is_replaced():
+        if not self._in_order():  # it may have lost its hub before it was announced, and looked in vain
+            self._look_again()
             self._look()
         elif not self._asking and (self.bus.link or (self.bus.endpoint and self._hangs())):
             self._ask_hub()

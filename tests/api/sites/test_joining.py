@@ -98,6 +98,19 @@ def test_when_the_one_that_relays_is_gone_another_does_so_on_the_same_port(machi
     assert [site.endpoint for site in machine.sites.values()] == [before, before]
 
 
+def test_a_place_is_taken_by_one_that_has_lost_its_hub_before_it_was_announced(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    machine.join("a")
+    site = machine.sites["b"] = Joining("machine", "b", None, ())
+    machine.leave("a")
+    assert not machine.until(lambda: site.relays, seconds=0.3)
+    assert not site.bus.link
+    site.announce()
+    assert machine.until(lambda: site.relays)
+
+
 def test_sites_are_found_again_when_the_runtime_folder_was_removed(
     machine: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
