@@ -184,7 +184,10 @@ class Fail:
     task: str = ""
     """The identity of the task that it is put for; empty: every task that the component acts for."""
     sequence: int = 0
-    """The number of the last signal that this life has issued: what comes of it later, up to that, is no news."""
+    """The number of the last signal that this life has issued: what comes of it later, up to that, is no news.
+
+    0 where there was none, or where it is not known, as to a site.
+    """
 
 
 @immutable

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.bus.memory import Faults
 from tests.faults import script
 from tests.faults.ecologies import COMPOSED, ECOLOGIES, LATCHED, PAPER
 from tests.faults.harsh import KINDS, STALLS, promising, write
@@ -69,6 +70,20 @@ BROKEN_ONCE = {
             Action(12.0, "crash", "screen"),
         ),
         period=script.PERIOD,
+    ),
+    "a FAIL comes after what its source has issued since it acts again": Script(
+        830001140,
+        LATCHED,
+        Faults(least_delay=0.0005, most_delay=0.02, most_event_delay=0.1),
+        tasks={"task-1": TaskPlan(), "task-2": TaskPlan()},
+        actions=(
+            Action(0.0, "begin", "task-1"),
+            Action(5.511, "begin", "task-2"),
+            Action(6.112, "flap", "chart", "task-2", seconds=8.0),
+            Action(6.622, "flap", "task-2", "second-planner", seconds=0.05),
+            Action(6.622, "fail", "second-planner"),
+            Action(6.623, "flap", "chart", "second-mower", seconds=8.0),
+        ),
     ),
 }
 

@@ -337,8 +337,9 @@ class InputSubscription:
             return
         if fail.cause is Cause.LET_GO:
             self._look_whether_it_acts(fail)
-        else:
-            self._order.over = SignalNumber(fail.life, fail.sequence)
+            return
+        last = self._order.over = SignalNumber(fail.life, fail.sequence)
+        if not self._order.is_past(last):  # it comes late, of a source that acts again
             self._lose(self._heard_at)
 
     def _look_whether_it_acts(self, fail: Fail) -> None:

@@ -22,7 +22,7 @@ class SignalNumber(NamedTuple):
     life: str
     sequence: int
 
-    def covers(self, stamp: Stamp) -> bool:
+    def covers(self, stamp: Stamp | SignalNumber) -> bool:
         """Whether a signal is this one, or was issued before it by the same life."""
         return stamp.life == self.life and 0 <= self.sequence - stamp.sequence < LATE
 
@@ -54,6 +54,10 @@ class SignalOrder:
     def is_over(self, stamp: Stamp) -> bool:
         """Whether a signal was issued before its source failed, or let go of its task."""
         return self.over.covers(stamp)
+
+    def is_past(self, last: SignalNumber) -> bool:
+        """Whether something was delivered that its source has issued after a signal; number 0 says nothing of that."""
+        return last.sequence > 0 and self.newest.life == last.life and not last.covers(self.newest)
 
     def settle(self, stamp: Stamp, lives: Callable[[str], bool]) -> None:
         """Doubt the source no more if a signal is newer: of the life in doubt, or of another that `lives`."""

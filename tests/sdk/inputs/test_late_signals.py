@@ -63,6 +63,12 @@ class Late:
         self.tracker.publisher(KEYS.fail(TRACKER), Urgency.EVENT).put(encode(fail))
         self.stage.let_pass(0.01)
 
+    def fail(self, sequence: int, cause: Cause = Cause.FAIL) -> None:
+        """The tracker raises FAIL after that signal; number 0 is that of its site, which knows of none."""
+        fail = Fail(TRACKER, "t", 1, cause, "it is dark", sequence=sequence)
+        self.tracker.publisher(KEYS.fail(TRACKER), Urgency.EVENT).put(encode(fail))
+        self.stage.let_pass(0.01)
+
     def answer_nothing(self) -> None:
         """The tracker is not on: it has no last signal."""
         for request in self._asked:
@@ -97,6 +103,19 @@ def test_a_signal_from_before_its_source_let_go_of_its_task_feeds_nothing(before
     assert late.came_to_rest()
     late.issue(4)
     assert late.stage.recorder.said[-2:] == [("started",), ("position", 4)], "it acts again"
+
+
+@pytest.mark.parametrize(
+    ("failed", "cause", "blind"),
+    [(1, Cause.FAIL, False), (2, Cause.FAIL, True), (3, Cause.HUNG, True), (0, Cause.CRASH, True)],
+)
+def test_a_fail_that_comes_after_what_its_source_has_issued_since_makes_nobody_blind(
+    failed: int, cause: Cause, blind: bool
+) -> None:
+    late = Late()
+    late.issue(2)
+    late.fail(failed, cause)
+    assert late.came_to_rest() is blind
 
 
 def test_what_stands_by_has_not_just_issued_what_comes_late_of_another_task() -> None:

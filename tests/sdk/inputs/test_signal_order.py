@@ -77,5 +77,19 @@ def test_a_doubt_is_settled_by_what_is_newer(signal: Stamp, living: tuple[str, .
     assert (known.doubted is not None) is doubted
 
 
+@pytest.mark.parametrize(
+    ("last", "past"),
+    [
+        (SignalNumber("t", 4), True),
+        (SignalNumber("t", 5), False),
+        (SignalNumber("t", 6), False),
+        (SignalNumber("u", 4), False),
+        (SignalNumber("t", 0), False),
+    ],
+)
+def test_what_was_delivered_is_past_an_end_before_it(last: SignalNumber, past: bool) -> None:
+    assert order().is_past(last) is past
+
+
 def test_no_signal_covers_none() -> None:
     assert not NONE.covers(stamp(1))
