@@ -16,6 +16,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Cause
+from selfconf.rdf.advertisements import Advertisement
 from selfconf.sdk.inputs.input_subscription import JUST_COME
 from selfconf.sdk.inputs.inputs import HANDOVER, Inputs
 from tests.faults.histories import History, Life
@@ -76,18 +77,17 @@ def _is_lost(history: History, agent: TaskRunner, component: IRI, sink: Life) ->
 def worse_than_need_be(history: History) -> Iterator[str]:
     """A task that changes for the better runs with what its strategy would rather have, of what lives and is free.
 
-    Where a component takes too long to start, tasks take turns with it, and what is free is so for a moment.
+    What it holds it may keep though the site is gone that has advertised it. Where a component takes too long to start,
+    tasks take turns with it, and what is free is so for a moment.
     """
     if any(life.recorder.slow for life in history.lives):
         return
     alive = {life.component for life in history.lives if life.node.open}
-    found = {
-        component: advertisement
-        for name, site in history.sites.items()
-        if history.node(name) is not None
-        for component, advertisement in site.shelf.advertisements.items()
-        if component in alive
-    }
+    found: dict[bool, dict[IRI, Advertisement]] = {True: {}, False: {}}
+    """What lives, by whether its site is there."""
+    for name, site in history.sites.items():
+        some = found[history.node(name) is not None]
+        some.update((one, advertised) for one, advertised in site.shelf.advertisements.items() if one in alive)
     for agent in history.agents:
         state = agent.state
         if agent.request.upgrade is None or state.phase is not Phase.RUNNING or not history.lab.is_open(agent):
@@ -100,7 +100,8 @@ def worse_than_need_be(history: History) -> Iterator[str]:
             if life.node.open and hold.claim.priority >= state.priority
         }
         broken = {component for component, loss in state.lost.items() if loss.cause is not Cause.CRASH}
-        better = agent.request.compose(found, frozenset(taken | broken), None)
+        kept = {one: advertised for one, advertised in found[False].items() if one in state.held}
+        better = agent.request.compose({**kept, **found[True]}, frozenset(taken | broken), None)
         assert state.target is not None
         if not isinstance(better, Configuration) or disagreeing(history, agent, better):
             continue
