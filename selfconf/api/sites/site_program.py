@@ -48,8 +48,9 @@ log = logging.getLogger(__name__)
 
 Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
 """Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
-WORK_CHECK = 60.0
-"""How often, in seconds, a site looks whether it is to end, or has work, of which it hears at once: it is to sleep."""
+WORK_CHECK = 3.0
+"""How often, in seconds, a site looks whether it is to end. It hears at once, but for a signal that comes just as its
+main thread begins to wait: Python handles that no sooner than the thread goes on."""
 
 
 @immutable
