@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from selfconf.configurator import Appeared, Discovered, Failed, Loss
 from selfconf.deployment.components import Liveness
@@ -11,6 +10,7 @@ from selfconf.deployment.holders import WithoutConfigurator, ask_holders
 from selfconf.deployment.task_context import TaskContext
 from selfconf.discovery import Discovery
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import replace
 from selfconf.model.run_event import AnswerRejected, AnyRunEvent, EcologyAsked, EcologyDiscovered
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, owner_of

@@ -13,8 +13,8 @@
 * `within_capacity` removes options that leave demands unmet, as each role can serve so many of them.
 * `exclusive_groups` are groups of options of which at most one can play, and what counting them proves.
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
-  `least_by_clauses` find any or the least solution by several of them, `least_of_clauses` the least one of the clauses
-  that a solver holds, and `minimise` a solution of least weight.
+  `least_by_clauses` find any or the least solution by several of them, or by an `OtherWay` where that is hard;
+  `least_of_clauses` finds the least one of the clauses that a solver holds, and `minimise` a solution of least weight.
 * `FoundedSolver` is such a solver for players and recruits, which never feed each other in a circle.
 * `smallest_core` is a smallest set of constraints that cannot hold together, by hitting sets.
 """
