@@ -245,7 +245,9 @@ class Joining:
             return
         if self._trouble or not file.exists():
             self._announce_anew()
-        if not self._in_order():  # it may have lost its hub before it was announced, and looked in vain
+        # It may have lost its hub before it was announced, and looked in vain. Whether others relay is not looked at:
+        # of many sites each would read the files of all.
+        if self._is_replaced() or not (self.bus.endpoint or self.bus.link):
             self._look_again()
             self._look()
         elif not self._asking and (self.bus.link or (self.bus.endpoint and self._hangs())):
@@ -341,9 +343,7 @@ class Joining:
 
     def _await(self, relays: list[str]) -> None:
         """Let those that relay since this moment be reached: those before may have to be given up one by one first."""
-        endpoints = (
-            1 if self._security is None else 2
-        )  # of each that relays: with keys it has one for its own host, too
+        endpoints = 1 if self._security is None else 2  # with keys a hub has one for its own host, too
         handshakes = endpoints * max(1, len(self._awaited))
         self._awaited, self._hung_at = relays, self.bus.now() + handshakes * GREETING + REACHED
 

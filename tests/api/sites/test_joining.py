@@ -111,6 +111,19 @@ def test_a_place_is_taken_by_one_that_has_lost_its_hub_before_it_was_announced(
     assert machine.until(lambda: site.relays)
 
 
+def test_sites_that_have_a_hub_do_not_read_from_time_to_time_what_all_others_have_written(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(joining, "STILL_MINE", 0.05)
+    read, local_sites = list[str](), this_machine.local_sites
+    for name in ("a", "b"):
+        machine.join(name)
+    assert machine.until(lambda: bool(machine.sites["b"].bus.link))
+    machine.until(lambda: False, seconds=0.5)
+    monkeypatch.setattr(this_machine, "local_sites", lambda ecology: read.append(ecology) or local_sites(ecology))
+    assert not machine.until(lambda: bool(read), seconds=0.5)
+
+
 def test_sites_are_found_again_when_the_runtime_folder_was_removed(
     machine: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
