@@ -26,6 +26,7 @@ LOSS_TOLD = 0.5
 """Seconds after the end of a question by which the loss of the link is known that has ended it."""
 ASKED = 3
 """How often something is asked at most, where the link is lost each time."""
+CUT_OFF = "cut off from the ecology while it was asked; try again"
 _Result = TypeVar("_Result")
 
 
@@ -108,15 +109,15 @@ class SynchronousBus:
     def while_linked(self, ask: Callable[[], _Result], heard: Callable[[_Result], bool] = bool) -> _Result:
         """What was asked over one link; it is asked again where that was lost meanwhile, by which answers are missed.
 
-        `heard` says whether there was any answer. Raises NetworkError where the link is not back in time: to be cut off
-        looks like an ecology in which nothing lives.
+        `heard` says whether there was any answer. Raises NetworkError where the link is not back in time, or lost each
+        time: to be cut off looks like an ecology in which nothing lives.
         """
         for _ in range(ASKED):
             self._await_link()
             answer = ask()
             if self._bus.link == self._link and (heard(answer) or not self._has_lost_link()):
-                break
-        return answer
+                return answer
+        raise NetworkError(CUT_OFF)
 
     def _has_lost_link(self) -> bool:
         """Whether the link is lost over which nothing was heard: the bus ends all questions moments before it says so.
@@ -138,7 +139,7 @@ class SynchronousBus:
         self._link = self._bus.link
         self._cut_off = not self._link
         if self._cut_off:
-            raise NetworkError("cut off from the ecology while it was asked; try again")
+            raise NetworkError(CUT_OFF)
         self.pause(OTHERS_BACK)
 
     def ask(self, key: str, payload: bytes = b"", seconds: float | None = None) -> Replies:

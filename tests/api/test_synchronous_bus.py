@@ -92,7 +92,7 @@ def test_what_was_asked_as_the_link_was_lost_is_asked_again(links: list[str], th
     assert asked_with(links, *then) == ([b"said"], ("k/life/1",), times)
 
 
-@pytest.mark.parametrize("then", [[""], ["hub 1", ""]])
+@pytest.mark.parametrize("then", [[""], ["hub 1", ""], [f"hub {number}" for number in range(100)]])
 def test_what_is_cut_off_hears_nothing_and_says_so(links: list[str], then: list[str]) -> None:
     with pytest.raises(NetworkError, match="cut off from the ecology while it was asked"):
         asked_with(links, *then)
