@@ -26,7 +26,7 @@ LOSS_TOLD = 0.5
 """Seconds after the end of a question by which the loss of the link is known that has ended it."""
 ASKED = 3
 """How often something is asked at most, where the link is lost each time."""
-CUT_OFF = "cut off from the ecology while it was asked; try again"
+CUT_OFF_MEANWHILE = "cut off from the ecology while it was asked; try again"
 _Result = TypeVar("_Result")
 
 
@@ -117,7 +117,7 @@ class SynchronousBus:
             answer = ask()
             if self._bus.link == self._link and (heard(answer) or not self._has_lost_link()):
                 return answer
-        raise NetworkError(CUT_OFF)
+        raise NetworkError(CUT_OFF_MEANWHILE)
 
     def _has_lost_link(self) -> bool:
         """Whether the link is lost over which nothing was heard: the bus ends all questions moments before it says so.
@@ -139,7 +139,7 @@ class SynchronousBus:
         self._link = self._bus.link
         self._cut_off = not self._link
         if self._cut_off:
-            raise NetworkError(CUT_OFF)
+            raise NetworkError(CUT_OFF_MEANWHILE)
         self.pause(OTHERS_BACK)
 
     def ask(self, key: str, payload: bytes = b"", seconds: float | None = None) -> Replies:
