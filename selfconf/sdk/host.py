@@ -242,6 +242,8 @@ def _profile(path: Path, name: str, component: str) -> Profile:
         raise ProgrammerError(f"the advertisement of {name} is not there: {path}")
     good, bad = files.advertisements(path)
     for malformed in bad:
+        if component and component != malformed.component:
+            continue  # what else stands in the file is not its concern
         raise AuthorError(f"{malformed.component}: {malformed.problems[0]}", file=str(path))
     wanted = [a.profile for a in good if not component or a.profile.component == component]
     if len(wanted) != 1:

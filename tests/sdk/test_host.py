@@ -40,6 +40,15 @@ def test_of_several_components_in_one_file_the_class_says_which_it_is(tmp_path: 
         profile_of(kind(path, iri("nobody")))
 
 
+def test_a_component_is_not_kept_from_living_by_another_one_in_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "both.ttl"
+    path.write_text(PREFIXES + f"{ADVERTISEMENTS['tracker']} :lamp a sc:Component .")
+    assert profile_of(kind(path, iri("person-tracker"))).component == iri("person-tracker")
+    for malformed in ("", iri("lamp")):
+        with pytest.raises(AuthorError, match="a type of its own"):
+            profile_of(kind(path, malformed))
+
+
 def test_an_advertisement_may_begin_with_a_mark_and_have_relative_iris(tmp_path: Path) -> None:
     (tmp_path / "lamp.ttl").write_bytes(b"\xef\xbb\xbf" + f"{PREFIXES} <#lamp> a sc:Component, :Lamp .".encode())
     assert profile_of(kind(tmp_path / "lamp.ttl")).component == f"{(tmp_path / 'lamp.ttl').as_uri()}#lamp"
