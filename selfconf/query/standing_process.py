@@ -123,7 +123,6 @@ class StandingProcess:
             os.dup2(line.fileno(), 3)
             os.closerange(4, 1 << 16)
             _answer_and_exit(self._dataset, question)
-        line.setblocking(False)
         copy = self._copies[process] = _Copy(process, line)
         self._selector.register(line, selectors.EVENT_READ, copy)
 
@@ -131,7 +130,7 @@ class StandingProcess:
         """The asker has hung up, or there is room for how it ended."""
         if copy.ending:
             with contextlib.suppress(OSError):
-                copy.line.send(copy.ending)
+                copy.line.send(copy.ending, socket.MSG_DONTWAIT)
             self._forget(copy)
         elif not self._asker_waits(copy):
             os.kill(copy.process, signal.SIGKILL)
@@ -139,8 +138,9 @@ class StandingProcess:
 
     @staticmethod
     def _asker_waits(copy: _Copy) -> bool:
+        # Not `setblocking`: the copy has the same socket, and is to wait there for an asker that reads slowly.
         try:
-            return bool(copy.line.recv(1))  # an asker sends nothing
+            return bool(copy.line.recv(1, socket.MSG_DONTWAIT))  # an asker sends nothing
         except BlockingIOError:
             return True
         except OSError:
@@ -185,7 +185,7 @@ def _answer_and_exit(dataset: Dataset, question: Mapping[str, Any]) -> None:
             code = _write(dataset, question, line)
     except MemoryError:
         code = _EXIT[NO_MEMORY]
-    except OSError:
+    except ConnectionError:
         code = 0  # the asker has hung up, and hears nothing more
     finally:
         os._exit(code)

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import time
+from array import array
 from collections.abc import Callable, Iterator
+from fcntl import ioctl
 from pathlib import Path
+from termios import FIONREAD
 from threading import Event, Thread
 
 import pytest
@@ -101,6 +105,25 @@ def test_a_query_whose_asker_hangs_up_is_ended(standing: StandingDataset) -> Non
     assert until(lambda: len(copies(standing)) == len(before) + 1)
     line.close()
     assert until(lambda: copies(standing) == before)
+
+
+def test_an_asker_that_reads_slowly_receives_the_whole_answer(standing: StandingDataset) -> None:
+    product = " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(8))
+    question = StandingQuestion(f"SELECT * {{ {product} }}", ["text/csv"])
+    with standing.begin(question) as line:
+        wait_until_full(line)
+        received = b"".join(iter(lambda: line.recv(1 << 16), b""))
+    _, body = outcome(received, question)
+    assert body.count(b"\n") - 1 == 3**8
+
+
+def wait_until_full(line: socket.socket) -> None:
+    """Wait until no more fits into the buffers of a socket that is not read: what waits in it grows no more."""
+    grown, waits = 0, array("i", [-1])
+    while waits[0] != grown or not grown:
+        grown = waits[0]
+        Event().wait(0.1)
+        ioctl(line, FIONREAD, waits)
 
 
 def test_no_answer_sees_half_a_graph(standing: StandingDataset) -> None:
