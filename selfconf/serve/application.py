@@ -30,6 +30,8 @@ LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
 """The names under which a server on this machine may be asked: a page elsewhere may know it under another one."""
 SPARQL_METHODS = ("GET", "HEAD", "POST")
 """The methods by which the SPARQL endpoint is asked; everything else is asked by the first two alone."""
+PIECE = 1 << 16
+"""Bytes of an answer that are sent before the client has taken those before, so that what waits for it is no more."""
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:;"
     " connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -69,7 +71,8 @@ def application(
         return Response(text, media_type=media, headers={"ETag": tag, "Cache-Control": "no-cache"})
 
     async def state(_: Request) -> Response:
-        return Response(json.dumps(board.state(), ensure_ascii=False), media_type="application/json")
+        text = board.shared("/state", lambda: json.dumps(board.state(), ensure_ascii=False))
+        return Response(text, media_type="application/json")
 
     async def changes(request: Request) -> Response:
         last = request.headers.get("last-event-id") or request.query_params.get("last", "")
@@ -120,7 +123,7 @@ class Guard:
         self._inner, self._hosts, self._origins = inner, frozenset(hosts), origins
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """One request."""
+        """One request, whose answer is sent as fast as the client takes it."""
         if scope["type"] != "http":
             return
         asked = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
@@ -130,6 +133,12 @@ class Guard:
                 said = HEADERS | self._origins.headers(asked)
                 headers = [(name.lower().encode(), value.encode("latin-1")) for name, value in said.items()]
                 message["headers"] = [*message.get("headers", ()), *headers]
+            elif message["type"] == "http.response.body":
+                rest = memoryview(message.get("body", b""))
+                while len(rest) > PIECE:
+                    await send({**message, "body": bytes(rest[:PIECE]), "more_body": True})
+                    rest = rest[PIECE:]
+                message["body"] = bytes(rest)
             await send(message)
 
         await (self._answered_here(scope, asked) or self._inner)(scope, receive, sent)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter, deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from selfconf.discovery import FoundAdvertisement
 from selfconf.model.term import IRI
@@ -17,6 +18,8 @@ from selfconf.serve.watching.change import Body, EcologyChange
 
 REMEMBERED = 2000
 """How many events of the ecology are remembered."""
+MOST_SHARED = 8
+"""How many answers are kept for all who ask for them."""
 CHANGE = "change"
 """The kind of the server-sent events of the page."""
 THING_EVENTS = ("thing_created", "thing_updated", "thing_deleted")
@@ -30,6 +33,8 @@ class Board:
         self.keys, self._metrics = Keys(ecology), metrics
         self.stream = EventStream()
         self.advertised: dict[IRI, FoundAdvertisement] = {}
+        self.descriptions: dict[IRI, str] = {}
+        """The Thing Description of each as JSON, made once: that takes longer than to send it."""
         self.ready = False
         """Whether the first look at the ecology has come."""
         self._components: dict[str, Body] = {}
@@ -37,10 +42,12 @@ class Board:
         self._tasks: dict[str, Body] = {}
         self._records: dict[str, TaskRecord] = {}
         self._events: deque[Body] = deque(maxlen=REMEMBERED)
+        self._answers: dict[str, bytes] = {}
 
     def apply(self, change: EcologyChange) -> None:
         """Note a change, and tell of it."""
         self._metrics.changes += 1
+        self._answers.clear()
         for event in change.events:
             self._metrics.happened(str(event.get("act")), str(event.get("cause", "")))
         for component, found in change.advertised.items():
@@ -61,18 +68,16 @@ class Board:
 
     def _advertise(self, component: IRI, found: FoundAdvertisement | None) -> None:
         """Note an advertisement, and tell of it, unless it is described as before: its site has advertised others."""
-        known = self.advertised.get(component)
+        before, now, thing = self.descriptions.pop(component, None), None, {}
         if found is None:
             self.advertised.pop(component, None)
         else:
             self.advertised[component] = found
-        before, now = self._described(known), self._described(found)
+            thing = thing_description(found.advertisement.profile, self.keys)
+            now = self.descriptions[component] = json.dumps(thing, ensure_ascii=False)
         if self.ready and before != now:
             kind = THING_EVENTS[2] if now is None else THING_EVENTS[0 if before is None else 1]
-            self.stream.put(kind, {**(now or {}), "id": str(component)})
-
-    def _described(self, found: FoundAdvertisement | None) -> Body | None:
-        return None if found is None else thing_description(found.advertisement.profile, self.keys)
+            self.stream.put(kind, {**thing, "id": str(component)})
 
     def knows(self, task: str) -> bool:
         """Whether there is a task of this identity, or was one lately."""
@@ -107,6 +112,14 @@ class Board:
             "tasks": self._tasks,
             "events": list(self._events),
         }
+
+    def shared(self, name: str, written: Callable[[], str]) -> bytes:
+        """An answer as it is sent, written once for all who ask for it until something changes."""
+        if name not in self._answers:
+            if len(self._answers) == MOST_SHARED:
+                self._answers.clear()
+            self._answers[name] = written().encode()
+        return self._answers[name]
 
     def gauges(self, linked: bool) -> Mapping[str, Iterable[tuple[Mapping[str, str], float]]]:
         """What can be read off the ecology now, for the metrics."""

@@ -18,7 +18,7 @@ from selfconf.serve.board import THING_EVENTS, Board
 from selfconf.serve.event_stream import streamed
 from selfconf.serve.negotiation import acceptable
 from selfconf.serve.problems import problem
-from selfconf.serve.things import DISCOVERY_CONTEXT, TD, directory_description, thing_description
+from selfconf.serve.things import DISCOVERY_CONTEXT, TD, directory_description
 
 JSON_LD_MEDIA = "application/ld+json"
 
@@ -28,9 +28,6 @@ class Directory:
 
     def __init__(self, board: Board) -> None:
         self._board = board
-
-    def _thing(self, component: IRI) -> dict[str, Any]:
-        return thing_description(self._board.advertised[component].advertisement.profile, self._board.keys)
 
     async def itself(self, request: Request) -> Response:
         """`/.well-known/wot`: the directory's own description."""
@@ -51,20 +48,23 @@ class Directory:
             return problem(400, f"the format is array or collection, not {form!r}")
         components = sorted(self._board.advertised)
         end = len(components) if limit is None else offset + limit
-        members = [self._thing(component) for component in components[offset:end]]
         more = {"limit": limit, "format": None if form == "array" else form}
         here, after = _page(offset=offset or None, **more), _page(offset=end, **more)
         follows = end < len(components)
         tag = f'"{hashlib.blake2s(repr(components).encode(), digest_size=8).hexdigest()}"'
         links = [f'<{after}>; rel="next"'] if follows else []
         links.append(f'</things>; rel="canonical"; etag={tag}')
-        body: Any = members
-        if form == "collection":
-            body = {"@context": DISCOVERY_CONTEXT, "@type": "ThingCollection", "total": len(components), "@id": here}
-            body |= {**({"next": after} if follows else {}), "members": members}
-        return Response(
-            json.dumps(body, ensure_ascii=False), media_type=JSON_LD_MEDIA, headers={"Link": ", ".join(links)}
-        )
+        whole: dict[str, object] = {"@context": DISCOVERY_CONTEXT, "@type": "ThingCollection", "@id": here}
+        whole |= {"total": len(components), **({"next": after} if follows else {})}
+
+        def written() -> str:
+            members = f"[{', '.join(self._board.descriptions[component] for component in components[offset:end])}]"
+            if form == "array":
+                return members
+            return f'{json.dumps(whole, ensure_ascii=False)[:-1]}, "members": {members}}}'
+
+        body = self._board.shared(here, written)
+        return Response(body, media_type=JSON_LD_MEDIA, headers={"Link": ", ".join(links)})
 
     async def thing(self, request: Request) -> Response:
         """`/things/{id}`: one description; as Turtle, the advertisement itself."""
@@ -79,7 +79,7 @@ class Directory:
         if media[0] == "text/turtle":
             text = turtle.pretty_turtle(found.advertisement.triples, QUERY_PREFIXES)
             return Response(text, media_type="text/turtle", headers=headers)
-        return Response(json.dumps(self._thing(component), ensure_ascii=False), media_type=media[0], headers=headers)
+        return Response(self._board.descriptions[component], media_type=media[0], headers=headers)
 
     async def events(self, request: Request) -> Response:
         """`/events` and `/events/{type}`: server-sent events."""

@@ -95,9 +95,15 @@ def meanwhile(lab: Lab, work: Coroutine[Any, Any, Result]) -> Result:
 
 
 async def asked(
-    app: ASGIApp, path: str, method: str = "GET", body: bytes = b"", host: str = "localhost:8000", **headers: str
+    app: ASGIApp,
+    path: str,
+    method: str = "GET",
+    body: bytes = b"",
+    host: str = "localhost:8000",
+    reads: asyncio.Event | None = None,
+    **headers: str,
 ) -> Answer:
-    """The answer to one request, within a running loop."""
+    """The answer to one request, within a running loop; of which the client takes nothing before the event `reads`."""
     where, _, query = path.partition("?")
     answered = asyncio.Event()
     sent: list[Message] = []
@@ -110,6 +116,8 @@ async def asked(
         return {"type": "http.disconnect"}
 
     async def send(message: Message) -> None:
+        if reads is not None:
+            await reads.wait()
         sent.append(message)
 
     named = {name.replace("_", "-"): value for name, value in headers.items()}

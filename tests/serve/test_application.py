@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
+import random
 from urllib.parse import quote
 
 import pytest
+from starlette.responses import Response
+from starlette.types import Message
 
+from selfconf.serve.application import LOOPBACK, PIECE, Guard
 from selfconf.serve.board import Board
 from selfconf.serve.metrics import Metrics
+from selfconf.serve.origins import Origins
 from tests.lab import iri
 from tests.serve.asgi import ask, served
 
@@ -27,6 +33,24 @@ def test_every_answer_forbids_what_a_stranger_might_slip_in(board: Board, path: 
     policy = ask(served(board), path).headers["content-security-policy"]
     assert "default-src 'none'" in policy
     assert "unsafe" not in policy
+
+
+@pytest.mark.parametrize("size", [0, 1, PIECE, PIECE + 1, 3 * PIECE])
+def test_a_long_answer_is_sent_in_pieces_for_each_of_which_the_client_is_waited_for(size: int) -> None:
+    whole, sent = random.Random(size).randbytes(size), []
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    async def receive() -> Message:
+        raise AssertionError("nothing is read")
+
+    scope = {"type": "http", "method": "GET", "path": "/", "headers": [(b"host", b"localhost")]}
+    asyncio.run(Guard(Response(whole), LOOPBACK, Origins(()))(scope, receive, send))
+    pieces = [message["body"] for message in sent[1:]]
+    assert b"".join(pieces) == whole
+    assert max(map(len, pieces)) <= PIECE
+    assert [message.get("more_body", False) for message in sent[1:]] == [True] * (len(pieces) - 1) + [False]
 
 
 @pytest.mark.parametrize("path", ["/changes", "/events", f"/look?component={quote(iri('pippi-drive'))}"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.serve.board import Board
+from selfconf.serve.board import MOST_SHARED, Board
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.watching.change import EcologyChange
 from tests.lab import ADVERTISEMENTS, iri
@@ -19,6 +19,19 @@ def test_the_state_is_all_changes_together(board: Board) -> None:
     assert gone not in state["components"]
     assert state["events"] == [{"act": "ended", "time": 1.0}]
     assert gone not in board.advertised
+
+
+def test_an_answer_is_written_once_for_all_who_ask_until_something_changes(board: Board) -> None:
+    written = board.shared("/state", lambda: "before")
+    assert board.shared("/state", lambda: "after") is written
+    board.apply(EcologyChange(events=({"act": "ended", "time": 1.0},)))
+    assert board.shared("/state", lambda: "after") == b"after"
+
+
+def test_a_client_who_asks_for_page_after_page_does_not_fill_the_memory(board: Board) -> None:
+    for offset in range(100):
+        board.shared(f"/things?offset={offset}", lambda: "[]")
+    assert len(board._answers) <= MOST_SHARED
 
 
 def test_a_thing_is_created_updated_and_deleted(board: Board) -> None:

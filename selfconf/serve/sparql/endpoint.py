@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import socket
 import time
 from collections.abc import Coroutine
@@ -10,6 +11,7 @@ from typing import Any
 
 from starlette.requests import Request
 from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
 
 from selfconf.errors import NetworkError, NotAcceptableError, ProgrammerError, QueryError, QueryTimeoutError
 from selfconf.query import RESULT_TYPES, TRIPLE_TYPES, StandingDataset, StandingQuestion, outcome
@@ -22,7 +24,7 @@ from selfconf.serve.sparql.service_description import service_description
 LARGEST_ANSWER = 64 << 20
 """An answer of more bytes than this is refused."""
 AT_ONCE = 24
-"""How many queries are answered at once; others wait."""
+"""How many queries are answered at once, until their clients have the answers; others wait."""
 BROADER = {"application/json": "application/sparql-results+json", "application/xml": "application/sparql-results+xml"}
 """Clients that know JSON or XML alone, as those of Things do, ask for the broader type and read the results."""
 _STATUS: dict[type[Exception], int] = {
@@ -36,6 +38,19 @@ _STATUS: dict[type[Exception], int] = {
 
 class AnswerTooLargeError(QueryError):
     """An answer has more bytes than a server holds."""
+
+
+class _HeldResponse(Response):
+    """An answer that holds what it was given until it is sent, or its client has gone."""
+
+    def __init__(self, answer: bytes, media: str, held: contextlib.AsyncExitStack) -> None:
+        super().__init__(answer, media_type=media, headers={"Vary": "Accept"})
+        self._held = held
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send it."""
+        async with self._held:
+            await super().__call__(scope, receive, send)
 
 
 class SparqlEndpoint:
@@ -72,16 +87,18 @@ class SparqlEndpoint:
         )
         began = time.monotonic()
         try:
-            async with self._free:
+            async with contextlib.AsyncExitStack() as held:
+                await held.enter_async_context(self._free)
                 received = await _unless_gone(request, self._received(question))
-            kind, answer = outcome(received, question)
+                kind, answer = outcome(received, question)
+                until_sent = held.pop_all()
         except (QueryError, NetworkError, ProgrammerError) as error:
             status = next(status for known, status in _STATUS.items() if isinstance(error, known))
             self._metrics.queried(str(status), time.monotonic() - began)
             return problem(status, str(error))
         self._metrics.queried("200", time.monotonic() - began)
         told = next((broad for broad in media if BROADER.get(broad) == kind and kind not in media), kind)
-        return Response(answer, media_type=told, headers={"Vary": "Accept"})
+        return _HeldResponse(answer, told, until_sent)
 
     async def _received(self, question: StandingQuestion) -> bytes:
         """All that comes on the socket of a question; a client that hangs up ends the query."""

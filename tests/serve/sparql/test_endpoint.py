@@ -10,6 +10,7 @@ import pytest
 
 from selfconf.query import StandingDataset
 from selfconf.serve.board import Board
+from selfconf.serve.sparql import endpoint
 from tests.lab import ADVERTISEMENTS
 from tests.serve.asgi import ask, asked, served
 
@@ -74,6 +75,26 @@ def test_a_query_that_takes_too_long_is_really_ended(board: Board, dataset: Stan
     assert answer.status == 503
     assert "0.5 s" in answer.json["detail"]
     assert time.monotonic() - began < 20
+
+
+def test_an_answer_counts_among_those_at_once_until_its_client_has_taken_it(
+    board: Board, dataset: StandingDataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(endpoint, "AT_ONCE", 2)
+    app = served(board, dataset)
+
+    async def play() -> None:
+        reads = asyncio.Event()
+        unread = [asyncio.create_task(asked(app, EVERYBODY, reads=reads)) for _ in range(2)]
+        await asyncio.wait(unread, timeout=0.5)
+        waiting = asyncio.create_task(asked(app, EVERYBODY))
+        assert not (await asyncio.wait([waiting], timeout=0.5))[0]
+        unread.pop().cancel()  # its client has gone
+        assert (await waiting).status == 200
+        reads.set()
+        assert [(await one).status for one in unread] == [200]
+
+    asyncio.run(play())
 
 
 def test_many_clients_are_answered_while_one_asks_for_a_cross_product(board: Board, dataset: StandingDataset) -> None:
