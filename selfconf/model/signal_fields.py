@@ -114,13 +114,14 @@ class SignalFields:
     def _carefully(self, check: _Check, found: Any, value: dict[Any, Any]) -> str | None:
         """What is wrong with the value of a field that is not plainly right."""
         wanted = f"{'a list of ' if check.repeated else ''}{_short(check.field.datatype)}"
-        if found is _ABSENT or found is None:
-            if not check.required:
-                return None
+        if not check.required and (found is _ABSENT or found is None):
+            return None
+        if found is _ABSENT:
             names = ", ".join(map(_SHORT.repr, list(value)[:_MOST_NAMES])) or "no members"
             return f"lacks {check.name!r} ({wanted}), which {self.signal.short} has; it has {names}"
         if not check.repeated:
-            return None if _holds(check, found) else f"has {_SHORT.repr(found)} as {check.name!r}, which is {wanted}"
+            right = found is not None and _holds(check, found)
+            return None if right else f"has {_SHORT.repr(found)} as {check.name!r}, which is {wanted}"
         if not isinstance(found, list | tuple):
             return f"has {_SHORT.repr(found)} as {check.name!r}, which is {wanted}"
         for number, item in enumerate(found):

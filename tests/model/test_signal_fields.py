@@ -54,7 +54,7 @@ def test_a_value_with_all_its_fields_is_right(more: dict[str, Any]) -> None:
             {"rng": [1.0], "max_range": 4},
             "lacks 'ranges' (a list of xsd:double), which RangeScan has; it has 'rng', 'max",
         ),
-        ({**GOOD, "ranges": None}, "lacks 'ranges'"),
+        ({**GOOD, "ranges": None}, "has None as 'ranges', which is a list of xsd:double"),
         ({**GOOD, "ranges": 3.0}, "has 3.0 as 'ranges', which is a list of xsd:double"),
         ({**GOOD, "ranges": "abc"}, "has 'abc' as 'ranges'"),
         ({**GOOD, "ranges": [1.0, "far"]}, "has 'far' at 1 in 'ranges'"),

@@ -21,6 +21,8 @@ from selfconf.model.immutable import immutable
 
 CONNECTIONS = 32
 """How many connections to one host are open at once, beside those that outputs which are followed keep, one each."""
+MOST_EVENTS = 1000
+"""How many server-sent events of one stream are read in a second; a thing that sends more is held up."""
 _LINE_END = b"\n"
 
 
@@ -118,6 +120,7 @@ class ThingClient:
 
     async def _events(self, form: ThingForm, answer: aiohttp.ClientResponse) -> AsyncIterator[ThingAnswer]:
         """The values of server-sent events, until the thing ends the stream (HTML, section 9.2)."""
+        loop, due = asyncio.get_running_loop(), 0.0
         lines: list[bytes] = []
         size = 0
         async for line in self._lines(form, answer):
@@ -128,6 +131,8 @@ class ThingClient:
                 lines.append(line[5:].removeprefix(b" "))
             elif not line:
                 if lines:
+                    due = max(due + 1 / MOST_EVENTS, loop.time())
+                    await asyncio.sleep(due - loop.time())
                     yield ThingAnswer(_json(form, b"\n".join(lines)))
                 lines, size = [], 0
 
@@ -204,9 +209,17 @@ class ThingClient:
                 yield line.removesuffix(b"\r")
             if len(rest) > self._limits.size:
                 raise self._too_large(form)
+            await asyncio.sleep(0)  # of a thing that sends without a pause, no piece would be waited for
 
     def _too_large(self, form: ThingForm) -> ThingError:
         return ThingError(f"{form} answers more than {self._limits.size >> 20} MiB, which is more than is read")
+
+
+_REASONS: dict[type[Exception], str] = {
+    asyncio.TimeoutError: "nothing has come in time",
+    aiohttp.ClientResponseError: "what it sends is not HTTP",
+    aiohttp.ClientPayloadError: "what it sends breaks off",
+}
 
 
 def _value(form: ThingForm, answer: aiohttp.ClientResponse, body: bytes) -> ThingAnswer:
@@ -261,7 +274,8 @@ def _is_json(media: str) -> bool:
 
 def _reason(error: Exception) -> str:
     """Why there is no connection, in a few words."""
-    if isinstance(error, asyncio.TimeoutError):
-        return "nothing has come in time"
+    for kind, reason in _REASONS.items():
+        if isinstance(error, kind):
+            return reason
     number = getattr(error, "errno", None)
     return os.strerror(number) if number and number > 0 else (str(error) or type(error).__name__)[:120]

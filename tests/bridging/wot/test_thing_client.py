@@ -13,7 +13,14 @@ from typing import Any, TypeVar
 import pytest
 
 from selfconf.bridging.wot.forms import ThingForm
-from selfconf.bridging.wot.thing_client import CONNECTIONS, ThingAnswer, ThingClient, ThingError, ThingLimits
+from selfconf.bridging.wot.thing_client import (
+    CONNECTIONS,
+    MOST_EVENTS,
+    ThingAnswer,
+    ThingClient,
+    ThingError,
+    ThingLimits,
+)
 from tests.bridging.thing_server import ThingServer, reply
 
 Answer = TypeVar("Answer")
@@ -250,6 +257,63 @@ def test_a_stream_without_end_of_line_or_of_event_is_bounded(thing_server: Start
 
     with pytest.raises(ThingError, match="more than 1 MiB"):
         asked(work, LIMITS)
+
+
+def test_a_thing_that_streams_without_a_pause_is_read_as_fast_as_is_allowed_and_disturbs_no_other(
+    thing_server: Start,
+) -> None:
+    server = thing_server()
+
+    def stream(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "text/event-stream")
+        handler.send_header("Connection", "close")
+        handler.end_headers()
+        while not server.released.is_set():
+            handler.wfile.write(b"data: 1\n\n" * 10_000)
+
+    server.answers["/on"] = stream
+    server.answers["/other"] = lambda handler: reply(handler, b"true")
+
+    async def work(client: ThingClient) -> tuple[float, int]:
+        read: list[ThingAnswer] = []
+
+        async def follow() -> None:
+            form = ThingForm(server.url + "/on", "GET", subprotocol="sse")
+            async with client.subscribed(form) as answers:
+                async for answer in answers:
+                    read.append(answer)
+
+        began, following = time.monotonic(), asyncio.ensure_future(follow())
+        for _ in range(10):
+            assert (await client.read(ThingForm(server.url + "/other", "GET"))).value is True
+        while not read:
+            await asyncio.sleep(0.01)
+        following.cancel()
+        return time.monotonic() - began, len(read)
+
+    seconds, events = asked(work)
+    assert events <= seconds * MOST_EVENTS + 1
+
+
+def test_what_is_not_http_or_breaks_off_is_said_in_few_words(thing_server: Start) -> None:
+    server = thing_server()
+
+    def greeting(handler: BaseHTTPRequestHandler) -> None:
+        handler.wfile.write(b"HELLO\r\n\r\n")
+        handler.close_connection = True
+
+    def half(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "application/json")
+        handler.send_header("Content-Length", "50")
+        handler.end_headers()
+        handler.wfile.write(b"tr")
+        handler.close_connection = True
+
+    server.answers.update({"/greeting": greeting, "/half": half})
+    assert trouble(server, "/greeting") == "GET /greeting does not answer: what it sends is not HTTP"
+    assert trouble(server, "/half") == "GET /half does not answer: what it sends breaks off"
 
 
 def test_a_long_poll_waits_for_longer_than_an_answer_may_take(thing_server: Start) -> None:
