@@ -101,9 +101,10 @@ class ComponentProcesses:
         groups = []
         for program in list(self._programs.values()):
             program.close()
-            if program.group is not None:
-                program.group.terminate()
-                groups.append(program.group)
+            group = program.group  # once: that of a process that has just gone is taken away on the thread of the bus
+            if group is not None:
+                group.terminate()
+                groups.append(group)
         deadline = time.monotonic() + ENDING
         for group in groups:
             if not group.frozen():

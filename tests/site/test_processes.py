@@ -19,6 +19,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Fail, Page, Release, Wake
 from selfconf.site import Site
+from selfconf.site.component_program import ComponentProgram
 from selfconf.site.process_group import ProcessGroup
 from tests.lab import iri, write_advertisements
 from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve, until
@@ -182,6 +183,19 @@ def test_processes_that_do_not_want_to_end_are_waited_for_together(
     began = time.monotonic()
     site.close()
     assert time.monotonic() - began < 5.0
+
+
+def test_a_process_that_goes_just_while_its_site_ends_is_no_trouble(
+    tmp_path: Path, sites: Callable[[Path], Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = sites(dormant(tmp_path / "here", python("pass")))
+    site.start(SLEEPER)
+    group = group_of(site)
+    looks = iter([group])
+    taken_away = property(lambda _: next(looks, None), lambda *_: None)
+    monkeypatch.setattr(ComponentProgram, "group", taken_away, raising=False)
+    site.close()
+    assert group.code() is not None
 
 
 def test_each_end_of_a_process_that_is_started_again_at_once_is_reported_once(
