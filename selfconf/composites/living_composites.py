@@ -24,6 +24,8 @@ from selfconf.model.term import IRI, Term
 from selfconf.protocol.keys import Keys, safe_name
 from selfconf.rdf.advertisements import Advertisement
 
+OF_ITS_SITE = " from what its site advertises"
+"""Where the parts of a composite come from, in words: what fits better may be at another site."""
 LOOK_AT_REFUSED = 10.0
 """After how many seconds it is looked again whether an inside that was refused can be configured. The pause doubles
 with each life in which it does not run: perhaps the task that holds the composite holds what the inside lacks."""
@@ -78,7 +80,7 @@ class Composites:
         known = dict(advertisements)
 
         def work() -> None:
-            found, why = configurable(known, self._document_of, self._hierarchy)
+            found, why = configurable(known, self._document_of, self._hierarchy, OF_ITS_SITE)
             self._bus.wake_up(lambda: self._become(known, found, why))
 
         self._aside(work)

@@ -112,9 +112,15 @@ def insides(
 
 
 def configurable(
-    known: Mapping[IRI, Advertisement], document_of: DocumentOf, hierarchy: Hierarchy = NOTHING_ABOVE
+    known: Mapping[IRI, Advertisement],
+    document_of: DocumentOf,
+    hierarchy: Hierarchy = NOTHING_ABOVE,
+    whence: str = "",
 ) -> tuple[dict[IRI, Inside], dict[IRI, str]]:
-    """The composites whose inside can be configured, and of the others why not."""
+    """The composites whose inside can be configured, and of the others why not.
+
+    `whence` says in these sentences where what is advertised comes from, if there may be more elsewhere.
+    """
     found: dict[IRI, Inside] = {}
     why: dict[IRI, str] = {}
     readers: dict[int, InsideReader] = {}  # by the identity of the document, of which one may advertise many
@@ -129,7 +135,7 @@ def configurable(
     composers = {one: inside.composer for one, inside in found.items()}
     why |= _in_circles(composers, known)
     # A composite that does not live cannot be inside of another one: again and again, until all that are left can.
-    while lacking := _refused({one: c for one, c in composers.items() if one not in why}, known):
+    while lacking := _refused({one: c for one, c in composers.items() if one not in why}, known, whence):
         why |= lacking
     return {one: inside for one, inside in found.items() if one not in why}, why
 
@@ -143,7 +149,7 @@ def _in_circles(composers: Mapping[IRI, Composer], known: Mapping[IRI, Advertise
     return {one: sentence.format(circle) for one, circle in circles.items() if circle}
 
 
-def _refused(composers: Mapping[IRI, Composer], known: Mapping[IRI, Advertisement]) -> dict[IRI, str]:
+def _refused(composers: Mapping[IRI, Composer], known: Mapping[IRI, Advertisement], whence: str) -> dict[IRI, str]:
     """The composites whose inside cannot be configured beside the others, each with a sentence."""
     able = {one: a for one, a in known.items() if a.profile.inside is None or one in composers}
     found: dict[IRI, str] = {}
@@ -152,7 +158,7 @@ def _refused(composers: Mapping[IRI, Composer], known: Mapping[IRI, Advertisemen
         outcome = composer.compose(others, frozenset(), None)
         if not isinstance(outcome, Configuration):
             itself = "; it cannot be inside of itself" if component in _may_hold(composer, known) else ""
-            found[component] = f"its inside cannot be configured now: {why_none(outcome)}{itself}"
+            found[component] = f"its inside cannot be configured now{whence}: {why_none(outcome)}{itself}"
     return found
 
 

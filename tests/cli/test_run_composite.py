@@ -74,4 +74,7 @@ def test_a_composite_on_another_site_is_repaired_there_and_lost_when_it_cannot_b
     assert home.until(
         lambda: "no component is eligible for the role eye" in str(advertised()[HARBOUR + "lookout"]["reason"])
     )
-    assert "cannot act now: its inside cannot be configured now" in run_command(capsys, "discover", *where[:4]).out
+    assert (
+        "cannot act now: its inside cannot be configured now from what its site advertises"
+        in run_command(capsys, "discover", *where[:4]).out
+    )

@@ -210,7 +210,7 @@ def test_composites_nest_and_what_moves_inside_the_inner_one_is_told_outside_the
             ],
             "it could be inside of itself (",
         ),
-        ([SERVICE.replace(":Astrid", ":Pippi")], "its inside cannot be configured now: no component is eligible for"),
+        ([SERVICE.replace(":Astrid", ":Pippi")], "now from what its site advertises: no component is eligible for"),
         ([SERVICE.replace("sc:parameter :robot ; sc:value", "sc:parameter :hat ; sc:value")], "which is no parameter"),
         ([SERVICE.replace(":localise", ":elsewhere", 1)], "is not in this file"),
         ([SERVICE.replace('"hint" ; sc:signalType :Hint ]', '"help" ; sc:signalType :Hint ]')], "differ: help, hint"),
@@ -240,7 +240,7 @@ def test_a_composite_lives_as_soon_as_its_inside_can_be_configured() -> None:
     house = House(cameras="")
     house.ecology.advertise(SERVICE)
     house.ecology.advance(2.0)
-    assert "its inside cannot be configured now" in house.ecology.complaints[0]
+    assert "its inside cannot be configured now from what its site advertises" in house.ecology.complaints[0]
     run = house.ecology.run(template(TASK), wait=True)
     house.ecology.advance(2.0)
     assert not run.running
@@ -278,7 +278,9 @@ def test_an_ecology_is_told_why_a_composite_cannot_act_now() -> None:
         house.ecology.advance(1.0)
 
     look()
-    assert told == ["its inside cannot be configured now: no component is eligible for the role eye"]
+    assert told == [
+        "its inside cannot be configured now from what its site advertises: no component is eligible for the role eye"
+    ]
     house.by_name["late"] = house.ecology.add(Source("late", "image"), CAMERA.replace("NAME", "late"))
     house.ecology.advance(2.0)
     look()
@@ -292,7 +294,7 @@ def test_a_composite_of_itself_through_two_sites_lives_at_neither(tmp_path: Path
     lab.site("first", "whole")
     lab.site("second", "other")
     lab.let_pass(3.0)
-    assert [said.partition("does not live: ")[2] for said in lab.complaints] == [
-        "its inside cannot be configured now: no component is eligible for the role part",
-        "its inside cannot be configured now: no component is eligible for the role piece",
+    assert [said.partition("configured now ")[2] for said in lab.complaints] == [
+        "from what its site advertises: no component is eligible for the role part",
+        "from what its site advertises: no component is eligible for the role piece",
     ]
