@@ -32,6 +32,17 @@ class AuthorError(SelfconfError):
         return f"{place}: {self.message}" if place else self.message
 
 
+class UnreadableError(AuthorError):
+    """The system does not let a file or folder be read that is there, perhaps only for now.
+
+    `path` is the file or folder.
+    """
+
+    def __init__(self, what: str, path: str, why: str) -> None:
+        super().__init__(f"cannot read {what}: {why}")
+        self.path = path
+
+
 class TurtleError(AuthorError):
     """A file is not Turtle; `line` and `column` count from one."""
 

@@ -16,7 +16,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from selfconf.errors import AuthorError, TurtleError
+from selfconf.errors import AuthorError, TurtleError, UnreadableError
 
 if TYPE_CHECKING:
     from selfconf.model.signal_fields import SignalFields
@@ -51,7 +51,7 @@ FileStamp = tuple[int, int]
 
 
 def stamps(
-    path: Path, left_out: Callable[[AuthorError], None] | None = None, endings: tuple[str, ...] = TURTLE
+    path: Path, left_out: Callable[[UnreadableError], None] | None = None, endings: tuple[str, ...] = TURTLE
 ) -> dict[str, FileStamp]:
     """The files that a path stands for, if they are there, as `within` finds them, in no order, with their stamps.
 
@@ -76,7 +76,7 @@ def stamps(
         except FileNotFoundError:
             continue  # it has gone since it was listed, as a file may have
         except OSError as error:
-            wrong = AuthorError(f"cannot read the folder {folder}: {error.strerror}")
+            wrong = UnreadableError(f"the folder {folder}", folder, error.strerror or str(error))
             if left_out is None:
                 raise wrong from None
             left_out(wrong)
@@ -180,7 +180,7 @@ def octets(path: Path) -> bytes:
             raise AuthorError(f"cannot read {path}: it is a link to {path.readlink()}, which is not there") from None
         raise AuthorError(f"there is no file or folder {path}") from None
     except OSError as error:
-        raise AuthorError(f"cannot read {path}: {error.strerror}") from None
+        raise UnreadableError(str(path), str(path), error.strerror or str(error)) from None
 
 
 def standard_input() -> bytes:

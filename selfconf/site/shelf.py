@@ -2,21 +2,29 @@
 
 To look whether anything has changed is cheap, and only what has is read: of ten thousand files, one that changes costs
 as much as one file.
+
+What the system does not let be read, as where the site may open no more files, is tried again each time, and what was
+known of it stays until then: no task is to lose a component for that.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from selfconf import files
-from selfconf.errors import AuthorError
+from selfconf.errors import AuthorError, UnreadableError
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement, SegmentCache
 
 Complaint = Callable[[str], None]
 """Hears, in a sentence, what was left out and why."""
+
+
+_UNREAD: files.FileStamp = (-1, -1)
+"""The stamp of a file that could not be read, which no file has: so it is read again."""
 
 
 class _ReadFile(NamedTuple):
@@ -44,13 +52,13 @@ class Shelf:
         stamps = self._look(complaints)
         if stamps == self._seen and self._told.issuperset(complaints):
             return False
-        self._seen = stamps
         segments = SegmentCache()
         read: dict[str, _ReadFile] = {}
         for name in self._files if self._files.keys() == stamps.keys() else sorted(stamps, key=Path):
             known, stamp = self._files.get(name), stamps[name]
-            read[name] = known if known is not None and known.stamp == stamp else _read(Path(name), stamp, segments)
-        self._files = read
+            unchanged = known is not None and known.stamp == stamp != _UNREAD
+            read[name] = known if known and unchanged else _read(Path(name), stamp, segments, known)
+        self._files, self._seen = read, {name: file.stamp for name, file in read.items()}
         found = self._merged(complaints)
         self._tell(complaints)
         changed = found != self.advertisements
@@ -58,12 +66,15 @@ class Shelf:
         return changed
 
     def _look(self, complaints: list[str]) -> dict[str, files.FileStamp]:
-        """The stamp of every Turtle file of the shelf that can be found."""
+        """The stamp of every Turtle file of the shelf that can be found, or was in a folder that cannot be read now."""
+        kept: dict[str, files.FileStamp] = {}
 
-        def left_out(error: AuthorError) -> None:
-            complaints.append(f"left out: {error}")
+        def unread(error: UnreadableError) -> None:
+            below = {name: stamp for name, stamp in self._seen.items() if name.startswith(error.path + os.sep)}
+            complaints.append(_unread(error, bool(below)))
+            kept.update(below)
 
-        return {name: stamp for path in self._paths for name, stamp in files.stamps(path, left_out).items()}
+        return kept | {name: stamp for path in self._paths for name, stamp in files.stamps(path, unread).items()}
 
     def _merged(self, complaints: list[str]) -> dict[IRI, Advertisement]:
         """The advertisements of all files; of two of one component the first. A file may be given by two paths."""
@@ -85,11 +96,19 @@ class Shelf:
         self._told = frozenset(complaints)
 
 
-def _read(path: Path, stamp: files.FileStamp, segments: SegmentCache) -> _ReadFile:
-    """Read a file."""
+def _read(path: Path, stamp: files.FileStamp, segments: SegmentCache, known: _ReadFile | None) -> _ReadFile:
+    """Read a file, of which something may be known from before."""
     try:
         good, bad = files.advertisements(path, segments)
+    except UnreadableError as error:
+        kept = known.advertisements if known is not None else ()
+        return _ReadFile(_UNREAD, kept, (_unread(error, bool(kept)),))
     except AuthorError as error:
         return _ReadFile(stamp, (), (f"left out: {error}",))
     left_out = tuple(f"{path}: left out {one.component}: {one.problems[0]}" for one in bad)
     return _ReadFile(stamp, tuple(good), left_out)
+
+
+def _unread(error: UnreadableError, is_known: bool) -> str:
+    """What is said of a file or folder that cannot be read, of which something is known from before, or nothing."""
+    return f"{error}; what it advertised before stays" if is_known else f"left out: {error}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import timeit
 from pathlib import Path
@@ -97,6 +98,42 @@ def test_a_file_that_is_broken_is_named_and_the_others_stay(tmp_path: Path) -> N
     touch(tmp_path / "drive.ttl", PREFIXES + ADVERTISEMENTS["drive"])
     assert shelf.refresh()
     assert len(shelf.advertisements) == 2
+
+
+def test_what_cannot_be_read_for_now_stays_as_it_was_and_is_read_as_soon_as_it_can_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    complaints: list[str] = []
+    write_advertisements(tmp_path / "deep", "tracker")
+    shelf = Shelf([write_advertisements(tmp_path, "drive")], complaints.append)
+    with monkeypatch.context() as few_files:
+        few_files.setattr(Path, "open", no_more_files)
+        assert not shelf.refresh()
+    assert [complaint.partition(":")[0] for complaint in complaints] == ["left out"] * 2
+    assert shelf.refresh()
+    everything = set(shelf.advertisements)
+    assert len(everything) == 2
+    touch(tmp_path / "drive.ttl", PREFIXES + ADVERTISEMENTS["drive"].replace("Astrid", "Pippi"))
+    with monkeypatch.context() as few_files:
+        few_files.setattr(Path, "open", no_more_files)
+        few_files.setattr(os, "scandir", no_more_files)
+        assert not shelf.refresh()
+    assert complaints[2:] == [
+        f"cannot read the folder {tmp_path}: Too many open files; what it advertised before stays"
+    ]
+    with monkeypatch.context() as few_files:
+        few_files.setattr(Path, "open", no_more_files)
+        assert not shelf.refresh()
+    assert set(shelf.advertisements) == everything
+    assert "drive.ttl: Too many open files; what it advertised before stays" in complaints[3]
+    assert shelf.refresh()
+    assert not shelf.refresh()
+    assert len(complaints) == 4
+
+
+def no_more_files(*_: object, **__: object) -> None:
+    """Open no file, as the system does for a program that has opened all that it may."""
+    raise OSError(errno.EMFILE, "Too many open files")
 
 
 def test_an_advertisement_that_does_not_conform_is_named_with_what_it_lacks(tmp_path: Path) -> None:
