@@ -6,7 +6,8 @@ clause learning refutes each in exponential time, counting by cases. With a valu
 see at once that it leaves too few.
 
 *What is kept.* Every solution is one of some case, and every solution of a case is one of the problem: so the least
-solution of all is the least among those of the cases.
+solution of all is the least among those of the cases. A value is dominated if each option that admits it admits another
+one as well: what is a solution with it is one with that, so that it needs no case.
 
 *When.* Where most combinations leave enough components, nothing is gained by looking at them one by one: there are no
 cases then, and clause learning gets the parameters as they are. Nor are any looked at where each combination should
@@ -108,21 +109,34 @@ def _cases(given: ReducedProblem, variables: list[int]) -> Iterator[ReducedProbl
 
 
 def _values(given: ReducedProblem, variable: int) -> list[int]:
-    """Return masks of one value each that a variable may still have, in order.
+    """Return masks of one value each that a variable may still have, in order, but for values that are dominated.
 
     Where it may have a value that no option states, the last one stands for all of these; where no option states any,
     the only mask is of all that it may have.
     """
     common, stated = given.values[variable], 0
+    every: dict[int, None] = {}
     for role in dict.fromkeys(given.slots):
         masks = {option.kind.admits[variable] for option in given.options[role]}
+        every |= dict.fromkeys(masks)
         stated = max(stated, *((mask if mask >= 0 else ~mask).bit_length() for mask in masks), 0)
         if ANY_VALUE not in masks:
             common &= reduce(or_, masks, 0)
     if common < 0 and not stated:
         return [common]
     width = common.bit_length() if common >= 0 else stated + 1
-    return [1 << bit for bit in range(width) if common >> bit & 1]
+    return _undominated([1 << bit for bit in range(width) if common >> bit & 1], list(every))
+
+
+def _undominated(values: list[int], masks: list[int]) -> list[int]:
+    """Return the values without those that another one, or of equal ones the first, could always stand for."""
+    admitting = [sum([1 << place for place, mask in enumerate(masks) if mask & value]) for value in values]
+    kept: list[int] = []
+    for number, some in enumerate(admitting):
+        others = enumerate(admitting)
+        if not any(some & other == some and (some != other or place < number) for place, other in others):
+            kept.append(values[number])
+    return kept
 
 
 def _with_value(given: ReducedProblem, variable: int, value: int) -> ReducedProblem:

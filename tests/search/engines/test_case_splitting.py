@@ -234,7 +234,7 @@ def test_a_parameter_that_few_constrain_has_no_cases() -> None:
         return value_cases(pruned(reduced(counted([pool(busy), pool(busy), idle], [1, 1, 1], [(0, 2)], (variable,)))))
 
     assert cases(7) is None
-    assert len(cases(8) or ()) == len(["nine", "ten", "any other hour"])
+    assert len(cases(8) or ()) == len(["nine", "ten"])  # those who have any other hour have these as well
 
 
 def test_where_each_value_leaves_more_than_enough_components_there_are_no_cases() -> None:
@@ -253,11 +253,24 @@ def test_where_each_value_leaves_more_than_enough_components_there_are_no_cases(
 def test_all_values_that_no_option_states_are_one_case(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(case_splitting, "SHARE_FREE", 1)
     variable = Variable(iri("site"), (iri("s"), iri("t")))
-    pool = [Candidate(profile(f"p{number}"), (ANY_VALUE if number else ~1,)) for number in range(4)]
+    pool = [Candidate(profile(f"p{number}"), (mask,)) for number, mask in enumerate((~1, 1, ANY_VALUE, ANY_VALUE))]
     cases = value_cases(pruned(reduced(counted([pool, pool], [2, 1], [], (variable,)))))
     assert cases
     assert [case.values for case in cases] == [(1,), (2,)]
-    assert [len(case.options[0]) for case in cases] == [3, 4]
+    assert [[option.number for option in case.options[0]] for case in cases] == [[1, 2, 3], [0, 2, 3]]
+
+
+def test_a_value_for_which_another_can_always_stand_is_no_case() -> None:
+    variable = Variable(iri("site"), (iri("s"), iri("t"), iri("u"), iri("v")))
+
+    def cases(*masks: int) -> list[tuple[int, ...]] | None:
+        pool = [Candidate(profile(f"p{number}"), (mask,)) for number, mask in enumerate(masks * 2)]
+        found = value_cases(pruned(reduced(counted([pool, pool[: len(masks)]], [1, 1], [], (variable,)))))
+        return None if found is None else [case.values for case in found]
+
+    # Who works at u works at t as well, and v is the same to everyone as s.
+    assert cases(0b1001, 0b0110, 0b0010) == [(0b0001,), (0b0010,)]
+    assert cases(0b1111, 0b1111) is None
 
 
 def test_a_parameter_of_which_no_option_states_a_value_has_no_cases() -> None:
