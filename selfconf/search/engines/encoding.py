@@ -126,6 +126,12 @@ class Encoding:
             for first, second in interchangeable(reduced):
                 self._ascending(self.plays[first], self.plays[second])
 
+    @property
+    def size(self) -> int:
+        """About how many clauses there are, for a solver that needs them to count."""
+        clauses = sum([len(one.literals) if isinstance(one, Implied) else 1 for one in self.statements])
+        return clauses + sum([len(some) * min(most, len(some) - most) for some, most, _ in self.bounds])
+
     def clauses(self) -> Iterator[list[int]]:
         """Yield the clauses one by one."""
         for statement in self.statements:

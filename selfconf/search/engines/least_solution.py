@@ -45,6 +45,9 @@ BRIEF_COUNTING = 250
 """Conflicts and questions before it gets numbers as clauses, where some are worth that."""
 BRIEF_COUNTED = 1_500
 """Conflicts and questions after that before it has company: most of them end by then, and company takes preparing."""
+PREPARED = 8
+"""To prepare company takes as long as a conflict of the first solver, at most, for each of so many clauses: with more
+of them, company comes later."""
 COUNTED_IN_VAIN = 4
 """Counting groups from so many of them without a result, it is left until the first solver gets company."""
 NEARLY = 2
@@ -137,6 +140,8 @@ class _Descent:
             if not self.finished:
                 for clause in (*encoding.probe(), *encoding.count()):
                     first.clauses.add(clause)
+                self.advance(first, max(0, encoding.size // PREPARED - BRIEF))
+            if not self.finished:
                 self._search_together(first, encoding, stack)
         if self.possible is False:
             return None

@@ -69,6 +69,24 @@ def test_the_first_solver_begins_anew_with_counters_only_where_a_role_asks_for_m
         assert counters == expected
 
 
+def test_company_waits_for_as_long_as_it_takes_to_prepare(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = pruned(reduced(queens(14, 1, 3)))
+    together: list[int] = []
+    search_together = least_solution._Descent._search_together
+
+    def noted(*arguments: Any) -> None:
+        together.append(least_solution.PREPARED)
+        search_together(*arguments)
+
+    monkeypatch.setattr(least_solution._Descent, "_search_together", noted)
+    for moment in ("UNSUPPORTED", "BRIEF"):
+        monkeypatch.setattr(least_solution, moment, 0)
+    for prepared in (1_000_000, 1):
+        monkeypatch.setattr(least_solution, "PREPARED", prepared)
+        assert least_by_clauses(problem, Budget())
+    assert together == [1_000_000]
+
+
 def test_one_that_decides_in_order_and_never_ends_stops_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = pruned(reduced(queens(14, 1, 3)))
     alone = numbers(least_by_clauses(problem, Budget()))
