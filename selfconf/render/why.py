@@ -34,10 +34,12 @@ class TaskStory:
     """The component before, by the one that took over from it."""
     ended: float | None = None
     """When it was taken down, if it was."""
+    begun: bool = False
+    """Whether it has told anything."""
 
     def take(self, event: EventBody) -> None:
         """Note an event."""
-        act = event.get("act")
+        act, self.begun = event.get("act"), True
         if act == "lost":
             self.lost[str(event.get("component"))] = event
         elif act == "running" and isinstance(event.get("configuration"), dict):
@@ -123,6 +125,8 @@ def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequenc
     """
     if found.refusal is not None:
         return _refused(found, term)
+    if found.configuration is None and found.begun and found.ended is None and _means(term, found.task):
+        return [f"{found.task} has no configuration yet", *_losses(found)]
     everything = _means(term, found.task) or any(_means(term, str(value)) for value in _bindings(found))
     sentences = []
     for role, components in found.roles():
@@ -208,7 +212,7 @@ def _refused(found: TaskStory, term: str) -> list[str]:
         return []
     sentences = [f"{found.task} has no configuration, since {clock_time(found.since)}"]
     sentences += [f"  {reason.get('message')}" for reason in refusal.get("reasons", ())]
-    sentences += [f"  {_name(component)}: {_loss(event)}" for component, event in found.lost.items()]
+    sentences += _losses(found)
     sentences += [
         f"  nearly, {'to be recruited for' if miss.get('recruit') else 'as'} {_name(miss.get('role'))}:"
         f" {_name(miss.get('component'))}, but {miss.get('obstacle')}"
@@ -216,6 +220,11 @@ def _refused(found: TaskStory, term: str) -> list[str]:
     ]
     sentences += [f"  what would change it: {relaxation.get('message')}" for relaxation in refusal.get("repairs", ())]
     return sentences
+
+
+def _losses(found: TaskStory) -> list[str]:
+    """What the task has lost."""
+    return [f"  {_name(component)}: {_loss(event)}" for component, event in found.lost.items()]
 
 
 def _components(configuration: Mapping[str, Any] | None, role: str) -> list[str]:

@@ -69,6 +69,7 @@ def test_a_site_that_is_suspended_is_named_also_when_it_seems_to_be_gone(
     assert home.until(lambda: asked() == (["a"], ["b"]))
     said = "site b is suspended; what it advertises may be missing"
     assert said in run(capsys, "discover", *arguments).err
+    assert said in run(capsys, "log", "astrid-drive", *arguments).err
     wanted = home.run()
     assert "site b did not answer in full" in wanted.act("discovered")["message"]
     assert wanted.ended() == 1

@@ -158,6 +158,16 @@ def test_a_near_miss_that_could_be_recruited_is_told_as_that() -> None:
     assert "  nearly, to be recruited for place: lidar, but it issues Ping" in why_sentences(found, "lidar", {})
 
 
+def test_of_a_task_that_is_being_configured_it_is_said_that_it_has_no_configuration_yet() -> None:
+    found = story("navigate", [{"act": "discovered", "time": 10.0}, LOST])
+    first, loss = why_sentences(found, "navigate", {})
+    assert first == "navigate has no configuration yet"
+    assert loss.startswith("  tracker: lost at ")
+    assert why_sentences(story("navigate", [{"act": "discovered", "time": 10.0}], at=5.0), "navigate", {}) == []
+    ended = story("navigate", [{"act": "discovered", "time": 10.0}, {"act": "stopped", "time": 11.0}])
+    assert why_sentences(ended, "navigate", {}) == []
+
+
 def test_what_a_stranger_tells_does_no_harm() -> None:
     with pytest.raises(PeerError, match="no events of a run"):
         told_why("navigate", [{"act": "running", "configuration": {"roles": [3]}}], "navigate", None, {})

@@ -197,7 +197,8 @@ class LivingEcology(Ecology):
         if found:
             names = ", ".join(str(one.advertisement.component) for one in found)
             raise AuthorError(f"several components are called {term}: {names}")
-        raise AuthorError(f"no component {term} is advertised; `selfconf discover` shows those that are")
+        perhaps = "".join(f"; {complaint}" for complaint in self._complaints)  # it may be at a site that is silent
+        raise AuthorError(f"no component {term} is advertised; `selfconf discover` shows those that are{perhaps}")
 
     def signals(self, component: str, output: str, complain: Callable[[str], None]) -> Iterator[HeardSignal]:
         """What an output of a component issues, as it comes, without an end. Raises AuthorError for what is not there.
