@@ -125,10 +125,8 @@ def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequenc
     """
     if found.refusal is not None:
         return _refused(found, term)
-    if found.configuration is None and found.begun and found.ended is None and _means(term, found.task):
-        return [f"{found.task} has no configuration yet", *_losses(found)]
     everything = _means(term, found.task) or any(_means(term, str(value)) for value in _bindings(found))
-    sentences = []
+    sentences = _not_yet(found, term)
     for role, components in found.roles():
         if everything or _means(term, role) or any(_means(term, one) for one in components):
             sentences += _played(found, role, components, passed_over.get(role))
@@ -220,6 +218,12 @@ def _refused(found: TaskStory, term: str) -> list[str]:
     ]
     sentences += [f"  what would change it: {relaxation.get('message')}" for relaxation in refusal.get("repairs", ())]
     return sentences
+
+
+def _not_yet(found: TaskStory, term: str) -> list[str]:
+    """That a task which a term means is being configured, and what it has lost meanwhile."""
+    waits = found.configuration is None and found.begun and found.ended is None
+    return [f"{found.task} has no configuration yet", *_losses(found)] if waits and _means(term, found.task) else []
 
 
 def _losses(found: TaskStory) -> list[str]:
