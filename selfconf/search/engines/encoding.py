@@ -315,22 +315,21 @@ class Encoding:
 
         Return the masks of values that have a literal, with that.
         """
-        masks = {mask for _, mask in constrained}
-        if reduce(and_, masks):
-            return []  # one value suits all of them
-        values = [(alike, self.literal()) for alike in _told_apart(masks)]
-        self._at_most([value for _, value in values], 1)
-        said: dict[int, list[list[int]]] = {}
-        """What is said of each mask, but for the literal that it is about."""
+        by_mask: defaultdict[int, list[int]] = defaultdict(list)
         for literal, mask in constrained:
-            if mask not in said:
-                # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
-                said[mask] = (
-                    [[*force, *[value for some, value in values if mask & some]]]
-                    if mask >= 0
-                    else [[*force, -value] for some, value in values if not mask & some]
-                )
-            self.statements += [[-literal, *rest] for rest in said[mask]]
+            by_mask[mask].append(literal)
+        if reduce(and_, by_mask):
+            return []  # one value suits all of them
+        values = [(alike, self.literal()) for alike in _told_apart(by_mask)]
+        self._at_most([value for _, value in values], 1)
+        for mask, literals in by_mask.items():
+            # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
+            said = (
+                [[*force, *[value for some, value in values if mask & some]]]
+                if mask >= 0
+                else [[*force, -value] for some, value in values if not mask & some]
+            )
+            self.statements += [[-literal, *rest] for rest in said for literal in literals]
         return values
 
     def _ascending(self, first: Sequence[int], second: Sequence[int]) -> None:
