@@ -50,11 +50,11 @@ def application(
     onlookers: Onlookers,
     fits: Fits,
     explained: ExplainedRefusals,
-    linked: Callable[[], bool],
+    link: Callable[[], str],
     hosts: Collection[str] = LOOPBACK,
     origins: Collection[str] = (),
 ) -> ASGIApp:
-    """The server as an ASGI application; `linked` tells whether the ecology can be heard.
+    """The server as an ASGI application; `link` tells by what the ecology can be heard, if it can be.
 
     `hosts` are the names under which it may be asked; empty for any. Pages of the `origins` may ask what is standard.
     """
@@ -79,7 +79,7 @@ def application(
         return streamed(request, board.stream.lines((CHANGE,), last))
 
     async def counted(_: Request) -> Response:
-        return Response(metrics.text(board.gauges(linked())), media_type=PROMETHEUS)
+        return Response(metrics.text(board.gauges(bool(link()))), media_type=PROMETHEUS)
 
     async def health(_: Request) -> Response:
         return Response('{"status": "ok"}', media_type="application/json")
@@ -88,7 +88,7 @@ def application(
         """Have a route answer only while the ecology can be heard: what is known of it then is not what there is."""
 
         async def answer(request: Request) -> Response:
-            if linked() and board.ready:
+            if board.link and link() == board.link:
                 return await respond(request)
             return problem(503, "the ecology cannot be heard; ask again in a while", {"Retry-After": "1"})
 

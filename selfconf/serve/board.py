@@ -37,6 +37,8 @@ class Board:
         """The Thing Description of each as JSON, made once: that takes longer than to send it."""
         self.ready = False
         """Whether the first look at the ecology has come."""
+        self.link = ""
+        """The link over which was last found what there is."""
         self._components: dict[str, Body] = {}
         self._sites: dict[str, Body] = {}
         self._tasks: dict[str, Body] = {}
@@ -61,6 +63,7 @@ class Board:
         self._records |= change.records
         self._records = {task: record for task, record in self._records.items() if task in self._tasks}
         self._events.extend(change.events)
+        self.link = change.link or self.link
         self.ready = True
         told = {"components": change.components, "sites": change.sites, "tasks": change.tasks, "events": change.events}
         if any(told.values()):

@@ -141,9 +141,7 @@ async def _serve(
     local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
     onlookers = Onlookers(bus, board, may_hear=not membership.looks_on_only)
     fits, explained, hosts = Fits(board), ExplainedRefusals(board), LOOPBACK if local else ()
-    app = application(
-        board, metrics, sparql, onlookers, fits, explained, lambda: bool(bus.link), hosts, options.origins
-    )
+    app = application(board, metrics, sparql, onlookers, fits, explained, lambda: bus.link, hosts, options.origins)
 
     def take(change: EcologyChange) -> None:
         try:

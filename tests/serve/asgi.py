@@ -46,12 +46,15 @@ def served(
     board: Board,
     dataset: StandingDataset | None = None,
     seconds: float = 5.0,
-    linked: bool = True,
+    link: str | None = None,
     hosts: Collection[str] = LOOPBACK,
     bus: Bus | None = None,
     origins: Collection[str] = (),
 ) -> ASGIApp:
-    """The application over a board, a dataset, and a bus on which nobody else is, unless one is given."""
+    """The application over a board, a dataset, and a bus on which nobody else is, unless one is given.
+
+    `link` is that of the bus; by default the one over which the board was filled.
+    """
     metrics = Metrics()
     sparql = SparqlEndpoint(StandingDataset() if dataset is None else dataset, metrics, seconds)
     bus = bus or Network().node()
@@ -62,7 +65,7 @@ def served(
         Onlookers(bus, board),
         Fits(board),
         ExplainedRefusals(board),
-        lambda: linked,
+        lambda: board.link if link is None else link,
         hosts,
         origins,
     )

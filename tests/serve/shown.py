@@ -34,6 +34,7 @@ def advertised(*names: str) -> EcologyChange:
         {str(c): component_body(one, "alive") for c, one in components.items()},
         {"astrid": {"missing": False}},
         graphs={str(c): turtle.ntriples(one.advertisement.triples) for c, one in components.items()},
+        link="network",
     )
 
 

@@ -14,6 +14,7 @@ from selfconf.serve.application import LOOPBACK, PIECE, Guard
 from selfconf.serve.board import Board
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.origins import Origins
+from selfconf.serve.watching.change import EcologyChange
 from tests.lab import iri
 from tests.serve.asgi import ask, served
 
@@ -83,18 +84,25 @@ def test_a_method_that_is_not_known_is_answered_with_those_that_are(board: Board
 
 def test_health_is_whether_the_ecology_is_heard(board: Board) -> None:
     assert ask(served(board), "/healthz").status == 200
-    assert ask(served(board, linked=False), "/healthz").status == 503
+    assert ask(served(board, link=""), "/healthz").status == 503
+
+
+def test_health_is_good_again_only_once_everything_was_looked_at_over_a_new_link(board: Board) -> None:
+    app = served(board, link="another")
+    assert [ask(app, path).status for path in ("/healthz", "/things")] == [503, 503]
+    board.apply(EcologyChange(link="another"))
+    assert [ask(app, path).status for path in ("/healthz", "/things")] == [200, 200]
 
 
 @pytest.mark.parametrize(
     "path", ["/things", "/things/urn:x", "/sparql?query=ASK%7B%7D", "/search/sparql?query=ASK%7B%7D"]
 )
 def test_what_lives_is_not_answered_while_the_ecology_is_not_heard(board: Board, path: str) -> None:
-    for app in (served(board, linked=False), served(Board("lab", Metrics()))):
+    for app in (served(board, link=""), served(Board("lab", Metrics()))):
         answer = ask(app, path)
         assert (answer.status, answer.media) == (503, "application/problem+json")
         assert answer.json["detail"] == "the ecology cannot be heard; ask again in a while"
-    assert ask(served(board, linked=False), "/.well-known/wot").status == 200
+    assert ask(served(board, link=""), "/.well-known/wot").status == 200
 
 
 def test_the_state_and_the_metrics_are_served(board: Board) -> None:

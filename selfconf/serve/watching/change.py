@@ -29,6 +29,9 @@ class EcologyChange:
     records: Mapping[str, TaskRecord] = field(default_factory=dict)
     """The templates of tasks, with how each is searched for, by the identity of the task."""
 
+    link: str = ""
+    """The link of the bus over which all that is advertised was found anew, if it was."""
+
     @property
     def empty(self) -> bool:
         """Whether nothing is new."""

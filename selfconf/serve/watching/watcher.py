@@ -20,6 +20,8 @@ from selfconf.serve.watching.change import Body, EcologyChange
 from selfconf.serve.watching.component_bodies import component_body
 from selfconf.serve.watching.task_watcher import TOGETHER, TaskWatcher
 
+LINK_CHECK = 0.5
+"""Seconds between two looks whether the link is another one, over which everything is to be looked at anew."""
 ASKED_AGAIN = 5.0
 """Seconds after which a site is asked again that has not answered in full."""
 
@@ -52,11 +54,14 @@ class EcologyWatcher:
         """The tasks as they were sent last, by identity."""
         self._events: list[Body] = []
         self._touched: set[IRI] = set()
+        self._link = ""
+        """The link over which was last found what is advertised."""
         self._flushing = self._discovering = self._discover_again = self._following = False
 
     def begin(self) -> None:
         """Look at what there is, and follow it from then on."""
         self._discover()
+        self._check_link()
 
     # What is advertised, and what lives.
 
@@ -64,8 +69,19 @@ class EcologyWatcher:
         if self._discovering:
             self._discover_again = True
             return
-        self._discovering = True
-        self.view.discover(self._discovered)
+        self._discovering, link = True, self.bus.link
+
+        def discovered(discovery: Discovery) -> None:
+            self._link = link if link == self.bus.link else ""
+            self._discovered(discovery)
+
+        self.view.discover(discovered)
+
+    def _check_link(self) -> None:
+        """Look at everything anew over another link: what was seen over the last one may have come or gone unseen."""
+        if self.bus.link not in ("", self._link) and not self._discovering:
+            self._discover()
+        self.bus.later(LINK_CHECK, self._check_link)
 
     def _discovered(self, discovery: Discovery) -> None:
         self._discovering = False
@@ -82,7 +98,8 @@ class EcologyWatcher:
         graphs |= {str(c): b"" for c in gone}
         shown: dict[str, Body | None] = {str(component): body for component, body in bodies.items()}
         shown |= {str(component): None for component in gone}
-        self._hand_on(EcologyChange({**new, **gone}, shown, self._changed_sites(discovery), graphs=graphs))
+        sites = self._changed_sites(discovery)
+        self._hand_on(EcologyChange({**new, **gone}, shown, sites, graphs=graphs, link=self._link))
         if not self._following:
             self._follow()
         if self._discover_again:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from selfconf.bus.memory import MemoryBus
 from selfconf.serve.watching.change import EcologyChange
 from selfconf.serve.watching.task_watcher import LOOK_ANEW
 from selfconf.serve.watching.watcher import EcologyWatcher
@@ -23,6 +24,7 @@ class Seen:
         self.graphs: dict[str, bytes] = {}
         self.events: list[Any] = []
         self.changes = 0
+        self.links: list[str] = []
         self.watcher = EcologyWatcher(lab.network.node(), "lab", self.take, lambda: lab.network.time)
         self.watcher.begin()
 
@@ -40,6 +42,7 @@ class Seen:
                 else:
                     known.pop(name, None)
         self.events += change.events
+        self.links += [change.link] if change.link else []
 
     @property
     def task(self) -> Any:
@@ -148,6 +151,19 @@ def test_nothing_is_told_while_nothing_changes(lab: Lab) -> None:
     before = seen.changes
     lab.let_pass(3 * LOOK_ANEW)
     assert seen.changes == before
+
+
+def test_over_another_link_everything_is_looked_at_anew(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    link = ["first"]
+    monkeypatch.setattr(MemoryBus, "link", property(lambda _: link[0]))
+    seen = Seen(lab)
+    lab.let_pass(1.0)
+    assert seen.links[-1] == "first"
+    for now, last in (("", "first"), ("second", "second")):
+        link[0] = now
+        lab.let_pass(2.0)
+        assert seen.links[-1] == last
+    assert seen.links.count("second") == 1
 
 
 def test_an_observer_that_comes_and_goes_is_noticed_by_nobody(lab: Lab) -> None:
