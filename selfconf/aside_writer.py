@@ -45,8 +45,9 @@ class AsideWriter(Generic[_Piece]):
         """Have a piece written soon."""
         with self._starting:
             if self._thread is None:
-                self._thread = threading.Thread(target=self._run, name="writer", daemon=True)
-                self._thread.start()
+                thread = threading.Thread(target=self._run, name="writer", daemon=True)
+                thread.start()  # first: where the system lets no thread begin, there is none to wait for
+                self._thread = thread
             try:
                 if self._left_out:
                     sentence = f"({self._left_out} pieces of output were left out here)"

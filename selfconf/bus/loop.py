@@ -165,8 +165,9 @@ class Loop:
         """Run no callback any more; one that runs on the loop's own thread is waited for."""
         self._ended = True
         self.wake_up(lambda: None)
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join()
+        own = self._thread
+        if own is not None and own.ident is not None and own is not threading.current_thread():
+            own.join()
         self._timers.clear()
         self._taken_back = 0
         with self._bulk_lock:

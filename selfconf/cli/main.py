@@ -46,6 +46,8 @@ COMMANDS = {
 }
 """Each command with what it does. Its module, `selfconf.cli.NAME`, is loaded when it is asked for."""
 INTERRUPTED = 130
+NO_THREAD = "can't start new thread"
+"""What Python says where the system lets a program begin no further thread."""
 FOR_PEOPLE = ("text", "table")
 """The formats that no program reads."""
 
@@ -110,6 +112,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for_programs()
     told = AsideHandler("%(name)s: %(message)s")
     logging.basicConfig(level=logging.DEBUG if given.debug else logging.ERROR, handlers=[told])
+    return _exit_code(given, settings, broken)
+
+
+def _exit_code(given: argparse.Namespace, settings: Settings, broken: SelfconfError | None) -> int:
+    """Run a command, and say in one sentence what goes wrong; the exit code. `broken` is the project file, if it is."""
     code: int = 0
     try:
         if broken is not None and settings.concerned and given.command != "validate":  # which reports it
@@ -133,6 +140,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
             traceback.print_exc()
         complain(f"selfconf {given.command}: {reason(error)}")
         silence(sys.stdout)
+        return 2
+    except RuntimeError as error:
+        if given.debug or str(error) != NO_THREAD:
+            raise
+        limits = "`ulimit -u`, TasksMax= of systemd or `ulimit -v`"
+        complain(f"selfconf {given.command}: the system lets it begin no further thread; allow more by {limits}")
         return 2
     except KeyboardInterrupt:
         complain(f"selfconf {given.command}: interrupted")

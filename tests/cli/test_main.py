@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
 
-from selfconf.cli.main import COMMANDS, command, main
+from selfconf.cli.main import COMMANDS, NO_THREAD, command, main
 
 ROOT = Path(__file__).resolve().parents[2]
 ACTIONS = ("keys init", "keys issue", "keys renew", "keys show", "keys revoke", "bridge wot", "bridge ros2")
@@ -28,6 +29,20 @@ def test_validating_what_is_right_loads_neither_the_network_nor_a_reasoner(tmp_p
     loaded = set(done.stderr.split())
     assert "selfconf.cli.validate" in loaded
     assert loaded.isdisjoint(("zenoh", "rdflib", "pyshacl", "owlrl", "selfconf.cli.run", "selfconf.cli.configure"))
+
+
+def test_where_no_thread_can_begin_a_sentence_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_thread(*_: object) -> None:
+        raise RuntimeError(NO_THREAD)
+
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path))
+    monkeypatch.setattr(threading, "_start_new_thread", no_thread)
+    assert main(["site", str(tmp_path), "--ecology", "crowded"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("selfconf site: the system lets it begin no further thread; allow more by `ulimit -u`")
+    assert "Traceback" not in said
 
 
 def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
