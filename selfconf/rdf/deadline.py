@@ -6,7 +6,9 @@ every program of selfconf does its work; elsewhere there is no limit. What is ra
 of the garbage collector is lost, so the alarm goes on ringing until the block is left, and Python's report of lost
 exceptions (`sys.unraisablehook`) leaves it out. It also rings in vain while the block imports a module: a library that
 is imported by half stays so, as Python forgets its package and keeps its modules, and no code can import it ever again.
-And it does so while a handler runs by which another signal ends the program, as that signal would be lost.
+And it does so while a handler runs by which another signal ends the program, as that signal would be lost; and while
+python-sat frees a solver: left between this and the note that it is done, the solver would be freed a second time with
+the object that has it, and the process would crash.
 
 What no caller waits for any more is ended in the same way, by another thread (`abandonable`).
 
@@ -146,10 +148,12 @@ def abandonable() -> Iterator[Callable[[], None]]:
 
 
 def _not_to_be_left(frame: FrameType | None) -> int:
-    """Count the frames of an import, or of a handler of another signal, from a frame outwards."""
+    """Count the frames of an import, of what frees an object, or of a handler of another signal, from one outwards."""
     count = 0
     while frame is not None:
-        count += frame.f_code.co_filename.startswith("<frozen importlib") or is_handler(frame)
+        code = frame.f_code
+        frees = code.co_name == "delete" and "pysat" in code.co_filename
+        count += code.co_filename.startswith("<frozen importlib") or frees or is_handler(frame)
         frame = frame.f_back
     return count
 

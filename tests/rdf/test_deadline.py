@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -186,6 +186,24 @@ def test_what_is_over_cannot_be_abandoned() -> None:
         pass
     abandon()
     assert signal.getitimer(signal.ITIMER_VIRTUAL) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("name", "function"), [("Minicard", "minicard_del"), ("Cadical195", "cadical195_del")])
+@LIMITS
+def test_no_solver_is_freed_twice(limit: Limit, name: str, function: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    solvers = pytest.importorskip("pysat.solvers")
+    freed: list[object] = []
+
+    def free(solver: object, *_: object) -> None:
+        freed.append(solver)
+        if len(freed) == 1:
+            signal.raise_signal(signal.SIGALRM if limit is deadline else signal.SIGPROF)
+
+    monkeypatch.setattr(import_module("pysolvers"), function, free)
+    with suppress(TimeUp), limit(60), getattr(solvers, name)():
+        pass
+    gc.collect()
+    assert len(freed) == 1
 
 
 def test_outside_of_the_main_thread_what_is_abandoned_goes_on_to_its_end() -> None:
