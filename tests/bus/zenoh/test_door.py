@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import socket
+import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from types import SimpleNamespace
@@ -63,6 +65,22 @@ def entrance() -> Iterator[Entrance]:
     """One to which nothing is connected."""
     with ExitStack() as stack:
         yield Entrance(stack)
+
+
+def test_a_look_that_has_to_wait_puts_off_no_other() -> None:
+    """Else a stranger would be through before the next one: it is when many come that a look takes long."""
+    looks = threading.Semaphore(0)
+
+    def links() -> list[SimpleNamespace]:
+        looks.release()
+        time.sleep(0.2)  # what the session does before it answers
+        return []
+
+    door = Door("tls/127.0.0.1:1", links)
+    try:
+        assert all(looks.acquire(timeout=5.0) for _ in range(3))
+    finally:
+        door.close()
 
 
 def test_it_is_shut_while_many_wait_for_longer_than_a_look(
