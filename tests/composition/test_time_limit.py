@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
+from benchmarks.search import families
 from selfconf.api.reading import read
 from selfconf.composition import TimeLimit, composed
 from selfconf.composition.composer import Composer
@@ -17,6 +20,9 @@ from selfconf.rdf.deadline import TimeUp
 from selfconf.rdf.tasks import templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.search import explain
+from selfconf.search.budget import Budget
+from selfconf.search.engines import ClauseSolver, clause_learning
+from selfconf.search.reduction.dominance import reduced
 from tests.cli.command import Outcome, run
 from tests.lab import PREFIXES
 
@@ -122,6 +128,24 @@ def test_what_is_asked_later_has_less_time_and_none_once_it_is_over() -> None:
     assert limit.within(endless, "no answer") == "no answer"
     assert (len(asked), limit.seconds) == (1, 0.2)
     assert time.monotonic() - began < 5.0
+
+
+def test_a_call_of_a_solver_which_hears_no_alarm_is_ended_when_the_time_is_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pysat")
+    monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 10**9)
+    hard, began = reduced(families.satisfiability(400, 4.26, 1)), time.monotonic()
+    with ClauseSolver(hard) as solver:
+        assert TimeLimit(0.2).within(lambda: solver.ask((), Budget()), "no answer") == "no answer"
+    assert time.monotonic() - began < 10.0  # minutes without
+
+
+def test_calls_are_ended_in_the_main_thread_alone_as_elsewhere_there_is_no_limit() -> None:
+    def ending() -> bool:
+        return "time limit" in [thread.name for thread in threading.enumerate()]
+
+    with ThreadPoolExecutor(1) as threads:
+        assert not threads.submit(TimeLimit(60.0).within, ending, True).result()
+    assert TimeLimit(60.0).within(ending, False)
 
 
 def test_an_error_of_what_is_asked_is_no_answer_of_the_limit() -> None:

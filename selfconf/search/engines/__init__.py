@@ -15,6 +15,7 @@
 * `ClauseSolver` is a clause-learning solver, if one is installed (`solver_available`). `any_by_clauses` and
   `least_by_clauses` find any or the least solution by several of them, or by an `OtherWay` where that is hard;
   `least_of_clauses` finds the least one of the clauses that a solver holds, and `minimise` a solution of least weight.
+  `end_calls` ends the calls that go on, for a limit of time.
 * `FoundedSolver` is such a solver for players and recruits, which never feed each other in a circle.
 * `smallest_core` is a smallest set of constraints that cannot hold together, by hitting sets.
 """
@@ -22,7 +23,7 @@
 from selfconf.search.engines.candidate_search import SLOT_HEADROOM, CandidateSearch
 from selfconf.search.engines.capacity_counting import within_capacity
 from selfconf.search.engines.case_splitting import value_cases
-from selfconf.search.engines.clause_learning import ClauseSolver, solver_available
+from selfconf.search.engines.clause_learning import ClauseSolver, end_calls, solver_available
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.founded import FoundedSolver
 from selfconf.search.engines.hitting_sets import smallest_core
@@ -46,6 +47,7 @@ __all__ = [
     "Undersupply",
     "any_by_clauses",
     "counted_needs",
+    "end_calls",
     "exclusive_groups",
     "first_solution",
     "hall_set",

@@ -12,8 +12,9 @@ exact, where clingo's priorities saturate at 32,767 levels. Without it everythin
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from contextlib import ExitStack
+import threading
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, nullcontext
 from functools import cache
 from importlib.util import find_spec
 from typing import Any
@@ -54,6 +55,34 @@ def as_clauses(literals: Sequence[int], most: int, top: int) -> list[list[int]]:
     return list(CardEnc.atmost(list(literals), most, top_id=top, encoding=kind).clauses)
 
 
+_CALLING: dict[int, ClauseSolver] = {}
+"""The solver that is in a call, by the thread that waits for it; CaDiCaL is not there, as it cannot be interrupted."""
+_CALLS = threading.Lock()
+"""Held by who begins or ends a call: none is interrupted after its end, when its solver may be freed."""
+
+
+@contextmanager
+def _in_call(solver: ClauseSolver) -> Iterator[None]:
+    """In the block a solver is in a call of this thread."""
+    with _CALLS:
+        _CALLING[threading.get_ident()] = solver
+    try:
+        yield
+    finally:
+        with _CALLS:
+            _CALLING.pop(threading.get_ident(), None)
+
+
+def end_calls() -> None:
+    """End the calls that go on in other threads, as if their conflicts were used up; each may be made once more.
+
+    A call of the second solver goes on until its conflicts are used up.
+    """
+    with _CALLS:
+        for solver in _CALLING.values():
+            solver.interrupt()
+
+
 class ClauseSolver:
     """A reduced problem as clauses in an incremental solver; use it in a `with` statement."""
 
@@ -72,6 +101,7 @@ class ClauseSolver:
         self._solver = getattr(solvers, solver or SOLVER)()
         self._model: list[int] = []
         self._propagates = solver in (None, SOLVER)
+        self._ends_alone = solver == SECOND_SOLVER
         self.conflicts = 0
         """How many conflicts the solver has met."""
         self._patience = CONFLICTS_PER_CALL
@@ -146,12 +176,14 @@ class ClauseSolver:
 
     def ask(self, assumed: Sequence[int], budget: Budget, most: int | None = None) -> bool | None:
         """Return whether the clauses can hold under assumptions; None if that takes more conflicts than a call may."""
-        # The solver handles no signal inside a call, so that calls have to end for a time limit to be kept. Were no
-        # interrupt expected, it would catch Ctrl-C itself, and raise an error of its own. As calls about a question
-        # double, a limit is kept late by no more than the time that the question has taken already.
+        # The solver handles no signal inside a call, so that calls have to end for Ctrl-C to be heard, and, where no
+        # other thread ends them (`end_calls`), for a time limit to be kept. Were no interrupt expected, it would catch
+        # Ctrl-C itself, and raise an error of its own. As calls about a question double, either is late by no more than
+        # the time that the question has taken already.
         before = self.conflicts
         self._solver.conf_budget(min(some for some in (self._patience, most, budget.steps) if some is not None))
-        found: bool | None = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
+        with nullcontext() if self._ends_alone else _in_call(self):
+            found: bool | None = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
         if self._interrupted:
             self._solver.clear_interrupt()
             self._interrupted = False
