@@ -43,7 +43,7 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Where tests run in several processes, put those that wait for programs first, and those that compute last."""
-    if config.option.forks:
+    if config.option.forks > 1:
         items.sort(key=_place)
 
 

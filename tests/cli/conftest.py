@@ -40,7 +40,8 @@ def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> 
     """End the paper's ecology after the last of its tests: seven components that act take a tenth of a processor."""
     home = item.session.stash.get(_INHABITED, None)
     leaving = schedule.INHABITED not in getattr(nextitem, "fixturenames", ())
-    if home is not None and leaving and item.config.option.forks:  # in one process its tests do not follow each other
+    # In one process its tests do not follow each other.
+    if home is not None and leaving and item.config.option.forks > 1:
         del item.session.stash[_INHABITED]
         home.close()
 
