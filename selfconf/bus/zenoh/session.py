@@ -8,11 +8,9 @@ copied into it once, and only a reference goes through the sockets (`docs/benchm
 cannot see that memory, or all of it is in use, or a program may not lock as much memory as it likes, the payload itself
 goes through the socket, as it always does for small ones. A hub has room for 350 such clients; others cost it nothing.
 
-Zenoh has threads for the application, for what it does on the network, for accepting, sending and receiving. What
-comes over a connection wakes the thread that has made it, which wakes one that receives. In a program of selfconf those
-that receive make the connections, too, unless `ZENOH_RUNTIME` says otherwise: a cold round trip between two clients of
-a hub takes 0.85 times as long. Sending stays apart, as who receives may wait for it, and accepting, as the handshakes
-of strangers take time.
+Zenoh divides its work among threads as it likes. With those of the application and the network handed over to those
+that receive (`ZENOH_RUNTIME`), what comes wakes one thread and not two: a cold round trip takes 0.85 times as long. But
+fifty sites then took ten seconds and more to come to rest after a common stall, in some runs, in place of about four.
 """
 
 from __future__ import annotations
@@ -68,9 +66,6 @@ _EFFECTIVE = re.compile(r"^CapEff:\s*([0-9a-f]+)$", re.MULTILINE)
 FREE_DESCRIPTORS = 32
 """How many files a program must still be free to open: a session takes about twenty, and some for its first links.
 With fewer Zenoh does not fail: it may hang, or abort the process."""
-THREADS_VARIABLE = "ZENOH_RUNTIME"
-"""What says of a process how Zenoh divides its work among threads; read once, by the first session."""
-THREADS = "(app: (handover: rx), net: (handover: rx))"
 _PORTS_TRIED = 100
 _RETRY = {
     # A client is cut off as long as it has no router, and its components rest after a second.
@@ -127,7 +122,7 @@ def open_session(
     begin_log()
     config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory(), security)
     try:
-        return _opened(config)
+        return zenoh.open(config)
     except zenoh.ZError as error:
         where = ", ".join(connect if mode == "client" else listen[:1])
         if "Address already in use" in str(error):
@@ -140,17 +135,6 @@ def open_session(
         raise NetworkError(
             f"Zenoh cannot begin ({error}); may this program start threads (`ulimit -u`), and is the clock right?"
         ) from None
-
-
-def _opened(config: zenoh.Config) -> Any:
-    """A session; with the first one of a process its threads begin. What this program starts may divide otherwise."""
-    if THREADS_VARIABLE in os.environ:
-        return zenoh.open(config)
-    os.environ[THREADS_VARIABLE] = THREADS
-    try:
-        return zenoh.open(config)
-    finally:
-        os.environ.pop(THREADS_VARIABLE, None)
 
 
 def with_port(endpoint: str) -> str:

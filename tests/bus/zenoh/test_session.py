@@ -51,31 +51,6 @@ def test_an_endpoint_may_be_of_any_protocol_that_zenoh_speaks(tmp_path: Path) ->
             router.close()
 
 
-OPENED = """
-import os
-from pathlib import Path
-from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, open_session, with_port
-endpoint = with_port(ANYWHERE_ON_LOOPBACK)
-router = open_session("router", listen=[endpoint])
-client = open_session("client", connect=[endpoint], connect_seconds=5.0)
-names = {(task / "comm").read_text().strip().partition("-")[0] for task in Path("/proc/self/task").iterdir()}
-print(*sorted(names & {"acc", "app", "net", "rx"}), os.environ.get("ZENOH_RUNTIME"))
-client.close()
-router.close()
-"""
-
-
-@pytest.mark.process
-@pytest.mark.parametrize(("divided", "threads"), [("", "acc rx None"), ("(rx: (handover: net))", "acc app net")])
-def test_what_receives_makes_the_connections_unless_zenoh_is_told_otherwise(
-    divided: str, threads: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if divided:
-        monkeypatch.setenv("ZENOH_RUNTIME", divided)
-    done = subprocess.run([sys.executable, "-c", OPENED], capture_output=True, text=True, timeout=60)
-    assert done.stdout.strip() == " ".join(filter(None, (threads, divided))), done.stderr
-
-
 def test_those_that_connect_and_stay_silent_keep_no_client_out() -> None:
     endpoint = with_port(ANYWHERE_ON_LOOPBACK)
     with ExitStack() as stack:
@@ -134,9 +109,8 @@ def test_no_session_begins_where_too_few_files_may_be_opened(most: int) -> None:
 
 
 @pytest.mark.process
-def test_a_panic_of_zenoh_is_said_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With so few descriptors its threads cannot begin; with others than these it aborts the process."""
-    monkeypatch.setenv("ZENOH_RUNTIME", "(rx: (worker_threads: 2))")
+def test_a_panic_of_zenoh_is_said_in_a_sentence() -> None:
+    """With so few descriptors its threads cannot begin."""
     done = opened_with_few_files(8, 0)
     assert "Zenoh cannot begin (" in done.stdout, done.stderr[-500:]
 
