@@ -2,7 +2,7 @@
 
 The core has no clock. A budget of steps is its own; seconds are kept here, by an alarm in the main thread
 (`selfconf.rdf.deadline`). It ends whatever is going on, and the last answer that the search has given remains. A call
-of a solver that learns clauses hears no alarm, and may take seconds: another thread ends it first.
+of a solver that learns clauses hears no alarm, and may take seconds: another thread ends it, where it can be ended.
 """
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ class Shelf:
 
         def unread(error: UnreadableError) -> None:
             below = {name: stamp for name, stamp in self._seen.items() if name.startswith(error.path + os.sep)}
-            complaints.append(_unread(error, bool(below)))
+            complaints.append(_complaint(error, bool(below)))
             kept.update(below)
 
         return kept | {name: stamp for path in self._paths for name, stamp in files.stamps(path, unread).items()}
@@ -102,13 +102,13 @@ def _read(path: Path, stamp: files.FileStamp, segments: SegmentCache, known: _Re
         good, bad = files.advertisements(path, segments)
     except UnreadableError as error:
         kept = known.advertisements if known is not None else ()
-        return _ReadFile(_UNREAD, kept, (_unread(error, bool(kept)),))
+        return _ReadFile(_UNREAD, kept, (_complaint(error, bool(kept)),))
     except AuthorError as error:
         return _ReadFile(stamp, (), (f"left out: {error}",))
     left_out = tuple(f"{path}: left out {one.component}: {one.problems[0]}" for one in bad)
     return _ReadFile(stamp, tuple(good), left_out)
 
 
-def _unread(error: UnreadableError, is_known: bool) -> str:
+def _complaint(error: UnreadableError, is_known: bool) -> str:
     """What is said of a file or folder that cannot be read, of which something is known from before, or nothing."""
     return f"{error}; what it advertised before stays" if is_known else f"left out: {error}"

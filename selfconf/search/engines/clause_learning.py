@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from importlib.util import find_spec
 from typing import Any
@@ -56,7 +56,7 @@ def as_clauses(literals: Sequence[int], most: int, top: int) -> list[list[int]]:
 
 
 _CALLING: dict[int, ClauseSolver] = {}
-"""The solver that is in a call, by the thread that waits for it; CaDiCaL is not there, as it cannot be interrupted."""
+"""The solver that is in a call, by the thread that waits for it."""
 _CALLS = threading.Lock()
 """Held by who begins or ends a call: none is interrupted after its end, when its solver may be freed."""
 
@@ -74,10 +74,7 @@ def _in_call(solver: ClauseSolver) -> Iterator[None]:
 
 
 def end_calls() -> None:
-    """End the calls that go on in other threads, as if their conflicts were used up; each may be made once more.
-
-    A call of the second solver goes on until its conflicts are used up.
-    """
+    """End the calls that go on in other threads, as if their conflicts were used up; each may be made once more."""
     with _CALLS:
         for solver in _CALLING.values():
             solver.interrupt()
@@ -101,7 +98,7 @@ class ClauseSolver:
         self._solver = getattr(solvers, solver or SOLVER)()
         self._model: list[int] = []
         self._propagates = solver in (None, SOLVER)
-        self._ends_alone = solver == SECOND_SOLVER
+        self._interruptible = solver != SECOND_SOLVER
         self.conflicts = 0
         """How many conflicts the solver has met."""
         self._patience = CONFLICTS_PER_CALL
@@ -182,7 +179,7 @@ class ClauseSolver:
         # the time that the question has taken already.
         before = self.conflicts
         self._solver.conf_budget(min(some for some in (self._patience, most, budget.steps) if some is not None))
-        with nullcontext() if self._ends_alone else _in_call(self):
+        with _in_call(self):
             found: bool | None = self._solver.solve_limited(assumptions=list(assumed), expect_interrupt=True)
         if self._interrupted:
             self._solver.clear_interrupt()
@@ -222,9 +219,13 @@ class ClauseSolver:
         return set(implied) if possible else None
 
     def interrupt(self) -> None:
-        """End the call that goes on in another thread, or else the next one, as if its conflicts were used up."""
-        self._solver.interrupt()
-        self._interrupted = True  # afterwards: else the call that ends just now would clear it before it is there
+        """End the call that goes on in another thread, or else the next one, as if its conflicts were used up.
+
+        python-sat cannot interrupt the second solver, the calls of which go on until they are.
+        """
+        if self._interruptible:
+            self._solver.interrupt()
+            self._interrupted = True  # afterwards: else the call that ends just now would clear it before it is there
 
     def maximise(self, literals: Sequence[int], budget: Budget) -> bool:
         """Make as many of the literals hold as can hold, from the last model upwards; False if the budget ends before.

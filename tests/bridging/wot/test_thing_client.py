@@ -216,14 +216,19 @@ async def streamed(client: ThingClient, server: ThingServer) -> list[ThingAnswer
         return [answer async for answer in answers]
 
 
+def begin_stream(handler: BaseHTTPRequestHandler) -> None:
+    """Answer with server-sent events, which are to follow."""
+    handler.send_response(200)
+    handler.send_header("Content-Type", "text/event-stream")
+    handler.send_header("Connection", "close")
+    handler.end_headers()
+
+
 def test_server_sent_events_come_one_by_one(thing_server: Start) -> None:
     server = thing_server()
 
     def stream(handler: BaseHTTPRequestHandler) -> None:
-        handler.send_response(200)
-        handler.send_header("Content-Type", "text/event-stream")
-        handler.send_header("Connection", "close")
-        handler.end_headers()
+        begin_stream(handler)
         handler.wfile.write(b": hello\n\nid: 1\nda")
         handler.wfile.flush()
         handler.wfile.write(b"ta: 1\r\n\r\ndata: {\ndata: }\n\nevent: x\ndata:true\n\n")
@@ -243,10 +248,7 @@ def test_a_stream_without_end_of_line_or_of_event_is_bounded(thing_server: Start
     server = thing_server()
 
     def stream(handler: BaseHTTPRequestHandler) -> None:
-        handler.send_response(200)
-        handler.send_header("Content-Type", "text/event-stream")
-        handler.send_header("Connection", "close")
-        handler.end_headers()
+        begin_stream(handler)
         while not server.released.is_set():
             handler.wfile.write(text * 10_000)
 
@@ -265,10 +267,7 @@ def test_a_thing_that_streams_without_a_pause_is_read_as_fast_as_is_allowed_and_
     server = thing_server()
 
     def stream(handler: BaseHTTPRequestHandler) -> None:
-        handler.send_response(200)
-        handler.send_header("Content-Type", "text/event-stream")
-        handler.send_header("Connection", "close")
-        handler.end_headers()
+        begin_stream(handler)
         while not server.released.is_set():
             handler.wfile.write(b"data: 1\n\n" * 10_000)
 
