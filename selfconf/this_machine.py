@@ -275,20 +275,37 @@ def _files(pattern: str) -> list[Path]:
     return sorted(root.glob(pattern)) if mine else []
 
 
+def _announced() -> Iterator[tuple[Path, LocalSite]]:
+    """The files of all sites that can be read, and what they say, sorted; their processes may be gone."""
+    for path in _files("*.json"):
+        with suppress(OSError, ValueError, TypeError):
+            yield path, LocalSite(**json.loads(path.read_bytes()))
+
+
+def _lives(site: LocalSite, path: Path) -> bool:
+    """Whether the process that has written the file of a site is there; if not, the file is removed."""
+    try:
+        living = alive(int(site.process)) and _is_the_same(site, path)
+    except (OSError, ValueError, TypeError, OverflowError):  # no system has processes of such numbers
+        return False
+    if not living:
+        path.unlink(missing_ok=True)
+    return living
+
+
 def local_sites(ecology: str | None = None) -> list[LocalSite]:
     """The sites that run on this machine, of one ecology or of all, sorted."""
-    found: list[LocalSite] = []
-    for path in _files("*.json"):
-        try:
-            site = LocalSite(**json.loads(path.read_text()))
-            living = alive(int(site.process)) and _is_the_same(site, path)
-        except (OSError, ValueError, TypeError, OverflowError):  # no system has processes of such numbers
-            continue
-        if not living:
-            path.unlink(missing_ok=True)
-        elif ecology is None or site.ecology == ecology:
-            found.append(site)
-    return found
+    living = [site for path, site in _announced() if _lives(site, path)]
+    return [site for site in living if ecology is None or site.ecology == ecology]
+
+
+def relaying_sites(ecology: str) -> list[LocalSite]:
+    """The sites of an ecology that run on this machine and relay, sorted.
+
+    Only of these is it asked whether their processes are there, which takes most of the time: each of many sites looks
+    for those that relay when it has lost its hub.
+    """
+    return [site for path, site in _announced() if site.relays and site.ecology == ecology and _lives(site, path)]
 
 
 def suspended_sites(ecology: str) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ import pytest
 
 from selfconf import rendezvous, this_machine
 from selfconf.errors import NetworkError
+from selfconf.model.immutable import replace
 from selfconf.rendezvous import usual_endpoints
 from selfconf.termination import start_time
 from selfconf.this_machine import LocalSite
@@ -47,6 +48,18 @@ def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:
         this_machine.announce(meeting(ecology, site))
     assert [found.site for found in this_machine.local_sites("home")] == ["a", "bb"]
     assert rendezvous.find("office", []) == ("office", [meeting("office", "ccc").endpoint, *usual_endpoints("office")])
+
+
+def test_those_that_relay_are_found_and_no_process_of_the_others_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    for site, relays in (("a", True), ("bb", False), ("ccc", True)):
+        this_machine.announce(replace(meeting(site=site), relays=relays))
+    this_machine.announce(meeting("office"))
+    gone = this_machine.announce(meeting(site="dddd", process=dead_process()))
+    asked, alive = list[int](), this_machine.alive
+    monkeypatch.setattr(this_machine, "alive", lambda process: asked.append(process) or alive(process))
+    assert [found.site for found in this_machine.relaying_sites("home")] == ["a", "ccc"]
+    assert len(asked) == 3
+    assert not gone.exists()
 
 
 def test_a_turn_that_another_site_holds_is_waited_for_but_not_for_ever() -> None:

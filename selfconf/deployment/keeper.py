@@ -47,6 +47,9 @@ KEEPER_AGAIN = 0.3
 it to this site, and components let go of a task that no site runs after a second."""
 OTHERS = 2.0
 """Seconds that the other sites may take to say what they keep."""
+ASKED_AT_ONCE = 10
+"""How many sites that have come are asked at once what they keep. Where more come together, as fifty do after a common
+stall, the others wait for the next looks, or each would ask each while all have enough to do."""
 ADOPTED = 3.0
 """Seconds after a site has come or gone in which a task that none runs is about to be run by the next: what it held
 then counts as held, or another task, which has lost something, would take it just before."""
@@ -86,7 +89,7 @@ class Keeper:
         self._living: dict[str, set[str]] = {site: {""}}
         self._changed = bus.now()
         """When a site has come or gone."""
-        self._to_ask: set[str] = set()
+        self._to_ask: dict[str, None] = {}
         """The sites that have come and were not asked once more since: they may not have been reached at first."""
         self._unlook: Undo | None = None
         """Takes back that it will look again; None where it will not."""
@@ -132,10 +135,17 @@ class Keeper:
         for sample in replies.samples:
             self._take(sample)
 
+    def _ask_again(self) -> None:
+        """Ask those that have come once more, and have one that does not answer asked at another look."""
+        for site in list(self._to_ask)[:ASKED_AT_ONCE]:
+            del self._to_ask[site]
+            self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, partial(self._asked_again, site))
+
     def _asked_again(self, site: str, replies: Replies) -> None:
-        if replies.complete or site not in self._living:
-            self._to_ask.discard(site)
         self._take_all(replies)
+        if not replies.complete and site in self._living:
+            self._to_ask[site] = None
+            self._look_later()
 
     def _take(self, sample: Sample) -> None:
         try:
@@ -192,9 +202,10 @@ class Keeper:
         if alive:
             lives.setdefault(site, set()).add(key)
             # When this site began it may have been cut off from that one, and no other site says what that one keeps.
-            self._to_ask.add(site)
+            self._to_ask[site] = None
             self._look_later()
-            self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._take_all)
+            if len(self._to_ask) <= ASKED_AT_ONCE:
+                self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, self._take_all)
         elif site in lives:
             lives[site].discard(key)
             if not lives[site]:
@@ -208,8 +219,7 @@ class Keeper:
             self._unlook = None
         for record in list(self.folder.records.values()):
             self._read(record)
-        for site in sorted(self._to_ask):
-            self.bus.ask(self.keys.kept_tasks(site), b"", OTHERS, partial(self._asked_again, site))
+        self._ask_again()
         self._assign()
         self._look_later()
 

@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import Faults, MemoryBus
-from selfconf.bus.port import Bus, Undo, Urgency
+from selfconf.bus.port import Bus, Replies, Request, Undo, Urgency
 from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.deployment.configuration_record import recorded_configuration
-from selfconf.deployment.keeper import keeper_of
+from selfconf.deployment.keeper import ASKED_AT_ONCE, keeper_of
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
@@ -119,6 +119,66 @@ def test_a_site_sleeps_that_keeps_no_task_and_a_task_wakes_it(
     assert not looks
     keepers.settled()
     assert looks
+
+
+@pytest.fixture
+def asked(keepers: Keepers, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The keys of the questions that the site a asks."""
+    bus, keys = keepers.buses["a"], list[str]()
+    ask = bus.ask
+
+    def noted(key: str, payload: bytes, seconds: float, done: Callable[[Replies], None]) -> None:
+        keys.append(key)
+        ask(key, payload, seconds, done)
+
+    monkeypatch.setattr(bus, "ask", noted)
+    return keys
+
+
+def test_sites_that_come_are_asked_at_once_and_once_more_but_of_many_most_are_asked_later(
+    keepers: Keepers, asked: list[str]
+) -> None:
+    def begin(*numbers: int) -> list[str]:
+        for number in numbers:
+            keepers.begin(f"s{number}")
+        return [keepers.lab.keys.kept_tasks(f"s{number}") for number in numbers]
+
+    keepers.lab.let_pass(3.0)
+    asked.clear()
+    few = begin(*range(5))
+    keepers.lab.let_pass(0.5)
+    assert asked == few
+    keepers.lab.let_pass(5.0)
+    assert sorted(asked) == sorted(2 * few)
+    asked.clear()
+    many = begin(*range(5, 30))
+    keepers.lab.let_pass(0.5)
+    assert sorted(asked) == sorted(many[:ASKED_AT_ONCE])
+    keepers.lab.let_pass(5.0)
+    assert sorted(asked) == sorted(many + many[:ASKED_AT_ONCE])
+
+
+def test_of_several_that_come_the_one_that_does_not_answer_is_asked_again(keepers: Keepers, asked: list[str]) -> None:
+    answering = {"x", "z"}
+
+    def answer(site: str, request: Request) -> None:
+        if site in answering:
+            request.finish()
+
+    keys = keepers.lab.keys
+    for site in ("x", "y", "z"):
+        node = keepers.lab.network.node()
+        node.serve(keys.kept_tasks(site), partial(answer, site))
+        node.announce(keys.site_life(site, "1"))
+    keepers.lab.let_pass(8.0)
+    asked.clear()
+    keepers.lab.let_pass(10.0)
+    assert {*asked} == {keys.kept_tasks("y")}
+    answering.add("y")
+    keepers.lab.let_pass(4.0)
+    asked.clear()
+    keepers.lab.let_pass(10.0)
+    assert not asked
 
 
 def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> None:

@@ -13,6 +13,9 @@ itself, may still be waiting for the one that hangs to answer them, at each endp
 new one have the time of these handshakes and `REACHED` seconds: else each would take the place of the one before, or
 that one would take its own hub for broken, and nothing would relay for longer than a moment.
 
+A relay whose process runs is left its place for `SLOW` seconds more: it may only be busy with all those that have lost
+it, as after a common stall. Who takes its place cuts off all that have reached it again, and the same begins anew.
+
 What sites write into the runtime folder may be lost, as when that is emptied, or a disk is full: a site whose file is
 not there writes it again, and relays as well where it cannot be written.
 
@@ -55,16 +58,18 @@ MEETING = 0.6
 """Seconds that it may take to see the sites of other hosts after connecting to them."""
 STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
-STILL_HEARD = 3
+STILL_HEARD = 6
 """How many of these times pass between two looks of other sites whether their hub answers them."""
 HUB_ANSWER = 2.0
 """Seconds that a hub may take to answer a site; one that works answers within milliseconds."""
 UNANSWERED = 3
-"""How many questions in a row it may leave unanswered."""
+"""How many questions in a row it may leave unanswered; each follows at the end of the time of the one before."""
 BUSY = 0.5
 """Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear it."""
 HUNG = 0.5
-"""Seconds without a hub, beyond the lease, after which one that relays and does not answer is taken to hang."""
+"""Seconds without a hub, beyond the lease, after which one that relays and is suspended is taken to hang."""
+SLOW = 1.5
+"""Seconds more for one whose process runs: where all have lost it at once, it may only be busy with the others."""
 REACHED = 1.0
 """Seconds until a site has surely reached one that has begun to relay, beyond handshakes with those that hang."""
 
@@ -189,14 +194,17 @@ class Joining:
         if file is not None:
             this_machine.leave(file)
 
+    def _relaying(self) -> list[LocalSite]:
+        """The other sites of this machine that relay."""
+        return [site for site in this_machine.relaying_sites(self._ecology) if site.site != self._name]
+
     def _relays(self) -> list[str]:
-        """Where the other sites of this machine that relay are reached."""
-        others = this_machine.local_sites(self._ecology)
-        return list(dict.fromkeys(other.endpoint for other in others if other.relays and other.site != self._name))
+        """Where they are reached."""
+        return _reached_at(self._relaying())
 
     def _from_here(self) -> list[str]:
         """Where the sites of this machine that relay are reached by their own host."""
-        return [site.from_here for site in this_machine.local_sites(self._ecology) if site.from_here]
+        return [site.from_here for site in this_machine.relaying_sites(self._ecology) if site.from_here]
 
     def _opened(self, listen: str | None, relays: list[str]) -> ZenohBus:
         connect = [*relays, *self._elsewhere]
@@ -250,7 +258,7 @@ class Joining:
         if self._is_replaced() or not (self.bus.endpoint or self.bus.link):
             self._look_again()
             self._look()
-        elif not self._asking and (self.bus.link or (self.bus.endpoint and self._hangs())):
+        elif not self._asking and (self.bus.link or (self.bus.endpoint and self._hangs(SLOW))):
             self._ask_hub()
 
     def _ask_hub(self) -> None:
@@ -270,6 +278,8 @@ class Joining:
                     self._replace_hub()
                 else:
                     self._connect_anew()
+            elif took >= HUB_ANSWER:
+                self._ask_hub()
 
         self.bus.roll_call(Keys(self._ecology).site_life(self._name, "*"), HUB_ANSWER, answered)
 
@@ -334,11 +344,13 @@ class Joining:
             self._announce_anew()
 
     def _take_place(self) -> None:
-        """Relay, if no site does, or if the one that does hangs."""
-        relays = self._relays()
+        """Relay, if no site does, or if those that do hang."""
+        relaying = self._relaying()
+        relays = _reached_at(relaying)
         if relays != self._awaited:
             self._await(relays)
-        if (not relays or self._hangs()) and self._is_believed():
+        patience = 0.0 if all(site.is_suspended() for site in relaying) else SLOW
+        if (not relays or self._hangs(patience)) and self._is_believed():
             self._relay_at(self._usual, relays)
 
     def _await(self, relays: list[str]) -> None:
@@ -347,9 +359,9 @@ class Joining:
         handshakes = endpoints * max(1, len(self._awaited))
         self._awaited, self._hung_at = relays, self.bus.now() + handshakes * GREETING + REACHED
 
-    def _hangs(self) -> bool:
-        """Whether there is no hub, and has been none for longer than it takes to reach one."""
-        return self._hung_at is not None and self.bus.now() > self._hung_at
+    def _hangs(self, patience: float = 0.0) -> bool:
+        """Whether there is no hub, and has been none for longer than it takes to reach one, and some seconds more."""
+        return self._hung_at is not None and self.bus.now() > self._hung_at + patience
 
     def _is_believed(self) -> bool:
         """Whether others would connect to a hub of this site, and it to theirs: not with an expired certificate."""
@@ -383,3 +395,8 @@ class Joining:
             self._await([endpoint])
             self._announce_anew()
             return
+
+
+def _reached_at(sites: Sequence[LocalSite]) -> list[str]:
+    """Where sites are reached, each endpoint once."""
+    return list(dict.fromkeys(site.endpoint for site in sites))

@@ -9,8 +9,8 @@ cannot see that memory, or all of it is in use, or a program may not lock as muc
 goes through the socket, as it always does for small ones. A hub has room for 350 such clients; others cost it nothing.
 
 Zenoh divides its work among threads as it likes. With those of the application and the network handed over to those
-that receive (`ZENOH_RUNTIME`), what comes wakes one thread and not two: a cold round trip takes 0.85 times as long. But
-fifty sites then took ten seconds and more to come to rest after a common stall, in some runs, in place of about four.
+that receive (`ZENOH_RUNTIME`), what comes wakes one thread and not two, and a bare cold round trip takes 0.85 times as
+long. But from FAIL to the first message it took as long as before, and fifty sites longer to recover from a stall.
 """
 
 from __future__ import annotations

@@ -111,16 +111,37 @@ def test_a_place_is_taken_by_one_that_has_lost_its_hub_before_it_was_announced(
     assert machine.until(lambda: site.relays)
 
 
+@pytest.mark.parametrize("suspended", [True, False])
+def test_the_place_of_one_that_does_not_answer_is_taken_sooner_if_its_process_is_suspended(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch, suspended: bool
+) -> None:
+    """One whose process runs may only be busy, as when all others have lost it at once."""
+    monkeypatch.setattr(joining, "SLOW", 60.0)
+    monkeypatch.setattr(this_machine, "stopped", lambda process: suspended)
+    for name in "ab":
+        machine.join(name)
+    site = machine.sites["b"]
+    assert machine.until(lambda: bool(site.bus.link))
+    silent = machine.sites.pop("a")  # nothing runs on its loop, so that it does not take its place itself
+    silent.bus.relay_no_more()
+    try:
+        assert machine.until(lambda: site.relays, seconds=10.0 if suspended else 2.0) is suspended
+        monkeypatch.setattr(joining, "SLOW", 0.1)
+        assert machine.until(lambda: site.relays)
+    finally:
+        machine.sites["a"] = silent
+
+
 def test_sites_that_have_a_hub_do_not_read_from_time_to_time_what_all_others_have_written(
     machine: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(joining, "STILL_MINE", 0.05)
-    read, local_sites = list[str](), this_machine.local_sites
+    read, relaying_sites = list[str](), this_machine.relaying_sites
     for name in ("a", "b"):
         machine.join(name)
     assert machine.until(lambda: bool(machine.sites["b"].bus.link))
     machine.until(lambda: False, seconds=0.5)
-    monkeypatch.setattr(this_machine, "local_sites", lambda ecology: read.append(ecology) or local_sites(ecology))
+    monkeypatch.setattr(this_machine, "relaying_sites", lambda ecology: read.append(ecology) or relaying_sites(ecology))
     assert not machine.until(lambda: bool(read), seconds=0.5)
 
 
@@ -283,7 +304,9 @@ def test_a_site_whose_own_hub_has_broken_opens_another(machine: Machine, monkeyp
 def test_a_site_that_hears_nothing_from_a_hub_connects_to_it_anew(
     machine: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """It asks once more as soon as the time of a question is over, however seldom it looks while all is well."""
     monkeypatch.setattr(joining, "STILL_MINE", 0.1)
+    monkeypatch.setattr(joining, "STILL_HEARD", 600)
     monkeypatch.setattr(joining, "HUB_ANSWER", 0.3)
     machine.join("a")
     site = machine.join("b")
