@@ -106,6 +106,16 @@ class NodeComponent(Component):
         """Serve it no more."""
         self._domain.bus.wake_up(partial(self._end_service, operation))
 
+    def issue_translated(self, name: str, signal: dict[str, Any], moment: float) -> str | None:
+        """Issue what a message was translated to; what keeps it from being a signal, without its subject, if so.
+
+        Messages may say what no signal can, as that nothing was measured (NaN): that is no failure of the node.
+        """
+        problem = self._attached().outputs.problem(name, signal)
+        if problem is None:
+            self.emit(name, signal, moment)
+        return problem
+
     # On the thread of the bus of the domain.
 
     def _serve(self, operation: str) -> None:
@@ -200,6 +210,7 @@ class RelayedOutput:
         self._checked = ros2.is_known(endpoint.type)
         self._translation = translation_of(endpoint.type.name)
         self._second, self._in_second = 0, 0
+        self._told_untranslated = False
 
     def ask_for_history(self) -> None:
         """Have publishers that keep what they published say it: they are asked beside the key of the topic."""
@@ -240,7 +251,14 @@ class RelayedOutput:
                 return
         self._component.emit(self._name, payload, moment, self._media)
         if self._translation is not None and signal is not None:
-            self._component.emit(translated_name(self._name, self._translation), signal, moment)
+            name = translated_name(self._name, self._translation)
+            problem = self._component.issue_translated(name, signal, moment)
+            if problem is not None and not self._told_untranslated:  # once: a problem may name another value each time
+                self._told_untranslated = True
+                self._domain.tell(
+                    f"{self._endpoint.topic}: what {self._token.full_name} publishes is no signal on {name!r}, as that"
+                    f" {problem}; the messages are relayed"
+                )
 
     def _is_flood(self) -> bool:
         """Whether the topic has had as many messages in this second as are relayed."""

@@ -35,7 +35,8 @@ from selfconf.bridging.ros2.tokens import (
     RosEndpoint,
     RosToken,
 )
-from selfconf.bus.port import Bus, Undo
+from selfconf.bus.port import Undo
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.errors import PeerError
 from selfconf.importing import ImportedDocument
 from selfconf.model.term import IRI
@@ -72,7 +73,7 @@ class RosNode:
 class RosWorld:
     """The other side of a bridge to ROS 2."""
 
-    def __init__(self, connect: Callable[[], Bus], domain: int) -> None:
+    def __init__(self, connect: Callable[[], ZenohBus], domain: int) -> None:
         """`connect` opens a node of the network of ROS 2; it may raise NetworkError."""
         self._connect, self._number = connect, domain
         self._nodes: dict[NodeIdentity, RosNode] = {}
@@ -85,9 +86,11 @@ class RosWorld:
         ros2.load()  # here it holds up nothing
         self._bridge, self._bus = bridge, self._connect()
         self._domain = RosDomain(self._bus, self._number, bridge.complain)
+        self._reached = True
         begun = threading.Event()
 
         def begin() -> None:
+            self._bus.watch_link(self._link_changed)
             self._bus.announce(bridge_token(self._domain).key())
             self._bus.watch(f"{ROOT}/{self._number}/**", self._changed, many=True)
             begun.set()
@@ -99,6 +102,14 @@ class RosWorld:
     def close(self) -> None:
         """Leave the domain."""
         self._bus.close()
+
+    def _link_changed(self) -> None:
+        """Say that the router is gone, or is there again: with it all nodes go and come, also those of no task."""
+        reached = bool(self._bus.link)
+        if reached != self._reached:
+            self._reached = reached
+            lost = "cannot be reached any more; its nodes are gone until it is there again"
+            self._bridge.complain(f"the router of ROS 2 {'is reached again' if reached else lost}")
 
     def _changed(self, key: str, alive: bool) -> None:
         try:

@@ -18,7 +18,7 @@ from selfconf.ros2 import HASH, NAME, MessageType
 ROOT = "@ros2_lv"
 NODE, PUBLISHER, SUBSCRIPTION, SERVER, CLIENT = "NN", "MP", "MS", "SS", "SC"
 _KINDS = "NN|MP|MS|SS|SC"
-_PART = "[^/*$?#]+"
+_PART = r"[^/*$?#\x00-\x1f\x7f-\x9f]+"  # without control characters: names stand in sentences on a terminal
 _TOKEN = re.compile(
     rf"{ROOT}/(?P<domain>\d+)/(?P<session>[0-9a-f]{{1,32}})/(?P<node>\d+)/(?P<entity>\d+)/(?P<kind>{_KINDS})"
     rf"/(?P<enclave>{_PART})/(?P<namespace>{_PART})/(?P<name>{_PART})"
@@ -55,7 +55,7 @@ class RosQuality:
                 int(depth or 42),
                 period if 0 < period < 1e6 else None,
             )
-        except ValueError:
+        except (ValueError, OverflowError):  # a whole number may be longer than any number of seconds
             raise PeerError(f"{text[:80]!r} is no quality of service of rmw_zenoh") from None
 
     def falls_short_of(self, wanted: RosQuality) -> str | None:

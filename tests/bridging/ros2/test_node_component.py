@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import struct
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 import zenoh
 import zenoh.ext
 
+from selfconf import ros2
 from selfconf.bridging.ros2 import node_component
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
@@ -54,6 +56,29 @@ def test_a_component_reads_the_fields_of_a_message_or_a_signal_of_what_it_says(
             return {str(value) for value, _ in component.heard} == {"{'data': 'hello'}", "{'text': 'hello'}"}
 
         assert until(arrives), component.heard
+
+
+def test_a_message_that_no_signal_can_say_is_relayed_all_the_same(living: LivingStage, tmp_path: Path) -> None:
+    kind = ros2.usual_type("sensor_msgs/msg/Temperature")
+    assert kind is not None
+    key = f"sensor_msgs::msg::dds_::Temperature_/{kind.hash}"
+    unknown, known = (ros2.message({"temperature": each}, kind) for each in (math.nan, 21.5))
+    with bridging_domain(living, tmp_path / "ads") as found:
+        publish = found.node("sensor").publishes("/inside", key=key)
+        heard = found.node("display").hears("/shown", key=key)
+        found.activate("sensor")
+        found.activate("display", shown=(Wire(node("sensor"), "inside"),))
+
+        def arrives() -> bool:
+            publish(unknown)
+            return bool(heard)
+
+        assert until(arrives)
+        publish(known)
+        assert until(lambda: heard[-1].payload == known)
+        sentence = "/inside: what /sensor publishes is no signal on 'inside as Temperature', as that has nan as"
+        assert sum(one.startswith(sentence) for one in found.complaints) == 1
+        assert found.causes() == []
 
 
 def test_an_object_is_published_as_a_message_and_ros_sees_who_publishes(living: LivingStage, tmp_path: Path) -> None:

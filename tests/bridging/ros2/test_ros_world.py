@@ -9,7 +9,7 @@ import pytest
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.ros_world import RosWorld
-from selfconf.bus.zenoh import client
+from selfconf.bus.zenoh import client, router
 from selfconf.errors import NetworkError
 from selfconf.protocol.messages import Release
 from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node
@@ -115,13 +115,29 @@ def test_humble_and_what_is_no_token_are_named_and_hinder_nothing(living: Living
         old = found.node("old")
         old.token("MP", "/chatter", key="std_msgs::msg::dds_::String_/TypeHashNotSupported")
         old.bus.announce(f"@ros2_lv/{DOMAIN}/what")
+        old.token("MP", "/long", f"::,10:{'9' * 400},:,:,,")
         found.node("_tool").publishes("/chatter")
         found.node("talker").publishes("/chatter")
         assert until(lambda: found.lives("talker"))
         assert until(lambda: found.complained("the types of the node /old have no hash, as in humble"))
         assert until(lambda: found.complained("is no token of rmw_zenoh"))
+        assert until(lambda: found.complained("is no quality of service of rmw_zenoh"))
         assert STRING_KEY not in found.advertised()
         assert "_tool" not in found.advertised()
+
+
+@pytest.mark.slow
+def test_a_router_that_goes_and_comes_is_named_though_no_task_holds_a_node(living: LivingStage, tmp_path: Path) -> None:
+    lost = "the router of ROS 2 cannot be reached any more; its nodes are gone until it is there again"
+    complaints: list[str] = []
+    bridge, hub = Bridge(tmp_path, complaints.append), router()
+    world = RosWorld(lambda: client([hub.endpoint]), DOMAIN)
+    with bridge.living(world, living.ecology, living.node):
+        hub.close()
+        assert until(lambda: complaints == [lost])
+        again = router(hub.endpoint)
+        assert until(lambda: complaints == [lost, "the router of ROS 2 is reached again"])
+    again.close()
 
 
 @pytest.mark.slow
