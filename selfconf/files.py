@@ -10,7 +10,7 @@ import errno
 import os
 import stat
 import sys
-from codecs import BOM_UTF8
+from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
@@ -43,11 +43,15 @@ def within(
     Links to files are among them, also those that lead nowhere, but for the locks of editors (`.#name`). A folder
     that cannot be read raises AuthorError, unless `left_out` is given, which receives the error instead.
     """
-    return sorted(map(Path, stamps(path, left_out, endings))) if path.is_dir() else [path]
+    return sorted(map(Path, stamps(path, left_out, endings))) if _is_folder(_status(path)) else [path]
 
 
-FileStamp = tuple[int, int]
-"""When a file was changed last, in nanoseconds, and its size: as long as both stay, so does what is in it."""
+FileStamp = tuple[int, ...]
+"""Which file it is (device, inode), its size, and when it and what is said of it were changed last, in nanoseconds.
+
+As long as all of these stay, so does what is in the file. Size and time alone do not tell: what unpacks or copies a
+version sets the time to that of another file, and a link may lead to the file of another folder.
+"""
 
 
 def stamps(
@@ -57,9 +61,9 @@ def stamps(
 
     It takes 4 microseconds for each file, so that a site may look at ten thousand files from time to time.
     """
-    if not path.is_dir():
-        status = _status(path)
-        return {} if status is None else {str(path): (status.st_mtime_ns, status.st_size)}
+    status = _status(path)
+    if not _is_folder(status):
+        return {} if status is None else {str(path): _stamp_of(status)}
     found: dict[str, FileStamp] = {}
     waiting = [str(path)]
     while waiting:
@@ -83,7 +87,7 @@ def stamps(
     return found
 
 
-_LEADS_NOWHERE: FileStamp = (0, 0)
+_LEADS_NOWHERE: FileStamp = ()
 """The stamp of a link to what is not there."""
 _LOCK = ".#"
 """What the names of the links begin with by which editors lock files; they lead nowhere on purpose."""
@@ -93,9 +97,17 @@ def _stamp(entry: os.DirEntry[str]) -> FileStamp | None:
     """The stamp of a file in a folder; None if it is no file or has gone."""
     status = _status(entry)
     if status is not None:
-        return (status.st_mtime_ns, status.st_size) if stat.S_ISREG(status.st_mode) else None
+        return _stamp_of(status) if stat.S_ISREG(status.st_mode) else None
     # A link that leads nowhere counts as a file, so that it is named when it is read.
     return _LEADS_NOWHERE if Path(entry.path).is_symlink() and not entry.name.startswith(_LOCK) else None
+
+
+def _is_folder(status: os.stat_result | None) -> bool:
+    return status is not None and stat.S_ISDIR(status.st_mode)
+
+
+def _stamp_of(status: os.stat_result) -> FileStamp:
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
 
 
 def _status(entry: Path | os.DirEntry[str]) -> os.stat_result | None:
@@ -133,9 +145,13 @@ def ontology_files(paths: Iterable[Path]) -> list[Path]:
 
 
 def existing(path: Path) -> Path:
-    """The path, if there is something; raises AuthorError."""
-    if not path.exists():
-        raise AuthorError(f"there is no file or folder {path}")
+    """The path, if there is something. Raises AuthorError, and UnreadableError where that cannot be seen."""
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        raise AuthorError(f"there is no file or folder {path}") from None
+    except OSError as error:
+        raise UnreadableError(str(path), str(path), error.strerror or str(error)) from None
     return path
 
 
@@ -242,6 +258,8 @@ def _too_large() -> OSError:
 
 def text(found: bytes, name: str) -> bytes:
     """What is to be parsed of the bytes of a source. Raises TurtleError where that cannot be text."""
+    if found.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
+        raise TurtleError("not Turtle: this is UTF-16, and Turtle is UTF-8; save it as that", file=name)
     if b"\0" in found:
         raise TurtleError("not Turtle: this is a binary file", file=name)
     if not found.isascii():
@@ -253,11 +271,16 @@ def text(found: bytes, name: str) -> bytes:
 
 def base(path: Path) -> str:
     """The IRI that relative IRIs in a file are relative to."""
-    whole = _resolved(path.parent.absolute()) / path.name
+    folder = path.parent.absolute()
+    status = _status(folder)
+    whole = _resolved(folder, () if status is None else _stamp_of(status)) / path.name
     return (whole.resolve() if whole.is_symlink() else whole).as_uri()
 
 
 @lru_cache(maxsize=64)
-def _resolved(folder: Path) -> Path:
-    """A folder without symbolic links, remembered: a thousand files have it in common."""
+def _resolved(folder: Path, stamp: FileStamp) -> Path:
+    """A folder without symbolic links, remembered: a thousand files have it in common.
+
+    It is another one where a link to it leads elsewhere than before, as its stamp says.
+    """
     return folder.resolve()

@@ -127,11 +127,13 @@ def test_a_file_means_one_thing_with_and_without_a_mark_and_by_any_path(
 
 def test_what_cannot_be_read_as_turtle_is_said(tmp_path: Path) -> None:
     (tmp_path / "binary.ttl").write_bytes(b"<urn:a>\0")
+    (tmp_path / "wide.ttl").write_bytes("<urn:a> a <urn:B> .".encode("utf-16"))
     (tmp_path / "latin.ttl").write_bytes(b"# caf\xe9\n")
     for path, kind, words in (
         (tmp_path, AuthorError, "is a folder; a file is needed here"),
         (tmp_path / "nowhere.ttl", AuthorError, "no file or folder"),
         (tmp_path / "binary.ttl", TurtleError, "binary file"),
+        (tmp_path / "wide.ttl", TurtleError, "this is UTF-16, and Turtle is UTF-8"),
         (tmp_path / "latin.ttl", TurtleError, r"latin\.ttl:1:6: this is not UTF-8: the byte 0xE9"),
     ):
         with pytest.raises(kind, match=words):

@@ -23,7 +23,7 @@ Complaint = Callable[[str], None]
 """Hears, in a sentence, what was left out and why."""
 
 
-_UNREAD: files.FileStamp = (-1, -1)
+_UNREAD: files.FileStamp = (-1,)
 """The stamp of a file that could not be read, which no file has: so it is read again."""
 
 
@@ -66,15 +66,24 @@ class Shelf:
         return changed
 
     def _look(self, complaints: list[str]) -> dict[str, files.FileStamp]:
-        """The stamp of every Turtle file of the shelf that can be found, or was in a folder that cannot be read now."""
+        """The stamp of every Turtle file of the shelf that can be found, or was where nothing can be seen now."""
         kept: dict[str, files.FileStamp] = {}
+        found: dict[str, files.FileStamp] = {}
 
         def unread(error: UnreadableError) -> None:
-            below = {name: stamp for name, stamp in self._seen.items() if name.startswith(error.path + os.sep)}
+            place = error.path + os.sep
+            below = {name: stamp for name, stamp in self._seen.items() if (name + os.sep).startswith(place)}
             complaints.append(_complaint(error, bool(below)))
             kept.update(below)
 
-        return kept | {name: stamp for path in self._paths for name, stamp in files.stamps(path, unread).items()}
+        for path in self._paths:
+            try:
+                found |= files.stamps(files.existing(path), unread)
+            except UnreadableError as error:
+                unread(error)
+            except AuthorError as error:
+                complaints.append(f"left out: {error}")
+        return kept | found
 
     def _merged(self, complaints: list[str]) -> dict[IRI, Advertisement]:
         """The advertisements of all files; of two of one component the first. A file may be given by two paths."""

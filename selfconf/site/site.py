@@ -38,6 +38,8 @@ FILE_CHECK = 1.0
 """How often, in seconds, the files are looked at for changes."""
 FILE_CHECK_SHARE = 0.02
 """Which part of the time may be spent on that: where there are very many files, they are looked at less often."""
+FILE_CHECK_PAUSE = 5.0
+"""Seconds from one look to the next at most: to read many files that have changed takes longer than to look at them."""
 
 MOST_REASON = 1000
 """How many characters are sent of why a component cannot act."""
@@ -148,8 +150,10 @@ class Site:
     def _look(self) -> None:
         """Look at the files, now and from time to time, and tell the ecology if the advertisements have changed."""
         began = self.bus.now()
-        changed = self.shelf.refresh()
-        self.bus.later(max(FILE_CHECK, (self.bus.now() - began) / FILE_CHECK_SHARE), self._look)
+        try:
+            changed = self.shelf.refresh()
+        finally:  # whatever breaks: else the files would never be looked at again
+            self.bus.later(pause_after(self.bus.now() - began), self._look)
         if changed:
             self._served = self._read_shelf()
             self._tell_changed()
@@ -223,3 +227,8 @@ class Site:
             request.refuse(str(error))
         finally:
             request.finish()
+
+
+def pause_after(seconds: float) -> float:
+    """How long the files are not looked at after a look that took so many seconds."""
+    return max(FILE_CHECK, min(seconds / FILE_CHECK_SHARE, FILE_CHECK_PAUSE))

@@ -68,6 +68,55 @@ def test_a_folder_that_is_called_like_a_file_is_a_folder(tmp_path: Path) -> None
     assert complaints == []
 
 
+def test_a_file_of_the_same_size_and_time_is_noticed(tmp_path: Path) -> None:
+    """What copies or unpacks a version sets the times of its files, and may make a link lead to another one."""
+    old, new, link = tmp_path / "1" / "lamp.ttl", tmp_path / "2" / "lamp.ttl", tmp_path / "now"
+    for path, name in ((old, "a"), (new, "b")):
+        path.parent.mkdir()
+        path.write_text(f"<#{name}> a <https://w3id.org/selfconf#Component> , <urn:Lamp> .")
+        os.utime(path, (1, 1))
+    link.symlink_to(old.parent)
+    shelf = Shelf([link], print)
+    shelf.refresh()
+    assert list(shelf.advertisements) == [old.as_uri() + "#a"]
+    link.unlink()
+    link.symlink_to(new.parent)
+    assert shelf.refresh()
+    assert list(shelf.advertisements) == [new.as_uri() + "#b"]
+    new.write_text(new.read_text().replace("#b", "#c"))
+    os.utime(new, (1, 1))
+    assert shelf.refresh()
+    assert list(shelf.advertisements) == [new.as_uri() + "#c"]
+
+
+def test_a_folder_that_cannot_be_seen_for_now_stays_and_one_that_has_gone_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    complaints: list[str] = []
+    folder, real = tmp_path / "ads", Path.stat
+    folder.mkdir()
+    shelf = Shelf([write_advertisements(folder, "tracker")], complaints.append)
+    shelf.refresh()
+
+    def hidden(path: Path, **options: bool) -> os.stat_result:
+        if path == folder:
+            raise PermissionError(errno.EACCES, "Permission denied")
+        return real(path, **options)
+
+    with monkeypatch.context() as denied:
+        denied.setattr(Path, "stat", hidden)
+        assert not shelf.refresh()
+    assert complaints == [f"cannot read {folder}: Permission denied; what it advertised before stays"]
+    assert set(shelf.advertisements) == {iri("person-tracker")}
+    folder.rename(tmp_path / "elsewhere")
+    assert shelf.refresh()
+    assert shelf.advertisements == {}
+    assert complaints[1:] == [f"left out: there is no file or folder {folder}"]
+    (tmp_path / "elsewhere").rename(folder)
+    assert shelf.refresh()
+    assert set(shelf.advertisements) == {iri("person-tracker")}
+
+
 def test_a_complaint_is_made_once_until_it_changes(tmp_path: Path) -> None:
     complaints: list[str] = []
     shelf = Shelf([write_advertisements(tmp_path, "tracker")], complaints.append)

@@ -12,7 +12,7 @@ from selfconf.errors import AuthorError
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import Page
 from selfconf.site import Shelf, Site
-from selfconf.site.site import FILE_CHECK
+from selfconf.site.site import FILE_CHECK, FILE_CHECK_PAUSE, pause_after
 from tests.lab import ADVERTISEMENTS, iri, write_advertisements
 from tests.site.served import KEYS, ask, serve
 
@@ -42,6 +42,32 @@ def test_a_change_is_announced_and_the_next_answer_has_a_new_revision(network: N
     after = [decode(sample.attachment, Page) for sample in ask(network, KEYS.advertisements()).samples]
     assert {page.revision for page in after} == {before.revision + 1}
     assert {page.total for page in after} == {2}
+
+
+def test_a_look_at_the_files_that_breaks_is_not_the_last_one(
+    network: Network, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = serve(network, write_advertisements(tmp_path, "tracker"))
+    told: list[Sample] = []
+    network.node().subscribe(KEYS.changed(), told.append)
+    with monkeypatch.context() as broken:
+        broken.setattr(Shelf, "refresh", breaks)
+        with pytest.raises(ArithmeticError):
+            network.run(lambda: False, 2 * FILE_CHECK)
+    write_advertisements(tmp_path, "drive")
+    network.run(lambda: bool(told), 2 * FILE_CHECK)
+    assert len(site.shelf.advertisements) == 2
+
+
+def breaks(_: Shelf) -> bool:
+    """Break, as nothing should."""
+    raise ArithmeticError
+
+
+def test_files_are_looked_at_again_soon_however_long_reading_has_taken() -> None:
+    assert pause_after(0.001) == FILE_CHECK
+    assert pause_after(0.04) == pytest.approx(2.0)
+    assert pause_after(30.0) == FILE_CHECK_PAUSE
 
 
 def test_nothing_is_announced_while_nothing_changes(network: Network, tmp_path: Path) -> None:
