@@ -25,7 +25,7 @@ from selfconf.access.rules import AccessRules, rules_of
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
-from selfconf.errors import NetworkError, PeerError, SelfconfError
+from selfconf.errors import NetworkError, PeerError, SelfconfError, reason
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.wording import client_text
@@ -344,7 +344,7 @@ class Doorkeeper:
             changed = self._credentials.certificate.stat().st_mtime_ns
             HostAuthority(self._folder).renew_components()
         except (SelfconfError, OSError) as error:
-            self._tell_fault(str(error))
+            self._tell_fault(reason(error) if isinstance(error, OSError) else str(error))
             return
         if changed != self._renewed_at:
             self._renewed_at = changed

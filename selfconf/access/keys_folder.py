@@ -22,7 +22,7 @@ from collections.abc import Iterable, Sequence, Set
 from pathlib import Path
 
 from selfconf.access.certificate_files import AUTHORITY, HOST_AUTHORITY, OWN, REVOKED, read_certificate, read_pair
-from selfconf.access.certificates import Certificate, read_revocations
+from selfconf.access.certificates import Certificate, Key, read_revocations
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.private_files import (
     check_private,
@@ -46,12 +46,17 @@ class KeysFolder:
     """Whether certificates can be issued with this folder."""
 
     def __init__(self, path: Path) -> None:
-        """Raises AuthorError for no folder, one that others may write into, and one with a key that they may read."""
+        """Raises AuthorError for no folder, one with a key that others may read, or one that they may write into.
+
+        So it is with the certificate of an authority that it believes.
+        """
         self.path = path
         if not path.is_dir():
             raise AuthorError(f"there is no folder {path}; make an authority with `selfconf keys init {path}`")
         check_unwritable(path)
         self.authority = read_certificate(path / f"{AUTHORITY}.pem")
+        for believed in (AUTHORITY, HOST_AUTHORITY):
+            check_unwritable(path / f"{believed}.pem")
         for key in (AUTHORITY, HOST_AUTHORITY, OWN):
             check_private(path / f"{key}.key")
 
@@ -63,6 +68,10 @@ class KeysFolder:
     def own(self) -> Certificate:
         """The certificate that this folder speaks by. Raises AuthorError if it holds none."""
         return read_certificate(self.path / f"{OWN}.pem")
+
+    def pair(self) -> tuple[Certificate, Key]:
+        """The certificate that this folder speaks by, and its key. Raises AuthorError for what is wrong with either."""
+        return read_pair(self.path / OWN)
 
     def principal(self) -> Principal:
         """The holder of this folder. Raises AuthorError for a certificate that names none, and if there is none."""
@@ -88,7 +97,7 @@ class KeysFolder:
 
         The `name` is chosen by an authority alone; other folders show what was issued to them.
         """
-        certificate, _ = read_pair(self.path / OWN)
+        certificate, _ = self.pair()
         fault = certificate.fault(self.believed_authorities())
         if not fault and certificate.serial in self.revoked():
             fault = "was revoked"

@@ -54,11 +54,11 @@ def check_private(path: Path) -> None:
         raise AuthorError(f"others may read {path}, so it is no secret; say `chmod 600 {path}`, or make a new one")
 
 
-def check_unwritable(folder: Path) -> None:
-    """Raise AuthorError for a folder of keys into which others than its owner may put files."""
-    if folder.stat().st_mode & 0o022:
+def check_unwritable(path: Path) -> None:
+    """Raise AuthorError for a folder of keys, or a certificate in it, into which others than its owner may write."""
+    if path.exists() and path.stat().st_mode & 0o022:
         raise AuthorError(
-            f"others may write into {folder}, and so have it believe another authority; say `chmod go-w {folder}`"
+            f"others may write into {path}, and so have another authority believed; say `chmod go-w {path}`"
         )
 
 

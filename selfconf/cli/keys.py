@@ -129,7 +129,9 @@ def _show(given: argparse.Namespace) -> int:
     from selfconf.access import Authority, open_keys
 
     folder = open_keys(given.folder)
-    shown = [_described(one, folder) for one in (folder.issued() if isinstance(folder, Authority) else [folder.own()])]
+    shown = [
+        _described(one, folder) for one in (folder.issued() if isinstance(folder, Authority) else [folder.pair()[0]])
+    ]
     if given.format == "json":
         print(json.dumps({"authority": folder.is_authority, "certificates": shown}, indent=2))
     else:

@@ -32,6 +32,13 @@ def test_keys_are_read_by_their_owner_alone(authority: Authority, tmp_path: Path
         KeysFolder(tmp_path / "alice")
 
 
+def test_a_certificate_of_an_authority_that_others_may_replace_is_refused(authority: Authority, tmp_path: Path) -> None:
+    authority.issue(ALICE, tmp_path / "alice")
+    (tmp_path / "alice" / "authority.pem").chmod(0o664)
+    with pytest.raises(AuthorError, match=r"others may write into .*authority\.pem, .*`chmod go-w .*authority\.pem`"):
+        KeysFolder(tmp_path / "alice")
+
+
 def test_a_holder_shows_what_it_was_issued(authority: Authority, tmp_path: Path) -> None:
     issued = authority.issue(ALICE, tmp_path / "alice", ["10.0.0.1"], days=3)
     folder = KeysFolder(tmp_path / "alice")

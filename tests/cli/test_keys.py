@@ -79,6 +79,15 @@ def test_what_is_wrong_with_a_holder_is_shown(
     assert "has expired" in shown.out
 
 
+def test_a_key_that_is_broken_is_shown(authority: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "alice"
+    run(capsys, "keys", "issue", "read.alice", "--keys", str(authority), "--out", str(folder))
+    (folder / "certificate.key").write_bytes(b"")
+    shown = run(capsys, "keys", "show", str(folder))
+    assert shown.code == 2
+    assert "certificate.key: holds no private key in PEM" in shown.err
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
