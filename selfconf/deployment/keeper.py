@@ -25,6 +25,7 @@ from selfconf.bus.port import Bus, Replies, Request, Sample, Undo, Urgency
 from selfconf.configurator import Phase
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
 from selfconf.deployment.holders import Holding
+from selfconf.deployment.stable_view import StableView
 from selfconf.deployment.task_folder import TaskFolder
 from selfconf.errors import PeerError, SelfconfError, reason
 from selfconf.model.holder import Holder
@@ -89,10 +90,13 @@ class Keeper:
         self._living: dict[str, set[str]] = {site: {""}}
         self._changed = bus.now()
         """When a site has come or gone."""
+        self._view = StableView(bus.now, lambda: bus.link)
         self._to_ask: dict[str, None] = {}
         """The sites that have come and were not asked once more since: they may not have been reached at first."""
         self._unlook: Undo | None = None
         """Takes back that it will look again; None where it will not."""
+        self._is_to_assign = False
+        """Whether it waits for what it sees of the other sites to be believed, to run a task."""
         bus.serve(self.keys.keep(site), self._keep)
         bus.serve(self.keys.kept_tasks(site), self._answer)
         bus.subscribe(self.keys.task(), self._take, Urgency.EVENT)
@@ -122,8 +126,8 @@ class Keeper:
 
     def _answer(self, request: Request) -> None:
         try:
-            for record in self.folder.records.values():
-                request.reply(self.keys.kept_task(self.site, record.task), encode(record))
+            for task in self.folder.records:
+                request.reply(self.keys.kept_task(self.site, task), self.folder.encoded(task))
         finally:
             request.finish()
 
@@ -148,6 +152,9 @@ class Keeper:
             self._look_later()
 
     def _take(self, sample: Sample) -> None:
+        task = sample.key.rpartition("/")[2]
+        if task in self.folder.records and sample.payload == self.folder.encoded(task):
+            return
         try:
             record = decode(sample.payload, TaskRecord)
             self._learn(record)
@@ -199,6 +206,7 @@ class Keeper:
         if site == self.site:
             return
         self._changed = self.bus.now()
+        self._view.changes(site, alive)
         if alive:
             lives.setdefault(site, set()).add(key)
             # When this site began it may have been cut off from that one, and no other site says what that one keeps.
@@ -242,7 +250,19 @@ class Keeper:
             elif runner is not None and self._is_to_leave(runner, record, mine):
                 runner.hand_over()
             if task not in self.runners and mine and linked and not record.ended and not self._has_respite(task):
-                self._run(record)
+                if unrest := self._view.unrest():
+                    self._assign_later(unrest)
+                else:
+                    self._run(record)
+
+    def _assign_later(self, seconds: float) -> None:
+        def assign() -> None:
+            self._is_to_assign = False
+            self._assign()
+
+        if not self._is_to_assign:
+            self._is_to_assign = True
+            self.bus.later(seconds, assign)
 
     def _is_to_leave(self, runner: TaskRunner, record: TaskRecord, mine: bool) -> bool:
         """Whether a task is another site's by now: by a newer record, or as that has come; then once it is settled."""

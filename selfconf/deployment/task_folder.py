@@ -24,6 +24,7 @@ class TaskFolder:
         self._folder = folder
         self.records: dict[str, TaskRecord] = {}
         """The newest record of each task, by the identity of the task."""
+        self._encoded: dict[str, tuple[TaskRecord, bytes]] = {}
         for path in _kept_in(folder) if folder is not None else ():
             try:
                 record = decode(path.read_bytes(), TaskRecord)
@@ -63,6 +64,15 @@ class TaskFolder:
                         self._path(self._folder, record.task).unlink(missing_ok=True)
         return True
 
+    def encoded(self, task: str) -> bytes:
+        """The record of a task as it is sent; made once, as every site asks every other that comes for all of them."""
+        record = self.records[task]
+        made_of, payload = self._encoded.get(task, (None, b""))
+        if made_of is not record:
+            payload = encode(record)
+            self._encoded[task] = record, payload
+        return payload
+
     @staticmethod
     def _path(folder: Path, task: str) -> Path:
         return folder / f"{task}.json"
@@ -86,6 +96,7 @@ class TaskFolder:
         ended = sorted((one for one in self.records.values() if one.ended), key=lambda one: one.beginning)
         for record in ended[: (len(ended) + 1) // 2]:
             del self.records[record.task]
+            self._encoded.pop(record.task, None)
             if self._folder is not None:
                 self._path(self._folder, record.task).unlink(missing_ok=True)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -19,7 +20,7 @@ from selfconf.deployment import Keeper, RunRequest, TaskFolder
 from selfconf.deployment.configuration_record import recorded_configuration
 from selfconf.deployment.keeper import ASKED_AT_ONCE, keeper_of
 from selfconf.model.configuration import Configuration
-from selfconf.protocol.codec import encode
+from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.simulated import home, living_room
@@ -179,6 +180,60 @@ def test_of_several_that_come_the_one_that_does_not_answer_is_asked_again(keeper
     asked.clear()
     keepers.lab.let_pass(10.0)
     assert not asked
+
+
+def test_a_record_that_is_known_is_not_read_again_and_one_that_is_outdated_is_answered(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keepers.settled()
+    record = keepers.keepers["a"].folder.records[RECORD.task]
+    read, told = list[bytes](), list[bytes]()
+
+    def noted(payload: bytes, kind: type[TaskRecord]) -> TaskRecord:
+        read.append(payload)
+        return decode(payload, kind)
+
+    monkeypatch.setattr("selfconf.deployment.keeper.decode", noted)
+    node = keepers.lab.network.node()
+    node.subscribe(keepers.lab.keys.task(), lambda sample: told.append(sample.payload), Urgency.EVENT)
+    node.publisher(keepers.lab.keys.task(RECORD.task), Urgency.EVENT).put(encode(record))
+    keepers.lab.let_pass(1.0)
+    assert not read
+    told.clear()
+    node.publisher(keepers.lab.keys.task(RECORD.task), Urgency.EVENT).put(encode(RECORD))
+    keepers.lab.let_pass(1.0)
+    assert encode(record) in told
+    assert {*read} == {encode(RECORD)}
+
+
+def test_while_all_sites_find_each_other_again_hardly_another_takes_a_task(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each sees the others come one by one; only where the last that is missing has the task, the next one takes it."""
+    for name in "defgh":
+        keepers.begin(name)
+    keeper, begun = keepers.settled(), list[str]()
+    run = Keeper._run
+
+    def noted(self: Keeper, record: TaskRecord) -> None:
+        begun.append(self.site)
+        run(self, record)
+
+    monkeypatch.setattr(Keeper, "_run", noted)
+    network = keepers.lab.network
+    nodes = [bus for bus in keepers.buses.values() if isinstance(bus, MemoryBus)]
+    assert len(nodes) == 8
+    others = [node for node in network.nodes if node not in nodes]
+    pairs = [*itertools.combinations(nodes, 2), *itertools.product(nodes, others)]
+    for left, right in pairs:
+        network.cut(left, right)
+    keepers.lab.let_pass(0.05)
+    for left, right in pairs:
+        network.reconnect(left, right)
+        keepers.lab.let_pass(0.05 if right in nodes else 0.0)
+    keepers.lab.let_pass(5.0)
+    assert len(begun) <= 1
+    assert keepers.running() == [keeper]
 
 
 def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> None:

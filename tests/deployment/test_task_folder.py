@@ -11,6 +11,7 @@ import pytest
 
 from selfconf.deployment.task_folder import MOST_RECORDS, TaskFolder
 from selfconf.errors import PeerError
+from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 
 FIRST = TaskRecord("navigate~1", revision=1)
@@ -30,6 +31,15 @@ def test_a_record_that_is_not_newer_is_not_learnt(tmp_path: Path, late: TaskReco
     folder.learn(SECOND)
     assert not folder.learn(late)
     assert TaskFolder(tmp_path).records == {"navigate~1": SECOND}
+
+
+def test_a_record_is_encoded_once_and_anew_when_a_newer_one_is_learnt() -> None:
+    folder = TaskFolder(None)
+    folder.learn(FIRST)
+    assert folder.encoded("navigate~1") == encode(FIRST)
+    assert folder.encoded("navigate~1") is folder.encoded("navigate~1")
+    folder.learn(SECOND)
+    assert folder.encoded("navigate~1") == encode(SECOND)
 
 
 def test_each_task_has_a_file_of_its_own_and_nothing_else_is_left(tmp_path: Path) -> None:

@@ -1,0 +1,64 @@
+"""When a site believes what it sees of the other sites, before it takes over the tasks of those that are not seen.
+
+After a common stall, or the loss of a hub, each site sees the others go and come back one by one. Would it take over at
+once what those have that it does not see yet, then so would each of the others: twenty sites that keep twenty tasks
+began three hundred configurators in two seconds, which left the machine no time for the connections, so that the sites
+lost sight of each other again, and so on for good.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+CALM = 0.3
+"""Seconds without a site that comes or goes after which all count as seen; components let go of a task that no site
+runs after a second."""
+CALM_OVER_NEW_LINK = 2.0
+"""The same where this site has lost its hub: a hub that many reach again may say nothing for so long."""
+LONGEST_UNREST = 10.0
+"""Seconds after which what is seen counts though sites still come and go."""
+
+
+class StableView:
+    """Whether the sites that are seen at a moment are those that there are.
+
+    They are if at most one has gone and was not seen again, as when a site has ended; and once none has come or gone
+    for a while. A site that has just begun waits for that.
+    """
+
+    def __init__(self, now: Callable[[], float], link: Callable[[], str]) -> None:
+        """`link` names the link of this site to its hub; it is another one after each loss."""
+        self._now, self._link = now, link
+        self._has_just_begun = True
+        self._missing: set[str] = set()
+        """Those that have gone in the present unrest, and were not seen since."""
+        self._returned: set[str] = set()
+        """Those that have come in it: if they go, they were not only out of sight."""
+        self._before, self._is_over_new_link = link(), False
+        """The link by which others were seen before it, and whether that was lost in it."""
+        self._began = self._changed = now()
+        """When it began, and when a site has come or gone last."""
+
+    def changes(self, site: str, alive: bool) -> None:
+        """Note that a site comes or goes."""
+        now = self._now()
+        if now - self._changed >= CALM and (len(self._missing) <= 1 or not self.unrest()):
+            self._missing, self._returned, self._began, self._has_just_begun = set(), set(), now, False
+            self._before, self._is_over_new_link = self._link(), False
+        self._changed = now
+        self._is_over_new_link |= self._link() != self._before
+        if alive:
+            self._missing.discard(site)
+            self._returned.add(site)
+        elif site not in self._returned:
+            self._missing.add(site)
+
+    def unrest(self) -> float:
+        """For how many more seconds others may be there than are seen, if nothing changes; 0 if not."""
+        if len(self._missing) <= 1 and not self._has_just_begun:
+            return 0.0
+        return max(0.0, min(self._changed + self._calm(), self._began + LONGEST_UNREST) - self._now())
+
+    def _calm(self) -> float:
+        is_over_new_link = self._is_over_new_link or self._link() != self._before
+        return CALM_OVER_NEW_LINK if is_over_new_link else CALM
