@@ -8,6 +8,7 @@ waits for another.
 
 from __future__ import annotations
 
+import itertools
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -42,6 +43,7 @@ class Bridge:
         self.complain = complain
         self._folder = folder
         self._paths: dict[IRI, Path] = {}
+        self._numbers = itertools.count(1)
         self._living: dict[IRI, Component] = {}
         self._host: Host | None = None
         self._ended = False
@@ -52,7 +54,7 @@ class Bridge:
         path = self._paths.get(component)
         if path is None:
             name = slug(component.rpartition("/")[2].rpartition("#")[2] or component)[:80]
-            path = self._paths[component] = self._folder / f"{name}-{len(self._paths) + 1}.ttl"
+            path = self._paths[component] = self._folder / f"{name}-{next(self._numbers)}.ttl"
         written = path.with_suffix(".new")
         written.write_text(f"# Bridged from {document.source!r}.\n\n{described_text(document)}", "utf-8")
         written.replace(path)
@@ -60,7 +62,7 @@ class Bridge:
     def withdraw(self, component: IRI) -> None:
         """Advertise a component no more, and end its life."""
         self._end(component, None)
-        path = self._paths.get(component)
+        path = self._paths.pop(component, None)
         if path is not None:
             path.unlink(missing_ok=True)
 
@@ -75,8 +77,12 @@ class Bridge:
             host = self._running_host()
             if not outcome.set_running_or_notify_cancel():
                 return
+            path = self._paths.get(component)
+            if path is None:
+                outcome.set_result("it has gone before it could live here")
+                return
             try:
-                host.add(code, advertisement=self._paths[component])
+                host.add(code, advertisement=path)
             except SelfconfError as error:
                 outcome.set_result(str(error))
             else:

@@ -99,6 +99,16 @@ def test_what_cannot_live_says_why(living: LivingStage, tmp_path: Path) -> None:
     assert "a type of its own" in reason
 
 
+def test_what_is_withdrawn_before_it_lives_is_said_to_have_gone(living: LivingStage, tmp_path: Path) -> None:
+    bridge = Bridge(tmp_path, lambda words: None)
+    with bridge.living(World(), living.ecology, living.node):
+        bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
+        bridge.withdraw(LAMP)
+        assert bridge.begin_life(LAMP, Lamp([])).result() == "it has gone before it could live here"
+        bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
+        assert bridge.begin_life(LAMP, Lamp([])).result() is None
+
+
 @pytest.mark.slow
 def test_a_component_that_has_to_leave_leaves_alone(living: LivingStage, tmp_path: Path) -> None:
     complaints: list[str] = []

@@ -57,6 +57,8 @@ class RosDomain:
         with self._lock:
             servers = self._servers.setdefault(key, set())
             servers.add(token) if alive else servers.discard(token)
+            if not servers:  # names of services, as those of tools, may be others each time
+                del self._servers[key]
 
     def has_server(self, key: str) -> bool:
         """Whether a node serves the key of a service."""

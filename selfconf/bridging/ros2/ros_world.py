@@ -139,6 +139,8 @@ class RosWorld:
         known = self._on_topic.setdefault(endpoint.key(self._number), {})
         if not alive:
             known.pop(key, None)
+            if not known:  # topics may have other names each time
+                del self._on_topic[endpoint.key(self._number)]
             return
         for other in known.values():
             if other.kind != token.kind and other.endpoint is not None:
