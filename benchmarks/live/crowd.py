@@ -2,6 +2,7 @@
 
 `crowd` is COUNT components that live and do nothing: a liveliness token each, as the SDK declares it. `first`, `second`
 and `sink` are components of the SDK; a source emits once when it is started, and the sink writes when it hears another.
+`pairs` are COUNT sources and COUNT sinks, which write nothing.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import sys
 import threading
 import time
 
-from benchmarks.live.world import bystander, written_for
+from benchmarks.live.world import bystander, pair_file, written_for
 from selfconf import rendezvous
 from selfconf.bus.zenoh import client
 from selfconf.protocol.keys import Keys
@@ -37,6 +38,13 @@ class Sink(Component):
             print(time.time(), flush=True)
 
 
+class QuietSink(Component):
+    """Passes over what it hears."""
+
+    def received(self, port: str, signal: Signal) -> None:
+        """Nothing."""
+
+
 def end_with_stdin(over: threading.Event) -> None:
     """Set the event when stdin ends."""
     sys.stdin.read()
@@ -58,8 +66,13 @@ def main() -> None:
         bus.close()
         return
     host = open_host()
-    kind: type[Component] = Sink if name == "sink" else Source
-    host.add(type(name, (kind,), {"advertisement": str(written_for(name))})())
+    if name == "pairs":
+        for number in range(count):
+            for which, paired in (("source", Source), ("sink", QuietSink)):
+                host.add(type(which, (paired,), {"advertisement": str(pair_file(which, number))})())
+    else:
+        kind: type[Component] = Sink if name == "sink" else Source
+        host.add(type(name, (kind,), {"advertisement": str(written_for(name))})())
     print("ready", flush=True)
     host.run(over.is_set)
     host.close()

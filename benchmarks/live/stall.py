@@ -1,13 +1,16 @@
 """Many sites on one machine: what they cost while nothing happens, and whether they recover from a common stall.
 
-    python -m benchmarks.live.stall [--sites 50] [--seconds 3] [--smoke]
+    python -m benchmarks.live.stall [--sites 50] [--tasks 0] [--seconds 3] [--smoke]
 
 All sites are processes of one ecology. They are left alone, then all stopped at once (SIGSTOP) and let go on; a bare
-client asks who lives until it sees as many as before, and the cost of idleness is measured once more.
+client asks who lives until it sees as many as before, and the cost of idleness is measured once more. With tasks the
+sites keep so many, each of a source and a sink of its own, which one more process runs and which go on.
 
     up       from the first process to the last site that is seen
     idle     processor time of all sites together, per cent of one core, before and after the stall
     back     from the end of the stall until all are seen, at two looks in a row
+    running  from the end of the stall until every task runs
+    busy     processor time that the sites take in the ten seconds after that, in seconds
 """
 
 from __future__ import annotations
@@ -20,10 +23,12 @@ import subprocess
 import tempfile
 import threading
 import time
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
-from benchmarks.live.__main__ import cost, program
+import selfconf as sc
+from benchmarks.live import world
+from benchmarks.live.__main__ import cost, line, processor_time, program
 from benchmarks.machine import described, table
 from selfconf import rendezvous, this_machine
 from selfconf.bus.zenoh import ZenohBus, client
@@ -33,7 +38,8 @@ PATIENCE = 240.0
 LOOK = 0.2
 """Seconds between two looks at who lives."""
 SETTLING = 10.0
-"""Seconds after which the cost of idleness is measured: uplinks that were replaced stay for a while."""
+"""Seconds after which the cost of idleness is measured: uplinks that were replaced stay for a while. As long it is
+measured how busy the sites are after the stall."""
 
 
 def living(bus: ZenohBus, ecology: str) -> int:
@@ -60,17 +66,35 @@ def until_all_live(bus: ZenohBus, ecology: str, sites: int) -> float:
     raise SystemExit(f"after {PATIENCE:.0f} s {living(bus, ecology)} of {sites} sites are seen")
 
 
-def measure(sites: int, seconds: float) -> list[str]:
+def until_all_run(ecology: str, tasks: int) -> float:
+    """Seconds until all tasks run."""
+    began = time.monotonic()
+    while time.monotonic() < began + PATIENCE:
+        with suppress(sc.SelfconfError), sc.join(ecology) as living:
+            if sum(status.phase == "running" for status in living.tasks) == tasks:
+                return time.monotonic() - began
+        threading.Event().wait(LOOK)
+    raise SystemExit(f"after {PATIENCE:.0f} s not all of {tasks} tasks run")
+
+
+def measure(sites: int, tasks: int, seconds: float) -> list[str]:
     """The row of one ecology."""
     ecology = f"stall-{secrets.token_hex(3)}"
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
-        folder = Path(name) / "ads"
-        folder.mkdir()
-        os.environ |= {"SELFCONF_RUNTIME_DIR": f"{name}/runtime", rendezvous.ECOLOGY_VARIABLE: ecology}
+        os.environ |= {
+            "SELFCONF_RUNTIME_DIR": f"{name}/runtime",
+            rendezvous.ECOLOGY_VARIABLE: ecology,
+            world.FOLDER_VARIABLE: name,
+        }
+        empty, pairs = Path(name) / "empty", Path(name) / "pairs"
+        empty.mkdir()
+        pairs.mkdir()
+        world.write_pairs(tasks)
         began = time.monotonic()
         served: list[subprocess.Popen[str]] = []
         for number in range(sites):
-            served.append(stack.enter_context(program("selfconf", "site", str(folder), "--name", f"s{number}")))
+            folder = str(pairs if number == 1 else empty)
+            served.append(stack.enter_context(program("selfconf", "site", folder, "--name", f"s{number}")))
             if not number:
                 while not this_machine.local_sites(ecology) and time.monotonic() < began + PATIENCE:
                     threading.Event().wait(LOOK)
@@ -78,6 +102,12 @@ def measure(sites: int, seconds: float) -> list[str]:
         stack.callback(bus.close)
         until_all_live(bus, ecology, sites)
         up = time.monotonic() - began
+        if tasks:
+            assert line(stack.enter_context(program("benchmarks.live.crowd", "pairs", str(tasks)))) == "ready"
+            with sc.join(ecology) as living:
+                for number in range(tasks):
+                    living.detach(sc.template(world.pair_file("task", number)), name=f"t{number}")
+            until_all_run(ecology, tasks)
         threading.Event().wait(SETTLING)
         before, megabytes = cost(served)
         for process in served:
@@ -85,23 +115,41 @@ def measure(sites: int, seconds: float) -> list[str]:
         threading.Event().wait(seconds)
         for process in served:
             process.send_signal(signal.SIGCONT)
+        again, used = time.monotonic(), processor_time(served)
         back = until_all_live(bus, ecology, sites)
+        running = f"{back + until_all_run(ecology, tasks):.1f}" if tasks else ""
+        threading.Event().wait(max(0.0, again + SETTLING - time.monotonic()))
+        busy = processor_time(served) - used
         threading.Event().wait(SETTLING)
         after, _ = cost(served)
         ended = sum(process.poll() is not None for process in served)
-    shown = [f"{up:.1f}", f"{100 * before:.1f}", f"{back:.1f}", f"{100 * after:.1f}", f"{megabytes:.0f}", str(ended)]
-    return [str(sites), f"{seconds:g}", *shown]
+    shown = [f"{up:.1f}", f"{100 * before:.1f}", f"{back:.1f}", running, f"{busy:.1f}", f"{100 * after:.1f}"]
+    return [str(sites), str(tasks), f"{seconds:g}", *shown, f"{megabytes:.0f}", str(ended)]
 
 
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.live.stall", description="many sites, and a stall")
     parser.add_argument("--sites", type=int, default=50)
+    parser.add_argument("--tasks", type=int, default=0, help="how many tasks the sites keep")
     parser.add_argument("--seconds", type=float, default=3.0, help="how long all stand still")
-    parser.add_argument("--smoke", action="store_true", help="three sites, to see that it works")
+    parser.add_argument("--smoke", action="store_true", help="three sites and two tasks, to see that it works")
     given = parser.parse_args()
-    row = measure(3 if given.smoke else given.sites, given.seconds)
-    head = ["sites", "stall s", "up s", "idle %", "back s", "idle afterwards %", "site MB", "ended"]
+    sites, tasks = (3, 2) if given.smoke else (given.sites, given.tasks)
+    row = measure(sites, tasks, given.seconds)
+    head = [
+        "sites",
+        "tasks",
+        "stall s",
+        "up s",
+        "idle %",
+        "back s",
+        "running s",
+        "busy s",
+        "idle afterwards %",
+        "site MB",
+        "ended",
+    ]
     print(f"{table(head, [row])}\n\nOne run; {described('eclipse-zenoh')}")
 
 

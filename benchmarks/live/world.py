@@ -30,6 +30,18 @@ TASK = (
 FOLDER_VARIABLE = "LIVE_BENCHMARK_FOLDER"
 
 
+PAIR = {
+    "source": ":source{0} a sc:Component, :Source{0} ; sc:shareable false ;\n"
+    '    sc:hasOutput [ sc:name "pose" ; sc:signalType rob:PlanarPose2D ] .\n',
+    "sink": ":sink{0} a sc:Component, :Sink{0} ;\n"
+    '    sc:hasInput [ sc:name "position" ; sc:signalType rob:PlanarPose2D ] .\n',
+    "task": ":follow{0} a sc:Template ; sc:roles ( :position :control ) .\n"
+    ":position a sc:Role ; sh:class :Source{0} ; sc:feeds :control .\n"
+    ":control  a sc:Role ; sh:class :Sink{0} .\n",
+}
+"""A source and a sink that no other task wants, and the task for which they are there."""
+
+
 def bystander(number: int) -> IRI:
     """A component that has nothing to do with the task."""
     return IRI(f"https://example.org/live#bystander{number}")
@@ -38,6 +50,20 @@ def bystander(number: int) -> IRI:
 def written_for(name: str) -> Path:
     """The advertisement of an actor."""
     return Path(os.environ[FOLDER_VARIABLE]) / "site0" / f"{name}.ttl"
+
+
+def pair_file(kind: str, number: int) -> Path:
+    """The file of one of a pair, or of its task."""
+    return Path(os.environ[FOLDER_VARIABLE]) / ("tasks" if kind == "task" else "pairs") / f"{kind}{number}.ttl"
+
+
+def write_pairs(count: int) -> None:
+    """Write so many pairs with their tasks."""
+    for number in range(count):
+        for kind, text in PAIR.items():
+            path = pair_file(kind, number)
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(HEAD + text.format(number))
 
 
 def write(folder: Path, components: int, sites: int) -> list[Path]:

@@ -14,6 +14,12 @@ def test_the_short_run_runs() -> None:
     assert "| 20 | 2 |" in printed
 
 
+@pytest.mark.process
+def test_sites_and_their_tasks_are_back_after_a_short_stall() -> None:
+    printed = short_run("benchmarks.live.stall")
+    assert "| 3 | 2 |" in printed
+
+
 def test_the_page_tells_how_the_times_grow() -> None:
     small = Measured(100, 1, 1.0, 0.01, 0.01, 0.01, 0.1, 0.005, 50.0, 0.001)
     large = Measured(10_000, 1, 1.0, 1.0, 0.1, 0.1, 1.0, 0.005, 100.0, 0.001)
