@@ -11,6 +11,7 @@ import secrets
 import warnings
 from collections.abc import Iterable, Sequence
 from datetime import datetime, timedelta, timezone
+from functools import lru_cache
 from typing import Any
 
 from selfconf.access.principal import Principal
@@ -33,6 +34,9 @@ CLOCKS_DIFFER = timedelta(minutes=5)
 """By how much the clocks of two hosts may differ: a certificate is valid from so long before it was made."""
 LARGEST_PEM = 1 << 14
 """Bytes of a certificate at most: one with a hundred addresses has 4 KiB."""
+MOST_REMEMBERED = 1024
+"""Of how many certificates it is remembered what is in them, and who has signed them: a site is shown those of all
+others again and again, and each takes it milliseconds."""
 EVERY_HOST = ("localhost", "127.0.0.1", "::1")
 """The addresses that every certificate is good for."""
 _ALSO = "urn:selfconf:"
@@ -83,21 +87,9 @@ class Certificate:
         if len(pem) > LARGEST_PEM:
             raise PeerError(f"{len(pem)} bytes are too many for a certificate")
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of a serial that is not positive, which is refused here
-                certificate = cls(x509.load_pem_x509_certificate(pem))
-                certificate._parse()
+            return cls(_loaded(pem))
         except _MALFORMED:
             raise PeerError("that is no certificate in PEM") from None
-        return certificate
-
-    def _parse(self) -> None:
-        """Look at every part once: each is parsed only as it is looked at, and what is wrong with it raised then."""
-        one = self.x509
-        _ = one.subject, one.issuer, one.public_key(), one.extensions, one.signature_hash_algorithm
-        _ = one.not_valid_before_utc, one.not_valid_after_utc
-        if one.serial_number <= 0:
-            raise ValueError("a serial is above zero")
 
     @property
     def pem(self) -> bytes:
@@ -171,7 +163,7 @@ class Certificate:
 
     def fault(self, authorities: Iterable[Certificate], now: datetime | None = None) -> str:
         """What is wrong with it, in words that follow "the certificate of NAME"; empty if nothing is."""
-        if not any(self._signed_by(authority) for authority in authorities):
+        if not any(_is_signed_by(self.x509, authority.x509) for authority in authorities):
             return "was issued by another authority"
         untimely = self.untimely(now)
         if untimely:
@@ -191,12 +183,27 @@ class Certificate:
             return f"has expired at {utc_text(self.ends)}; renew it with `selfconf keys renew`"
         return ""
 
-    def _signed_by(self, authority: Certificate) -> bool:
-        try:
-            self.x509.verify_directly_issued_by(authority.x509)
-        except (*_MALFORMED, InvalidSignature):
-            return False
-        return True
+
+@lru_cache(MOST_REMEMBERED)
+def _loaded(pem: bytes) -> x509.Certificate:
+    """A certificate, of which every part was looked at: each is parsed only then, and what is wrong with it raised."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of a serial that is not positive, which is refused here
+        one = x509.load_pem_x509_certificate(pem)
+        _ = one.subject, one.issuer, one.public_key(), one.extensions, one.signature_hash_algorithm
+        _ = one.not_valid_before_utc, one.not_valid_after_utc
+    if one.serial_number <= 0:
+        raise ValueError("a serial is above zero")
+    return one
+
+
+@lru_cache(MOST_REMEMBERED)
+def _is_signed_by(certificate: x509.Certificate, authority: x509.Certificate) -> bool:
+    try:
+        certificate.verify_directly_issued_by(authority)
+    except (*_MALFORMED, InvalidSignature):
+        return False
+    return True
 
 
 def new_authority(name: str) -> tuple[Certificate, Key]:

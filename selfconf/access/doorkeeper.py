@@ -51,6 +51,8 @@ SITES_ANSWER = 3.0
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 """Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
 INTRODUCE_AGAIN = 5.0
+KNOWN_FOR = 6
+"""How many of these times pass once all that live know it: each of many sites would else look at all others at once."""
 LOOKS = 3
 """After how many looks a refused attempt is reported: those of a client that is let in by then do not count."""
 LIFE = "Liveliness Token"
@@ -123,6 +125,8 @@ class Doorkeeper:
         """The components that other sites advertise."""
         self._revisions: dict[str, int] = {}
         self._disputed: frozenset[IRI] = frozenset()
+        self._known_for = 0
+        """How often it need not be shown to others, as all know it and none has come since."""
         self._strangers: frozenset[str] = frozenset()
         """Who is known to the rules, but not to the hub yet."""
         self._seen: dict[tuple[str, str, str], int] = {}
@@ -142,7 +146,7 @@ class Doorkeeper:
         bus.serve(self._keys.introduce(site.name), self._introduced)
         bus.serve(self._keys.access(site.name), self._tell)
         bus.subscribe(self._keys.changed(), lambda _: self._others_changed())
-        bus.watch(self._keys.any_site_life(), lambda *_: self._others_changed())
+        bus.watch(self._keys.any_site_life(), self._site_changed)
         CertificateWatch(bus, site.ecology, site.credentials, complain)
         for pause in INTRODUCTIONS:
             bus.later(pause, self._introduce)
@@ -198,16 +202,28 @@ class Doorkeeper:
         self._bus.ask(self._keys.introduce("*"), mine, SITES_ANSWER, self._met)
 
     def _introduce_again(self) -> None:
-        self._introduce()
         self._bus.later(INTRODUCE_AGAIN, self._introduce_again)
+        if self._known_for:
+            self._known_for -= 1
+        else:
+            self._introduce()
 
     def _met(self, replies: Replies) -> None:
+        all_know = replies.complete and not replies.errors
         for sample in replies.samples:
             try:
-                self._admit(decode(sample.payload, Introduction).certificate)
+                answer = decode(sample.payload, Introduction)
+                all_know &= answer.known
+                all_know &= self._admit(answer.certificate)
             except SelfconfError as error:
+                all_know = False
                 self._tell_refused("", str(error), sample.key)
+        self._known_for = KNOWN_FOR - 1 if all_know else 0
         self._renew_rules()
+
+    def _site_changed(self, *_: object) -> None:
+        self._known_for = 0
+        self._others_changed()
 
     # What others advertise.
 

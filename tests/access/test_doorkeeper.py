@@ -19,7 +19,7 @@ from selfconf.access import (
     believe,
     first_rules,
 )
-from selfconf.access.doorkeeper import RAREST_RETRY
+from selfconf.access.doorkeeper import INTRODUCE_AGAIN, KNOWN_FOR, RAREST_RETRY
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
@@ -182,6 +182,32 @@ def advertise(door: Door, site: str, *components: IRI) -> MemoryBus:
     bus.ask(KEYS.introduce("home"), encode(Introduction(shown.read_text())), 5.0, lambda replies: None)
     door.pass_time(2.0)
     return bus
+
+
+def test_a_site_shows_its_certificate_to_others_seldom_once_all_know_it(door: Door) -> None:
+    known, shown = [False], list[float]()
+    mine = door.folder.credentials((PrincipalKind.SITE,), "cellar").certificate.read_text()
+    cellar = door.network.node()
+
+    def answer(request: Request) -> None:
+        shown.append(door.bus.now())
+        request.reply(KEYS.introduce("cellar"), encode(Introduction(mine, known[0])))
+        request.finish()
+
+    def times(seconds: float) -> int:
+        shown.clear()
+        door.pass_time(seconds)
+        return len(shown)
+
+    cellar.serve(KEYS.introduce("cellar"), answer)
+    cellar.announce(KEYS.site_life("cellar", "1"))
+    door.pass_time(10.0)
+    assert times(60.0) == 60.0 / INTRODUCE_AGAIN
+    known[0] = True
+    door.pass_time(INTRODUCE_AGAIN)
+    assert times(60.0) == 60.0 / INTRODUCE_AGAIN / KNOWN_FOR
+    door.network.node().announce(KEYS.site_life("attic", "1"))
+    assert times(INTRODUCE_AGAIN + 0.1) == 1
 
 
 def vouched(door: Door, site: str) -> set[str]:
