@@ -34,7 +34,7 @@ CLOCKS_DIFFER = timedelta(minutes=5)
 """By how much the clocks of two hosts may differ: a certificate is valid from so long before it was made."""
 LARGEST_PEM = 1 << 14
 """Bytes of a certificate at most: one with a hundred addresses has 4 KiB."""
-MOST_REMEMBERED = 1024
+CERTIFICATES_REMEMBERED = 1024
 """Of how many certificates it is remembered what is in them, and who has signed them: a site is shown those of all
 others again and again, and each takes it milliseconds."""
 EVERY_HOST = ("localhost", "127.0.0.1", "::1")
@@ -184,7 +184,7 @@ class Certificate:
         return ""
 
 
-@lru_cache(MOST_REMEMBERED)
+@lru_cache(CERTIFICATES_REMEMBERED)
 def _loaded(pem: bytes) -> x509.Certificate:
     """A certificate, of which every part was looked at: each is parsed only then, and what is wrong with it raised."""
     with warnings.catch_warnings():
@@ -197,7 +197,7 @@ def _loaded(pem: bytes) -> x509.Certificate:
     return one
 
 
-@lru_cache(MOST_REMEMBERED)
+@lru_cache(CERTIFICATES_REMEMBERED)
 def _is_signed_by(certificate: x509.Certificate, authority: x509.Certificate) -> bool:
     try:
         certificate.verify_directly_issued_by(authority)
