@@ -134,6 +134,13 @@ class Waking:
             self._fail(waiting.effect, detail)
 
     def _fail(self, effect: WakeUp, detail: str) -> None:
-        self._report(ComponentUnreachable(effect.component, Call.WAKE.value, detail))
-        answer = Answered(effect.component, Call.WAKE, effect.epoch, None, detail=detail)
-        self._bus.wake_up(lambda: self._step(answer))
+        """Say soon that a component cannot be had, unless it lives by then: nothing would disprove that loss again."""
+
+        def fail() -> None:
+            if self._ecology.life(effect.component) is not None:
+                self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
+                return
+            self._report(ComponentUnreachable(effect.component, Call.WAKE.value, detail))
+            self._step(Answered(effect.component, Call.WAKE, effect.epoch, None, detail=detail))
+
+        self._bus.wake_up(fail)

@@ -8,8 +8,9 @@ import pytest
 
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
+from selfconf.configurator import WakeUp
 from selfconf.configurator.state import Phase
-from selfconf.deployment.components.waking import SITE_BACK, WAKE_ATTEMPTS, WAKING
+from selfconf.deployment.components.waking import SITE_BACK, WAKE_ATTEMPTS, WAKING, Waking
 from selfconf.deployment.runner import TaskRunner
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode
@@ -29,6 +30,28 @@ def test_a_component_that_is_advertised_but_does_not_run_is_passed_over(tmp_path
     assert lab.active() == TASK | {"odometry"}
     assert agent.state.lost[iri("person-tracker")].detail == "it is advertised, but it does not run"
     assert agent.status().owed == ()  # what never ran is not out of control
+
+
+def test_a_component_is_not_lost_that_comes_to_live_just_as_it_is_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its life is heard of before the loss is noted, so that nothing would disprove that any more."""
+    lab = Lab(tmp_path)
+    lab.site("home", *TASK, "odometry", "tracker")
+    for name in TASK | {"odometry"}:
+        lab.component(name)
+    agent = lab.agent()
+    monkeypatch.setattr(agent.bus, "wake_up", lambda action: agent.bus.later(0.05, action))
+    fail = Waking._fail
+
+    def fail_as_it_comes(self: Waking, effect: WakeUp, detail: str) -> None:
+        lab.component("tracker")
+        fail(self, effect, detail)
+
+    monkeypatch.setattr(Waking, "_fail", fail_as_it_comes)
+    assert lab.running(agent)
+    assert not agent.state.lost
+    assert lab.active() == TASK | {"tracker"}
 
 
 def test_a_component_that_has_ended_unseen_is_started_again_by_a_site_that_can(tmp_path: Path) -> None:
