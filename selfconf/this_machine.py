@@ -278,8 +278,11 @@ def _files(pattern: str) -> list[Path]:
 def _announced() -> Iterator[tuple[Path, LocalSite]]:
     """The files of all sites that can be read, and what they say, sorted; their processes may be gone."""
     for path in _files("*.json"):
-        with suppress(OSError, ValueError, TypeError):
-            yield path, LocalSite(**json.loads(path.read_bytes()))
+        try:
+            site = LocalSite(**json.loads(path.read_bytes()))
+        except (OSError, ValueError, TypeError):
+            continue
+        yield path, site
 
 
 def _lives(site: LocalSite, path: Path) -> bool:

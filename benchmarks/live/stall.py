@@ -10,7 +10,7 @@ sites keep so many, each of a source and a sink of its own, which one more proce
     idle     processor time of all sites together, per cent of one core, before and after the stall
     back     from the end of the stall until all are seen, at two looks in a row
     running  from the end of the stall until every task runs
-    busy     processor time that the sites take in the ten seconds after that, in seconds
+    busy     processor time of the sites, in seconds, from the end of the stall until all is back, or for ten seconds
 """
 
 from __future__ import annotations

@@ -14,7 +14,8 @@ CALM = 0.3
 """Seconds without a site that comes or goes after which all count as seen; components let go of a task that no site
 runs after a second."""
 CALM_OVER_NEW_LINK = 2.0
-"""The same where this site has lost its hub: a hub that many reach again may say nothing for so long."""
+"""Seconds without such a change after which all count as seen by a site that has lost its hub meanwhile: a hub that
+many reach again may say nothing for so long."""
 LONGEST_UNREST = 10.0
 """Seconds after which what is seen counts though sites still come and go."""
 

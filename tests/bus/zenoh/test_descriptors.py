@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import socket
+from contextlib import ExitStack
+from pathlib import Path
 
 from selfconf.bus.zenoh.descriptors import open_descriptors, sockets_at
 
@@ -20,8 +23,17 @@ def test_the_sockets_of_either_end_of_a_port_are_found() -> None:
 
 def test_a_socket_that_is_found_stays_open() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
-        before = open_descriptors()
-        for _ in sockets_at(listening.getsockname()[1]):
-            assert open_descriptors() == before + 1
-        assert open_descriptors() == before
+        found = []
+        for one in sockets_at(listening.getsockname()[1]):
+            assert one.fileno() not in (-1, listening.fileno()), "a descriptor of its own"
+            found.append(one)
+        assert [one.fileno() for one in found] == [-1], "which is closed afterwards"
         socket.create_connection(listening.getsockname()).close()
+
+
+def test_the_descriptors_that_are_open_are_counted() -> None:
+    before = open_descriptors()
+    with ExitStack() as opened:
+        for _ in range(100):
+            opened.enter_context(Path(os.devnull).open())
+        assert open_descriptors() > before + 50, "other threads may open and close some"
