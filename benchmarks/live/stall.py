@@ -93,7 +93,7 @@ def measure(sites: int, tasks: int, seconds: float) -> list[str]:
         began = time.monotonic()
         served: list[subprocess.Popen[str]] = []
         for number in range(sites):
-            folder = str(pairs if number == 1 else empty)
+            folder = str(pairs if number == sites - 1 else empty)
             served.append(stack.enter_context(program("selfconf", "site", folder, "--name", f"s{number}")))
             if not number:
                 while not this_machine.local_sites(ecology) and time.monotonic() < began + PATIENCE:
