@@ -6,6 +6,7 @@ a failure only the lost components leave it and the search alone runs again.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
@@ -30,7 +31,7 @@ from selfconf.search.additions import with_optional_slots
 from selfconf.search.budget import Budget
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import recruits_that_matter
-from selfconf.search.relaxations import with_relaxations
+from selfconf.search.relaxations import NEAR, with_relaxations
 from selfconf.search.strategies import possible
 from selfconf.search.what_if import consequences
 
@@ -213,19 +214,33 @@ class Composer:
 
     def with_relaxations(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
         """A refusal of the whole ecology with the changes that would make the task possible, each tried."""
-        problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
-        eligible = {
-            (role.iri, c.profile.component)
-            for role, some in zip(problem.roles, problem.candidates, strict=True)
-            for c in some
-        }
-        outside = [
-            miss for miss in refusal.near_misses if not miss.recruit and (miss.role, miss.component) not in eligible
-        ]
-        near = (
-            (miss, Candidate(ecology[miss.component].profile, _admitted(miss, problem.variables))) for miss in outside
+        partition = self.partition(ecology)
+        eligible = self._by_role(partition)
+        outside = (m for m in refusal.near_misses if not m.recruit and (m.role, m.component) not in eligible)
+        near = {(m.role, m.component): m for m in itertools.islice(outside, NEAR + 1)}  # the last tells of more
+        # Near misses are judged among the candidates: an output has to conform to what an input accepts, theirs or not.
+        judged = self.partitioner.judged(self._admitting(near, ecology), self.gathered(ecology))
+        candidates = tuple(
+            tuple(candidate for candidate in some if (role.iri, candidate.profile.component) in eligible)
+            for role, some in zip(self.task.task.template.roles, judged.candidates, strict=True)
         )
-        return with_relaxations(problem, refusal, near, self.steps)
+        problem = Problem(self.task.task, replace(judged, candidates=candidates), self.hierarchy)
+        found = self._by_role(judged)
+        return with_relaxations(problem, refusal, [(near[key], found[key]) for key in near if key in found], self.steps)
+
+    def _by_role(self, partition: Partition) -> dict[tuple[IRI, IRI], Candidate]:
+        """The candidates of a partition by role and component."""
+        roles = zip(self.task.task.template.roles, partition.candidates, strict=True)
+        return {(role.iri, candidate.profile.component): candidate for role, some in roles for candidate in some}
+
+    def _admitting(self, near: Mapping[tuple[IRI, IRI], NearMiss], ecology: Mapping[IRI, Advertisement]) -> Partition:
+        """The partition in which some near misses are the last candidates of their roles."""
+        partition = self.partition(ecology)
+        more: dict[IRI, list[Candidate]] = {role.iri: [] for role in self.task.task.template.roles}
+        for (role, component), miss in near.items():
+            more[role].append(Candidate(ecology[component].profile, _admitted(miss, partition.variables)))
+        candidates = ((*some, *new) for some, new in zip(partition.candidates, more.values(), strict=True))
+        return replace(partition, candidates=tuple(candidates))
 
     def not_judged(self) -> Mapping[IRI, NotJudged]:
         """The components of the ecology that play no role, as what they say cannot be judged, or not in time."""

@@ -49,6 +49,45 @@ def test_a_misspelt_type_is_a_near_miss_and_to_accept_it_would_do() -> None:
     assert told.reasons == refusal.reasons
 
 
+def accepted_near_misses(task: str, ads: str, hierarchy: Hierarchy = NOTHING) -> list[IRI]:
+    """The components that a refusal proposes to take all the same."""
+    composer, ecology, refusal = refused(task, ads, hierarchy=hierarchy)
+    repairs = explained(composer, ecology, refusal, None, UNLIMITED).repairs
+    return [one.candidate.profile.component for one in repairs if isinstance(one, AcceptNearMiss)]
+
+
+SHOWN = """:show a sc:Template ; sc:roles ( :eye :screen ) .
+:eye a sc:Role ; sh:class :Camera ; sc:feeds :screen%s .
+:screen a sc:Role ; sh:class :Screen%s ."""
+OLD = " ; sh:property [ sh:path :age ; sh:maxInclusive 2 ]"
+FAST = "sc:accepts [ sh:property [ sh:path ( sc:rate sc:value ) ; sh:minCount 1 ; sh:minInclusive 2 ] ]"
+SCREEN = f":s a sc:Component, :Screen ; :age 3 ; sc:hasInput [ sc:name 'in' ; sc:signalType :Image ; {FAST} ] ."
+
+
+def seeing(name: str, rate: int) -> str:
+    """A camera of some rate."""
+    output = f"sc:name 'out' ; sc:signalType :Image ; sc:rate [ sc:value {rate} ; sc:unit unit:HZ ]"
+    return f":{name} a sc:Component, :Camera ; :age 3 ; sc:hasOutput [ {output} ] .\n"
+
+
+def test_to_take_a_near_miss_would_do_if_it_conforms_to_what_an_input_accepts() -> None:
+    ads = seeing("fast", 5) + seeing("slow", 1) + SCREEN
+    assert accepted_near_misses(SHOWN % (OLD, ""), ads) == [iri("fast")]
+
+
+def test_to_take_a_near_miss_would_do_if_what_feeds_it_conforms_to_what_it_accepts() -> None:
+    assert accepted_near_misses(SHOWN % ("", OLD), seeing("fast", 5) + SCREEN) == [iri("s")]
+    assert accepted_near_misses(SHOWN % ("", OLD), seeing("slow", 1) + SCREEN) == []
+
+
+def test_to_take_a_near_miss_would_do_if_what_it_sends_along_lies_below_what_is_taken() -> None:
+    ads = """:cam a sc:Component, :Camera ; sc:hasOperation [ sc:name 'look' ; sc:request :CeilingCamera ] .
+    :s a sc:Component, :Screen ; :age 3 ; sc:needsOperation [ sc:name 'ask' ; sc:request :%s ] ."""
+    above = Hierarchy([(iri("Special"), iri("CeilingCamera"))])
+    assert accepted_near_misses(SHOWN % ("", OLD), ads % "Special", above) == [iri("s")]
+    assert accepted_near_misses(SHOWN % ("", OLD), ads % "Camera", above) == []
+
+
 def test_that_a_hierarchy_would_do_is_a_hint_where_none_was_seen() -> None:
     composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :CeilingCamera .")
     told = explained(composer, ecology, refusal, BELOW, UNLIMITED)

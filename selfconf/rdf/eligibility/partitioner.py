@@ -153,12 +153,16 @@ class Partitioner:
             self._recruits(ecology),
             *self._mentions(variables),
         )
-        judged = self._acceptance.judged(
-            self.task.template, found, lambda component: tuple(self.judge.visible([ecology[component]]))
-        )
+        judged = self.judged(found, ecology)
         self.not_judged |= self._acceptance.not_judged
-        unissuable = self._acceptance.unissuable(self.task.template, judged, self._looked_at)
-        return with_sent_requests(replace(judged, unissuable=unissuable), self.hierarchy)
+        return replace(judged, unissuable=self._acceptance.unissuable(self.task.template, judged, self._looked_at))
+
+    def judged(self, partition: Partition, ecology: AdvertisementIndex) -> Partition:
+        """A partition in which ports tell more than their types: what outputs conform to, and what requests are."""
+        judged = self._acceptance.judged(
+            self.task.template, partition, lambda component: tuple(self.judge.visible([ecology[component]]))
+        )
+        return with_sent_requests(judged, self.hierarchy)
 
     def _looked_at(self, number: int) -> frozenset[IRI] | None:
         """The properties of which a role decides who may play it, and the type where it may exclude one."""
