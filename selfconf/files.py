@@ -87,6 +87,12 @@ def stamps(
     return found
 
 
+def stamp(path: Path) -> FileStamp:
+    """The stamp of a file, or of a folder, which changes as files come into it and go; empty if nothing is there."""
+    status = _status(path)
+    return () if status is None else _stamp_of(status)
+
+
 _LEADS_NOWHERE: FileStamp = ()
 """The stamp of a link to what is not there."""
 _LOCK = ".#"
@@ -272,8 +278,7 @@ def text(found: bytes, name: str) -> bytes:
 def base(path: Path) -> str:
     """The IRI that relative IRIs in a file are relative to."""
     folder = path.parent.absolute()
-    status = _status(folder)
-    whole = _resolved(folder, () if status is None else _stamp_of(status)) / path.name
+    whole = _resolved(folder, stamp(folder)) / path.name
     return (whole.resolve() if whole.is_symlink() else whole).as_uri()
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import FrameType
 
@@ -45,13 +45,19 @@ def orphaned(parent: int) -> bool:
 
 def alive(process: int) -> bool:
     """Whether a process of this machine is there. One that has ended is not, waited for or not."""
+    return alive_since(process) is not None
+
+
+def alive_since(process: int) -> str | None:
+    """The start time of a process of this machine if it is there, as `start_time` has it; None if it has ended."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
-        return False
+        return None
     except PermissionError:
         pass
-    return not _zombie(process)
+    status = _status(process)
+    return None if status[:1] in ([b"Z"], [b"X"]) else _began(status)
 
 
 def start_time(process: int) -> str:
@@ -59,7 +65,7 @@ def start_time(process: int) -> str:
 
     It is counted in clock ticks since the machine began (proc_pid_stat(5), field 22).
     """
-    return b"".join(_status(process)[19:20]).decode()
+    return _began(_status(process))
 
 
 def stopped(process: int) -> bool:
@@ -87,8 +93,8 @@ def resident_memory() -> int:
         return 0
 
 
-def _zombie(process: int) -> bool:
-    return _status(process)[:1] in ([b"Z"], [b"X"])
+def _began(status: Sequence[bytes]) -> str:
+    return b"".join(status[19:20]).decode()
 
 
 def _status(process: int) -> list[bytes]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import fcntl
 import json
+import math
 import os
 import tempfile
 import time
@@ -18,11 +19,14 @@ from io import FileIO
 from pathlib import Path
 
 from selfconf.errors import NetworkError
+from selfconf.files import FileStamp, stamp
 from selfconf.model.immutable import immutable, replace
-from selfconf.termination import alive, start_time, stopped
+from selfconf.termination import alive_since, start_time, stopped
 
 CLAIMED = "names"
 """The folder of the files that are locked: `tasks` is where sites keep tasks, and a site may be called like a task."""
+PROCESSES_ASKED_AGAIN = 1.0
+"""Seconds after which it is looked again whether the processes of sites are there, where no file has changed."""
 TURN = 5.0
 """Seconds to wait for a turn: a site that was stopped in its own does not stop all others."""
 
@@ -259,9 +263,8 @@ def leave(path: Path) -> None:
         return
 
 
-def _is_the_same(site: LocalSite, path: Path) -> bool:
-    """Whether the process of that number is the one that has written the file, and not a later one."""
-    began = start_time(site.process)
+def _is_the_same(site: LocalSite, began: str, path: Path) -> bool:
+    """Whether the process of that number, which began then, is the one that has written the file, and no later one."""
     if site.started or not began:
         return site.started in ("", began)
     since_boot = time.clock_gettime(time.CLOCK_BOOTTIME) - int(began) / os.sysconf("SC_CLK_TCK")
@@ -288,7 +291,8 @@ def _announced() -> Iterator[tuple[Path, LocalSite]]:
 def _lives(site: LocalSite, path: Path) -> bool:
     """Whether the process that has written the file of a site is there; if not, the file is removed."""
     try:
-        living = alive(int(site.process)) and _is_the_same(site, path)
+        began = alive_since(int(site.process))
+        living = began is not None and _is_the_same(site, began, path)
     except (OSError, ValueError, TypeError, OverflowError):  # no system has processes of such numbers
         return False
     if not living:
@@ -300,6 +304,27 @@ def local_sites(ecology: str | None = None) -> list[LocalSite]:
     """The sites that run on this machine, of one ecology or of all, sorted."""
     living = [site for path, site in _announced() if _lives(site, path)]
     return [site for site in living if ecology is None or site.ecology == ecology]
+
+
+class LocalSiteNames:
+    """The names of the sites of an ecology that run on this machine, for one that asks many times a second.
+
+    That one came or left in order is seen at once, the end of one that was killed within `PROCESSES_ASKED_AGAIN`.
+    """
+
+    def __init__(self, ecology: str) -> None:
+        self._ecology = ecology
+        self._names: tuple[str, ...] = ()
+        self._stamp: FileStamp = ()
+        self._until = -math.inf
+
+    def __call__(self) -> tuple[str, ...]:
+        """The names, sorted."""
+        folder = stamp(runtime_folder())
+        if folder != self._stamp or time.monotonic() >= self._until:
+            self._stamp, self._until = folder, time.monotonic() + PROCESSES_ASKED_AGAIN
+            self._names = tuple(site.site for site in local_sites(self._ecology))
+        return self._names
 
 
 def relaying_sites(ecology: str) -> list[LocalSite]:

@@ -15,6 +15,7 @@ from selfconf.termination import (
     PARENT_CHECK,
     Termination,
     alive,
+    alive_since,
     end_as_by_ctrl_c,
     orphaned,
     parent_environment,
@@ -124,6 +125,8 @@ def test_a_process_began_at_one_time_and_a_dead_one_at_none() -> None:
     process = subprocess.Popen([sys.executable, "-c", ""])
     process.wait()
     assert start_time(process.pid) == ""
+    assert alive_since(os.getpid()) == start_time(os.getpid())
+    assert alive_since(process.pid) is None
 
 
 def test_this_program_takes_memory() -> None:

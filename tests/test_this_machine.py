@@ -55,11 +55,41 @@ def test_those_that_relay_are_found_and_no_process_of_the_others_is_asked_for(mo
         this_machine.announce(replace(meeting(site=site), relays=relays))
     this_machine.announce(meeting("office"))
     gone = this_machine.announce(meeting(site="dddd", process=dead_process()))
-    asked, alive = list[int](), this_machine.alive
-    monkeypatch.setattr(this_machine, "alive", lambda process: asked.append(process) or alive(process))
+    asked = processes_asked_for(monkeypatch)
     assert [found.site for found in this_machine.relaying_sites("home")] == ["a", "ccc"]
     assert len(asked) == 3
     assert not gone.exists()
+
+
+def test_the_names_of_sites_are_looked_up_when_one_comes_or_leaves_and_once_a_second(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock = [1000.0]
+    monkeypatch.setattr(this_machine.time, "monotonic", lambda: clock[0])
+    process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    first = this_machine.announce(meeting())
+    this_machine.announce(meeting(site="bb", process=process.pid))
+    names = this_machine.LocalSiteNames("home")
+    asked = processes_asked_for(monkeypatch)
+    assert [names() for _ in range(9)] == [("a", "bb")] * 9
+    assert len(asked) == 2
+    this_machine._write(replace(meeting(site="ccc"), started=start_time(os.getpid())))
+    assert names() == ("a", "bb", "ccc")
+    this_machine.leave(first)
+    assert names() == ("bb", "ccc")
+    process.kill()
+    process.wait()
+    clock[0] += 0.9 * this_machine.PROCESSES_ASKED_AGAIN
+    assert names() == ("bb", "ccc")
+    clock[0] += 0.2 * this_machine.PROCESSES_ASKED_AGAIN
+    assert names() == ("ccc",)
+
+
+def processes_asked_for(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The processes of which it is asked from now on whether they are there."""
+    asked, alive_since = list[int](), this_machine.alive_since
+    monkeypatch.setattr(this_machine, "alive_since", lambda process: asked.append(process) or alive_since(process))
+    return asked
 
 
 def test_a_turn_that_another_site_holds_is_waited_for_but_not_for_ever() -> None:

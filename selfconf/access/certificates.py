@@ -135,6 +135,10 @@ class Certificate:
         """Until when it is valid."""
         return self.x509.not_valid_after_utc
 
+    def seconds_left(self) -> float:
+        """For how many seconds from now it is valid; less than zero if it is not any more."""
+        return (self.ends - _now()).total_seconds()
+
     @property
     def hosts(self) -> tuple[str, ...]:
         """The names and addresses of hosts that it is good for."""

@@ -13,8 +13,10 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import TypeGuard
 
+from selfconf.access.certificate_files import read_certificate
 from selfconf.access.certificates import Certificate
 from selfconf.access.disputed_components import believed, claims
 from selfconf.access.expiry import CertificateWatch
@@ -25,7 +27,8 @@ from selfconf.access.rules import AccessRules, rules_of
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
-from selfconf.errors import NetworkError, PeerError, SelfconfError, reason
+from selfconf.errors import NetworkError, PeerError, SelfconfError
+from selfconf.files import FileStamp, stamp
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.model.wording import client_text
@@ -36,7 +39,9 @@ from selfconf.protocol.messages import Introduction, Known, Page, RefusedAttempt
 log = logging.getLogger(__name__)
 
 LOOK = 1.0
-"""How often, in seconds, the folder of keys and what was refused are looked at."""
+"""How often, in seconds, it is looked whether the folder of keys has changed, and what was refused."""
+LOOK_AT_ALL = 10.0
+"""After how many seconds at most the rules are made anew, and certificates renewed, though nothing seems to change."""
 RAREST_RETRY = 30.0
 """After how many seconds at most it is tried again to open the hub."""
 FAULT_AGAIN = 600.0
@@ -141,7 +146,10 @@ class Doorkeeper:
         self._admitted = set[Certificate]()
         """The good certificates that were shown in these moments, and since when that is noted."""
         self._admitted_at = bus.now()
-        self._renewed_at = self._credentials.certificate.stat().st_mtime_ns
+        self._shown, self._stamps = stamp(self._credentials.certificate), dict[Path, FileStamp]()
+        """The stamp of the certificate that the hub shows, and those of the folder of keys when all was looked at."""
+        self._look_at_all = bus.now()
+        """When all is looked at again."""
         self.rules = hub.rules
         bus.serve(self._keys.introduce(site.name), self._introduced)
         bus.serve(self._keys.access(site.name), self._tell)
@@ -328,8 +336,20 @@ class Doorkeeper:
     def _look(self) -> None:
         """Look at what changes without a message: the folder of keys, the time, and what was refused."""
         self._bus.later(LOOK, self._look)
-        self._renew_certificates()
-        self._renew_rules()
+        try:
+            stamps = self._folder.stamps(self._keys.ecology)
+        except SelfconfError as error:
+            self._tell_fault(str(error))
+        else:
+            stamps[self._credentials.certificate] = stamp(self._credentials.certificate)
+            if stamps != self._stamps or self._bus.now() >= self._look_at_all:
+                self._stamps, self._look_at_all = stamps, self._bus.now() + LOOK_AT_ALL
+                self._renew_certificates()
+                self._renew_rules()
+        self._look_at_refused()
+
+    def _look_at_refused(self) -> None:
+        """Report the attempts that were refused for long enough."""
         refused = {(one.principal, one.attempt, one.key): one for one in self._hub.refusals.refused}
         self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
         for what, one in refused.items():
@@ -355,15 +375,19 @@ class Doorkeeper:
             judge()
 
     def _renew_certificates(self) -> None:
-        """Renew the certificates of components, and have the hub show the site's own as it lies in the folder now."""
+        """Renew the certificates of components, and have the hub show the site's own as it lies in the folder now.
+
+        Those of components are good for as long as the site's own at most, and are due when half of that has passed.
+        """
         try:
-            changed = self._credentials.certificate.stat().st_mtime_ns
+            left = read_certificate(self._credentials.certificate).seconds_left()
+            self._look_at_all = min(self._look_at_all, self._bus.now() + left / 4)
             HostAuthority(self._folder).renew_components()
-        except (SelfconfError, OSError) as error:
-            self._tell_fault(reason(error) if isinstance(error, OSError) else str(error))
+        except SelfconfError as error:
+            self._tell_fault(str(error))
             return
-        if changed != self._renewed_at:
-            self._renewed_at = changed
+        if self._stamps[self._credentials.certificate] != self._shown:
+            self._shown = self._stamps[self._credentials.certificate]
             self._open_anew()
 
     # Reports.

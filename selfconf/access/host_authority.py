@@ -8,7 +8,7 @@ the hub of one of them.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
@@ -77,8 +77,8 @@ class HostAuthority:
         with exclusive(self._keys.path):
             authority, key = self._pair()
             ends = self._component_ends()
-            kept = None if self._keys.is_stale(folder) else read_certificate(folder / f"{OWN}.pem")
-            if kept is None or kept.ends > ends or kept.fault((authority,)):
+            kept = _certificate(folder)
+            if kept is None or _is_due(kept, authority, ends, self._keys.revoked()):
                 mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
                 certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
                 write_holder(folder, self._keys.authority, certificate, mine)
@@ -91,10 +91,34 @@ class HostAuthority:
         return min(ends, self._keys.own().ends) if (self._keys.path / f"{OWN}.pem").is_file() else ends
 
     def renew_components(self) -> None:
-        """Renew the certificates of the processes of this host that are to be. Raises AuthorError."""
-        for folder in (self._keys.path / "components").glob("*"):
-            try:
-                first, *others = read_certificate(folder / f"{OWN}.pem").principals
-            except (AuthorError, PeerError):
-                continue  # it is made anew when its process is started
-            self.component(first, others)
+        """Renew the certificates of the processes of this host that are due. Raises AuthorError.
+
+        It takes some 0.1 ms for each process whose certificate is not.
+        """
+        found = [_certificate(folder) for folder in (self._keys.path / "components").glob("*")]
+        kept = [certificate for certificate in found if certificate is not None]
+        if not kept:
+            return
+        with exclusive(self._keys.path):
+            authority, _ = self._pair()
+        ends, revoked = self._component_ends(), self._keys.revoked()
+        for certificate in kept:
+            if _is_due(certificate, authority, ends, revoked):
+                first, *others = certificate.principals
+                self.component(first, others)
+
+
+def _certificate(folder: Path) -> Certificate | None:
+    """The certificate of a process; None for one that has none, or none that names principals: it is made anew."""
+    try:
+        certificate = read_certificate(folder / f"{OWN}.pem")
+        _ = certificate.principals
+    except (AuthorError, PeerError):
+        return None
+    return certificate
+
+
+def _is_due(certificate: Certificate, authority: Certificate, ends: datetime, revoked: Set[int]) -> bool:
+    """Whether the certificate of a process is to be made anew; `ends` is until when it would be good."""
+    expires = certificate.half_over() or certificate.ends > ends
+    return expires or certificate.serial in revoked or bool(certificate.fault((authority,)))

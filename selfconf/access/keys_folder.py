@@ -33,7 +33,8 @@ from selfconf.access.private_files import (
     write_private,
 )
 from selfconf.bus.credentials import Credentials
-from selfconf.errors import AuthorError, PeerError
+from selfconf.errors import AuthorError, PeerError, reason
+from selfconf.files import FileStamp, stamp
 
 MAIN = "main"
 """The name of a program that is given the folder of an authority itself."""
@@ -122,6 +123,20 @@ class KeysFolder:
 
     # What a site lets in.
 
+    def stamps(self, ecology: str) -> dict[Path, FileStamp]:
+        """The stamps of what says who is let in by a site: that changes with one of them, or as a certificate expires.
+
+        Raises AuthorError where the folder cannot be read.
+        """
+        try:
+            return {path: stamp(path) for path in (self.path, self._admitted(ecology), *self.path.iterdir())}
+        except OSError as error:
+            raise AuthorError(reason(error)) from None
+
+    def _admitted(self, ecology: str) -> Path:
+        """The folder of the certificates that were shown to sites of an ecology."""
+        return self.path / "admitted" / ecology
+
     def admitted(self, ecology: str) -> dict[str, Certificate]:
         """The certificates that sites of an ecology let in, by their principals: shown once, and good until now."""
         revoked = self.revoked()
@@ -129,7 +144,7 @@ class KeysFolder:
 
     def _shown(self, ecology: str) -> Iterable[Certificate]:
         """The certificates that were shown to sites of an ecology."""
-        return map(read_certificate, (self.path / "admitted" / ecology).glob("*.pem"))
+        return map(read_certificate, self._admitted(ecology).glob("*.pem"))
 
     def admit(self, ecology: str, pem: bytes) -> Certificate:
         """Keep a certificate that a client has shown to a site. Raises PeerError for one that is not good."""
@@ -139,7 +154,7 @@ class KeysFolder:
             raise PeerError(f"the certificate of {certificate.common_name[:80]!r} {fault}")
         if certificate.serial in self.revoked():
             raise PeerError(f"the certificate of {certificate.common_name} was revoked")
-        path = self.path / "admitted" / ecology / f"{holder_name(certificate.principals)}.pem"
+        path = self._admitted(ecology) / f"{holder_name(certificate.principals)}.pem"
         if not self._has_later(path, certificate):
             make_private_folder(path.parent)
             write_private(path, certificate.pem)

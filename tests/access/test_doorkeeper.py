@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -17,9 +18,10 @@ from selfconf.access import (
     PrincipalKind,
     SiteIdentity,
     believe,
+    certificates,
     first_rules,
 )
-from selfconf.access.doorkeeper import INTRODUCE_AGAIN, KNOWN_FOR, RAREST_RETRY
+from selfconf.access.doorkeeper import INTRODUCE_AGAIN, KNOWN_FOR, LOOK_AT_ALL, RAREST_RETRY
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
@@ -154,6 +156,16 @@ class LookedAt(Authority):
         return super().admitted(ecology)
 
 
+class CountedReads(Authority):
+    """A folder of keys that counts how often all who were let in are read."""
+
+    reads = 0
+
+    def admitted(self, ecology: str) -> dict[str, Certificate]:
+        self.reads += 1
+        return super().admitted(ecology)
+
+
 def test_certificates_without_end_cost_no_look_at_all_others_each(door: Door, tmp_path: Path) -> None:
     folder = LookedAt(door.folder.path)
     door = Door(folder)
@@ -280,6 +292,30 @@ def test_who_is_revoked_is_out(door: Door, tmp_path: Path) -> None:
     door.folder.revoke(Principal(PrincipalKind.CONFIGURATOR, "eve"))
     door.pass_time(1.5)
     assert "conf.eve" not in door.principals
+
+
+def test_a_folder_in_which_nothing_changes_is_read_seldom_and_at_once_when_something_does(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "keys")
+    folder = CountedReads(authority.path)
+    door = Door(folder)
+    door.pass_time(5.0)
+    before = folder.reads
+    door.pass_time(3.0 * LOOK_AT_ALL)
+    assert 2 <= folder.reads - before <= 4
+    bob = authority.issue(Principal(PrincipalKind.CONFIGURATOR, "bob"), tmp_path / "bob")
+    authority.admit("lab", bob.pem)  # as another site of this host does
+    door.pass_time(1.5)
+    assert "conf.bob" in door.principals
+
+
+def test_who_has_expired_is_out_of_the_rules(door: Door, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    bob = door.folder.issue(Principal(PrincipalKind.CONFIGURATOR, "bob"), tmp_path / "bob")
+    door.introduce(bob.pem.decode())
+    door.pass_time(1.5)
+    assert "conf.bob" in door.principals
+    monkeypatch.setattr(certificates, "_now", lambda: bob.ends + timedelta(seconds=1.0))
+    door.pass_time(LOOK_AT_ALL + 1.5)
+    assert "conf.bob" not in door.principals
 
 
 def test_changes_without_end_keep_nobody_from_being_asked(door: Door) -> None:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.access import Authority, HostAuthority, KeysFolder, Principal, PrincipalKind
+from selfconf.access import Authority, HostAuthority, KeysFolder, Principal, PrincipalKind, host_authority
+from selfconf.access.certificate_files import read_pair
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 
@@ -103,3 +104,22 @@ def test_a_component_has_no_certificate_for_longer_than_its_site(authority: Auth
     authority.renew(attic.path, days=30.0)
     HostAuthority(attic).renew_components()
     assert not component.own().half_over(), "it is renewed when half of its time has passed"
+
+
+def test_of_many_components_none_is_looked_at_closely_that_is_not_due(
+    authority: Authority, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic", days=0.5)
+    attic = KeysFolder(tmp_path / "attic")
+    folders = [HostAuthority(attic).component(Principal.component(IRI(f"urn:lamp{number}"))) for number in range(5)]
+    keys_read: list[Path] = []
+    monkeypatch.setattr(host_authority, "read_pair", lambda path: keys_read.append(path) or read_pair(path))
+    HostAuthority(attic).renew_components()
+    assert len(keys_read) == 1, "that of the authority"
+    (folders[2] / "certificate.pem").unlink()
+    (folders[3] / "certificate.pem").write_bytes((tmp_path / "authority/authority.pem").read_bytes())
+    kept = [(folders[number] / "certificate.pem").read_bytes() for number in (0, 1, 4)]
+    authority.renew(attic.path, days=0.25)
+    HostAuthority(attic).renew_components()
+    assert not set(kept) & {(folders[number] / "certificate.pem").read_bytes() for number in (0, 1, 4)}
+    assert not (folders[2] / "certificate.pem").exists(), "it is made as its process is started"

@@ -88,7 +88,7 @@ class SecuredSite:
         hub = GuardedHub(
             self._first,
             relays=lambda: joining.relays,
-            sites=lambda: (one.site for one in this_machine.local_sites(ecology)),
+            sites=this_machine.LocalSiteNames(ecology),
             open_anew=lambda rules: joining.secure(self._security(rules)),
             refusals=self._refusals,
         )
