@@ -23,6 +23,7 @@ from selfconf.access.expiry import CertificateWatch
 from selfconf.access.host_authority import HostAuthority
 from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.access.refusal_reports import RefusalReports
 from selfconf.access.rules import AccessRules, rules_of
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request, Urgency
@@ -31,10 +32,9 @@ from selfconf.errors import NetworkError, PeerError, SelfconfError
 from selfconf.files import FileStamp, stamp
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
-from selfconf.model.wording import client_text
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import Keys, site_of
-from selfconf.protocol.messages import Introduction, Known, Page, RefusedAttempt
+from selfconf.protocol.messages import Introduction, Known, Page
 
 log = logging.getLogger(__name__)
 
@@ -58,12 +58,6 @@ INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 INTRODUCE_AGAIN = 5.0
 KNOWN_FOR = 6
 """How many of these times pass once all that live know it: each of many sites would else look at all others at once."""
-LOOKS = 3
-"""After how many looks a refused attempt is reported: those of a client that is let in by then do not count."""
-LIFE = "Liveliness Token"
-"""What Zenoh calls the announcement of a life."""
-MOST_TOLD = 20
-"""How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
 
 
 def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, IRI]) -> AccessRules:
@@ -134,9 +128,7 @@ class Doorkeeper:
         """How often it need not be shown to others, as all know it and none has come since."""
         self._strangers: frozenset[str] = frozenset()
         """Who is known to the rules, but not to the hub yet."""
-        self._seen: dict[tuple[str, str, str], int] = {}
-        """How often each refused attempt was seen in the log."""
-        self._tellings: list[float] = []
+        self._reports = RefusalReports(bus, hub.refusals, complain)
         self._faults: dict[str, float] = {}
         """What was said to be wrong with the keys or the hub, and when."""
         self._pause = LOOK
@@ -225,7 +217,7 @@ class Doorkeeper:
                 all_know &= self._admit(answer.certificate)
             except SelfconfError as error:
                 all_know = False
-                self._tell_refused("", str(error), sample.key)
+                self._reports.tell("", str(error), sample.key)
         self._known_for = KNOWN_FOR - 1 if all_know else 0
         self._renew_rules()
 
@@ -346,33 +338,7 @@ class Doorkeeper:
                 self._stamps, self._look_at_all = stamps, self._bus.now() + LOOK_AT_ALL
                 self._renew_certificates()
                 self._renew_rules()
-        self._look_at_refused()
-
-    def _look_at_refused(self) -> None:
-        """Report the attempts that were refused for long enough."""
-        refused = {(one.principal, one.attempt, one.key): one for one in self._hub.refusals.refused}
-        self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
-        for what, one in refused.items():
-            if self._seen[what] == LOOKS:
-                self._judge(one)
-
-    def _judge(self, refused: RefusedAttempt) -> None:
-        """Report an attempt, unless it was a site's announcement of a life that is there.
-
-        Zenoh answers a question for lives with those that it has heard of from others, whatever the rules of its end
-        say.
-        """
-
-        def judge(living: tuple[str, ...] = ()) -> None:
-            if refused.key in living:
-                self._hub.refusals.drop(refused)
-            else:
-                self._tell_refused(refused.principal, refused.attempt, refused.key)
-
-        if refused.attempt == LIFE and "*" not in refused.key:
-            self._bus.roll_call(refused.key, SITES_ANSWER, judge)
-        else:
-            judge()
+        self._reports.look()
 
     def _renew_certificates(self) -> None:
         """Renew the certificates of components, and have the hub show the site's own as it lies in the folder now.
@@ -398,14 +364,6 @@ class Doorkeeper:
         if now - self._faults.get(sentence, -FAULT_AGAIN) >= FAULT_AGAIN:
             self._faults = {told: at for told, at in self._faults.items() if now - at < FAULT_AGAIN} | {sentence: now}
             self._complain(sentence)
-
-    def _tell_refused(self, principal: str, attempt: str, key: str) -> None:
-        """Say that something was refused, but not for ever."""
-        now = self._bus.now()
-        self._tellings = [at for at in self._tellings if now - at < 60.0]
-        if len(self._tellings) < MOST_TOLD:
-            self._tellings.append(now)
-            self._complain(f"refused: {client_text(principal)}: {attempt}{f' on {key}' if key else ''}")
 
     def _tell(self, request: Request) -> None:
         """Who may do what, and what was refused: a reply for each."""

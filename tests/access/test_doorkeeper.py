@@ -262,19 +262,6 @@ def test_what_was_refused_is_told_once_and_shown_to_who_asks(door: Door) -> None
     assert tuple(rules) == door.keeper.rules.accesses
 
 
-def test_a_site_that_passes_on_who_lives_is_not_complained_of(door: Door) -> None:
-    advertise(door, "attic", BELL)
-    line = "2126-01-01T00:00:00Z TRACE rx ThreadId(1) x: {}"
-    for life in ("1", "0bad"):
-        peer = "a1 on Interface(lo)+CertCommonName(site.cellar) is unauthorized to Liveliness Token (ingress) on {}"
-        door.refusals.take(line.format(peer.format(KEYS.site_life("attic", life))))
-        door.refusals.take(line.format("Msg intercepted!"))
-    door.pass_time(10.0)
-    assert [one.key for one in door.refusals.refused] == [KEYS.site_life("attic", "0bad")]
-    assert [said for said in door.said if KEYS.site_life("attic", "0bad") in said]
-    assert not [said for said in door.said if KEYS.site_life("attic", "1") in said]
-
-
 def test_a_renewed_certificate_is_shown_by_the_hub(door: Door, tmp_path: Path) -> None:
     certificate = door.folder.path / "own/site.home/certificate.pem"
     before = certificate.stat()

@@ -1,0 +1,64 @@
+"""What a site with keys says of the attempts that were refused at its hub."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from selfconf.bus.port import Bus
+from selfconf.bus.zenoh import RefusalLog
+from selfconf.model.wording import client_text
+from selfconf.protocol.messages import RefusedAttempt
+
+LOOKS = 3
+"""After how many looks a refused attempt is reported: those of a client that is let in by then do not count."""
+LIFE = "Liveliness Token"
+"""What Zenoh calls the announcement of a life."""
+LIFE_ANSWER = 3.0
+"""Seconds that others may take to say whether a life is there."""
+MOST_TOLD = 20
+"""How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
+
+
+class RefusalReports:
+    """Tells of the attempts that a hub has refused, each once, and not without end."""
+
+    def __init__(self, bus: Bus, refusals: RefusalLog, complain: Callable[[str], None]) -> None:
+        self._bus, self._refusals, self._complain = bus, refusals, complain
+        self._seen: dict[tuple[str, str, str], int] = {}
+        """How often each refused attempt was seen in the log."""
+        self._told_at: list[float] = []
+        """When something was said in the last minute."""
+
+    def look(self) -> None:
+        """Report the attempts that have stayed refused for `LOOKS` calls of this method."""
+        refused = {(one.principal, one.attempt, one.key): one for one in self._refusals.refused}
+        self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
+        for what, one in refused.items():
+            if self._seen[what] == LOOKS:
+                self._judge(one)
+
+    def _judge(self, refused: RefusedAttempt) -> None:
+        """Report an attempt, unless it was a site's announcement of a life that is there.
+
+        Zenoh answers a question for lives with those that it has heard of from others, whatever the rules of its end
+        say.
+        """
+
+        def judge(living: tuple[str, ...] = ()) -> None:
+            if refused.key in living:
+                self._refusals.drop(refused)
+            else:
+                self.tell(refused.principal, refused.attempt, refused.key)
+
+        if refused.attempt == LIFE and "*" not in refused.key:
+            self._bus.roll_call(refused.key, LIFE_ANSWER, judge)
+        else:
+            judge()
+
+    def tell(self, principal: str, attempt: str, key: str) -> None:
+        """Say that an attempt of a principal was refused, and under which key; of `MOST_TOLD` in a minute at most."""
+        now = self._bus.now()
+        self._told_at = [at for at in self._told_at if now - at < 60.0]
+        if len(self._told_at) < MOST_TOLD:
+            self._told_at.append(now)
+            self._complain(f"refused: {client_text(principal)}: {attempt}{f' on {key}' if key else ''}")
