@@ -1,9 +1,10 @@
 """How near the ports of a component come to those that are wanted: an assignment of signals, and their likeness.
 
 Each wanted signal is paired with at most one that is offered, the most alike first (a greedy matching, at least half as
-good as the best one). Outputs and inputs count alike, as in LOG4SWS (Schulte et al., 2010): of the outputs, how well
-what is wanted is issued; of the inputs, how well what the component requires is given. Ports that are left over on the
-offering side do no harm, and count against it a little: the nearest is what is wanted and nothing else.
+good as the best one); but what is offered just as it is wanted serves all that want it, as an output feeds many inputs.
+Outputs and inputs count alike, as in LOG4SWS (Schulte et al., 2010): of the outputs, how well what is wanted is issued;
+of the inputs, how well what the component requires is given. Ports that are left over on the offering side do no harm,
+and count against it a little: the nearest is what is wanted and nothing else.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ class PortLikeness:
         found: dict[int, SignalMatch] = {}
         taken: set[int] = set()
         for _, at, number, match in pairs:
-            if at not in found and number not in taken:
+            if at not in found and (match.exact or number not in taken):
                 found[at] = match
                 taken.add(number)
         return tuple(found.get(at) or self._signals.nearest((), types) for at, types in enumerate(wanted))

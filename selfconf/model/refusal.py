@@ -141,11 +141,21 @@ class MisnamedPort:
     kind: str
     """Which port it is: `output` or `input`."""
     named: str
-    meant: str
+    meant: str | None
+    """The name that is written much like it; None if none is."""
+    known: tuple[str, ...] = ()
+    """The names of all ports of the kind that candidates of the role have, in order."""
 
     def __str__(self) -> str:
         said = f'no candidate of {self.role.short} has the {self.kind} "{self.named}" that an interaction names'
-        return f'{said} (did you mean "{self.meant}"?)'
+        if self.meant is not None:
+            return f'{said} (did you mean "{self.meant}"?)'
+        return f"{said} ({self._there_are()})"
+
+    def _there_are(self) -> str:
+        """Which ports there are instead."""
+        names = listed(f'"{name}"' for name in self.known)
+        return f"there {'is' if len(self.known) < 2 else 'are'} {names or 'none'}"
 
 
 @immutable

@@ -110,7 +110,7 @@ class _Wording:
             tuple(consequences),
             cause.optional,
             cause.recruits,
-            misnamed=misnamed_port(self.problem, cause.role),
+            misnamed=misnamed_port(self.problem, cause.role, cause.input),
         )
 
     def _too_few_distinct(self) -> TooFewDistinct:
@@ -172,21 +172,31 @@ LIKE_A_SLIP = 0.7
 """How alike two names have to be for one to be a slip of the other; 1 is equal."""
 
 
-def misnamed_port(problem: Problem, sink: IRI) -> MisnamedPort | None:
-    """Return the first port of the interactions that feed a role which no candidate has, if one has a name like it."""
-    places = {role.iri: number for number, role in enumerate(problem.roles)}
+def misnamed_port(problem: Problem, sink: IRI, unfed: str) -> MisnamedPort | None:
+    """Return a port that no candidate has, of the interactions that feed a role, of which an input stays unfed.
+
+    It is the first one that has a name like that of a port, or else the first one on the way to the input.
+    """
+    found = list(_misnamed(problem, sink, unfed))
+    return next((port for port in found if port.meant is not None), next(iter(found), None))
+
+
+def _misnamed(problem: Problem, sink: IRI, unfed: str) -> Iterator[MisnamedPort]:
+    """Yield the ports that no candidate has: any with a name like that of a port, and others on the way to an input."""
+    candidates = {role.iri: some for role, some in zip(problem.roles, problem.candidates, strict=True)}
+    inputs = sorted({port.name for one in candidates[sink] for port in one.profile.inputs})
     for interaction in problem.task.template.interactions:
         if interaction.sink != sink:
             continue
-        giving, taking = (problem.candidates[places[role]] for role in (interaction.source, sink))
-        for role, kind, named, known in (
-            (interaction.source, "output", interaction.output, {o.name for c in giving for o in c.profile.outputs}),
-            (sink, "input", interaction.input, {i.name for c in taking for i in c.profile.inputs}),
-        ):
-            meant = None if named is None or named in known else _meant(named, known)
-            if named is not None and meant is not None:
-                return MisnamedPort(role, kind, named, meant)
-    return None
+        giving = candidates[interaction.source]
+        outputs = sorted({port.name for one in giving for port in one.profile.outputs})
+        on_the_way = bool(giving) and (interaction.input == unfed or interaction.input not in inputs)
+        sides = (interaction.source, "output", interaction.output, outputs), (sink, "input", interaction.input, inputs)
+        for role, kind, named, known in sides:
+            if named is not None and named not in known:
+                meant = _meant(named, known)
+                if meant is not None or on_the_way:
+                    yield MisnamedPort(role, kind, named, meant, tuple(known))
 
 
 def _meant(named: str, known: Iterable[str]) -> str | None:

@@ -39,6 +39,13 @@ def test_each_wanted_signal_has_an_output_of_its_own() -> None:
     assert likeness(two, [], [TAXED]) < likeness(two, [], [TAXED, PRICE]) == 1
 
 
+def test_an_output_serves_all_that_want_just_its_signal() -> None:
+    twice = WantedPorts(((PRICE,), (PRICE, COLOUR)), ((CAR,),))
+    found, lacking = PortLikeness([twice], KNOWN).of(ports([CAR, CAR], [PRICE]))
+    assert found == 1
+    assert all(match.exact for match in (*lacking.issued, *lacking.given))
+
+
 def test_an_input_is_given_what_lies_below_it() -> None:
     assert likeness(BOTH, [VEHICLE], [PRICE]) > likeness(BOTH, [COLOUR], [PRICE])
 

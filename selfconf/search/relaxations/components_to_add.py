@@ -23,7 +23,7 @@ from selfconf.model.refusal import Undecided
 from selfconf.model.relaxation import AddComponents, Addition
 from selfconf.search.additions import with_optional_slots
 from selfconf.search.problem import Link, Problem
-from selfconf.search.reduction import Fed, LazyReduction, Played
+from selfconf.search.reduction import Fed, LazyReduction, Need, Played
 from selfconf.search.relaxations.newcomers import ADDITION, impossible, with_mentioned_variables, with_values
 from selfconf.search.relaxations.relaxation_effort import TRIALS, RelaxationEffort
 from selfconf.search.relaxations.relaxed_problem import relaxed_by
@@ -185,9 +185,20 @@ def _helpful(changed: LazyReduction, effort: RelaxationEffort) -> list[int]:
     if given.wiped_out() is not None:
         return []
     together = effort.core(given)
-    sources = [s.role for r in together if isinstance(r, Fed) for s in given.needs[r.need].sources]
+    sources = [s for r in together if isinstance(r, Fed) for s in _likely_first(changed.problem, given.needs[r.need])]
     # Roles that feed come first: of a role that others feed, a component without inputs is less likely to be had.
     return list(dict.fromkeys((*sources, *(r.role for r in together if isinstance(r, Played)))))
+
+
+def _likely_first(problem: Problem, need: Need) -> list[int]:
+    """Return the roles that may feed an input, those first whose candidates issue its signal, if not as it asks."""
+    by_type = need.port._replace(condition=None)
+    issuing = {
+        source.role
+        for source in need.sources
+        if any(problem.hierarchy.pairs(o, by_type) for c in problem.candidates[source.role] for o in c.profile.outputs)
+    }
+    return sorted((source.role for source in need.sources), key=lambda role: role not in issuing)
 
 
 def _feeding_first(problem: Problem) -> list[int]:

@@ -22,6 +22,24 @@ def test_an_output_that_is_not_needed_is_not_asked_for() -> None:
     assert words[0] == "add one more component for the role sensor that issues Pose"
 
 
+def test_what_is_issued_in_another_unit_is_asked_of_the_role_that_issues_it() -> None:
+    sorter = component("sorter", "i:Image k:Kilos")
+    image, kilos = sorter.ports.inputs
+    inputs = (image, kilos._replace(condition=Condition(accepts="in pounds")))
+    given_ = problem(
+        {
+            "eye": [component("eye", outputs="i:Image")],
+            "scale": [component("scale", outputs="k:Kilos")],
+            "sort": [replace(sorter, ports=sorter.ports._replace(inputs=inputs))],
+        },
+        "eye>sort scale>sort",
+    )
+    refused = first.search(given_)
+    assert isinstance(refused, Refusal)
+    (added,) = (str(one) for one in with_relaxations(given_, refused).repairs if isinstance(one, AddComponents))
+    assert added == "add one more component for the role scale that issues Kilos as the sc:accepts of its input asks"
+
+
 def test_what_one_addition_issues_is_not_asked_of_another() -> None:
     given_ = problem(
         {"a": [], "b": [], "control": [component("cap", "p:Pose")], "drive": [component("car", "v:Velocity")]},
