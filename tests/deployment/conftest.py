@@ -1,4 +1,4 @@
-"""The ecology of the tests of a configurator."""
+"""The ecology of the tests of a configurator, and sites that keep tasks in it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.deployment.keepers import Keepers
 from tests.lab import Lab
 
 
@@ -15,3 +16,9 @@ def lab(tmp_path: Path) -> Lab:
     lab = Lab(tmp_path)
     lab.navigation()
     return lab
+
+
+@pytest.fixture
+def keepers(lab: Lab, tmp_path: Path) -> Keepers:
+    """Three sites that keep tasks."""
+    return Keepers(lab, tmp_path / "disks")
