@@ -166,10 +166,9 @@ class ComponentCode:
     def connection_changed(self, operation: str, connected: bool) -> None:
         """Tell the component that an operation that it needs is connected, or is no more."""
 
-        def tell() -> None:
-            (self._component.connected if connected else self._component.disconnected)(operation)
-
-        self._thread.call(lambda: self._guarded("connected", tell))
+        component = self._component
+        what, tell = ("connected", component.connected) if connected else ("disconnected", component.disconnected)
+        self._thread.call(lambda: self._guarded(what, partial(tell, operation)))
 
     def tick(self, action: Callable[[], None]) -> None:
         """Run what the component wants done at intervals; in turns with signals, which else would never be read."""

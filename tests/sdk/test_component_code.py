@@ -17,8 +17,9 @@ from selfconf.model.term import IRI, Literal
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Apply, CallAnswer, Cause, Release, Reserve, Stamp, Verdict, Wire
-from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.code_thread import CodeThread, RunningCode
 from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.runtime.supervision import GRACE
 from selfconf.sdk.runtime.waiting_tasks import YIELDING
@@ -457,3 +458,20 @@ def test_what_is_done_at_intervals_takes_turns_with_signals_however_long_it_take
     thread.signal(lambda: said.append("signal"))
     thread.run(lambda: len(said) > 2)
     assert said == ["tick", "signal", "tick"]
+
+
+def test_code_that_hears_of_the_end_of_a_connection_is_named_by_that() -> None:
+    thread, said = CodeThread(inline=True), list[RunningCode | None]()
+
+    class Caller(Component):
+        def connected(self, operation: str) -> None:
+            said.append(thread.running)
+
+        def disconnected(self, operation: str) -> None:
+            said.append(thread.running)
+
+    code = ComponentCode(Network().node(), thread, CAP_PROFILE, Caller(), lambda trouble: None)
+    code.start({}, lambda trouble: None)
+    code.connection_changed("look()", True)
+    code.connection_changed("look()", False)
+    assert [running.what for running in said if running is not None] == ["connected", "disconnected"]
