@@ -236,15 +236,13 @@ class SiteInquiry:
         """What a site has answered, now or before."""
         if answer.known is not None:
             return answer.known
-        complaints, self._complaints = self._complaints, []
-        found = []
+        found, complaints = [], list[str]()
         for _, (page, sample) in sorted(answer.pages.items()):
-            advertisement = self._advertisement(site[0], page, sample.payload)
+            advertisement = self._advertisement(site[0], page, sample.payload, complaints)
             if advertisement is not None:
                 one = FoundAdvertisement(advertisement, site[0], page.source, page.startable, site[1], page.unable)
                 found.append(one)
-        said, self._complaints = self._complaints, complaints
-        few = _few(said, f"of site {site[0]}")
+        few = _few(complaints, f"of site {site[0]}")
         if answer.excess:
             few.append(
                 f"left out {answer.excess} advertisements of site {site[0]}: it advertises more than"
@@ -252,22 +250,24 @@ class SiteInquiry:
             )
         return KnownSite(answer.revision, answer.total, tuple(found), tuple(few))
 
-    def _advertisement(self, site: str, page: Page, payload: bytes) -> Advertisement | None:
-        """The advertisement in a reply, which is untrusted: there must be one, of the component that its page names."""
+    def _advertisement(self, site: str, page: Page, payload: bytes, complaints: list[str]) -> Advertisement | None:
+        """The advertisement in a reply, which is untrusted: there must be one, of the component that its page names.
+
+        What is wrong with the reply is added to the complaints.
+        """
         name = f"site {site}, {page.source}"
         if len(payload) > LARGEST_ADVERTISEMENT:
-            self._complaints.append(f"left out {page.component} of {name}: {len(payload)} bytes are too many")
+            complaints.append(f"left out {page.component} of {name}: {len(payload)} bytes are too many")
             return None
         try:
             good, bad = advertisements.read_advertisements(payload, name, segments=self._segments)
         except TurtleError as error:
-            self._complaints.append(f"left out {page.component}: {error}")
+            complaints.append(f"left out {page.component}: {error}")
             return None
-        for malformed in bad:
-            self._complaints.append(f"left out {malformed.component} of {name}: {malformed.problems[0]}")
+        complaints += [f"left out {malformed.component} of {name}: {malformed.problems[0]}" for malformed in bad]
         mine = [a for a in good if a.component == page.component]
         if len(mine) != 1 and not bad:
-            self._complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
+            complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
         return mine[0] if len(mine) == 1 else None
 
 
