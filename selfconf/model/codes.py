@@ -45,6 +45,7 @@ class Code:
     """What the examples are written in: `turtle` or `toml`."""
 
 
+_BANDS = ':bands a owl:DatatypeProperty ; rdfs:label "bands"@en ; rdfs:range xsd:integer .'
 _TUNER = ":tuner a sc:Component, rob:Tuner"
 _DISPLAY = ":display a sc:Component, rob:Display"
 _TEMPLATE = ":radio a sc:Template ; sc:roles ( :source :sink ) ."
@@ -757,6 +758,12 @@ CODES: tuple[Code, ...] = (
         f'{_TUNER} ; sc:command "python tuner.py" ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         f'{_TUNER} ; sc:grounding [ sc:command "python tuner.py" ] ;\n'
         '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L26", "A literal is of the datatype that an ontology states for its property, and written as that is.",
+        "A limit compares numbers with numbers, and dates with dates; a text that only looks like one meets none.",
+        f'{_BANDS}\n{_TUNER} ; :bands "2" .', f"{_BANDS}\n{_TUNER} ; :bands 2 .",
         severity=Severity.WARNING,
     ),
     Code(

@@ -42,6 +42,8 @@ WHOLE_NUMBERS: dict[str, _Bounds] = {XSD_NAMESPACE + name: bounds for name, boun
 """The datatypes of whole numbers, each with its least and its greatest value."""
 FLOATING = frozenset((XSD_NAMESPACE + "double", XSD_NAMESPACE + "float"))
 """The datatypes with an exponent; both are read with the range of a double."""
+LIMITLESS = frozenset(("INF", "+INF", "-INF", "NaN"))
+"""The texts of a datatype with an exponent that stand for no number."""
 DATATYPES = frozenset((*WHOLE_NUMBERS, XSD_NAMESPACE + "decimal", *FLOATING))
 """The datatypes of numbers."""
 _DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
@@ -124,6 +126,23 @@ TRUTH = {"true": True, "1": True, "false": False, "0": False}
 def truth(term: Term | None) -> bool | None:
     """What a literal of xsd:boolean stands for; None for anything else."""
     return TRUTH.get(term.lexical) if isinstance(term, Literal) and term.datatype == BOOLEAN else None
+
+
+def of_range(lexical: str, datatype: str, wanted: str) -> bool:
+    """Whether a literal is what a property of a datatype wants: any number for one of fractions, else just that.
+
+    Infinity and not-a-number are values of a float. Everything is what a datatype wants that is none of numbers, truth
+    values or short texts (`TEXT_PATTERNS`).
+    """
+    if wanted in WHOLE_NUMBERS:
+        return datatype in DATATYPES and number_of(lexical, wanted) is not None
+    if wanted in DATATYPES:
+        limitless = datatype in FLOATING and lexical in LIMITLESS
+        return limitless or number_of(lexical, datatype) is not None
+    if wanted == BOOLEAN:
+        return datatype == wanted and lexical in TRUTH
+    pattern = TEXT_PATTERNS.get(wanted)
+    return pattern is None or (datatype == wanted and pattern.fullmatch(lexical) is not None)
 
 
 def as_python(term: Term) -> bool | int | float | str:

@@ -15,6 +15,7 @@ from selfconf.model.literal_values import (
     fraction,
     natural_number,
     number,
+    of_range,
     plain_number,
     truth,
 )
@@ -157,3 +158,27 @@ def test_a_term_is_a_truth_value_a_number_or_its_text(term: Term, value: object)
 def test_a_literal_that_is_none_of_its_datatype_is_an_error(literal: Literal) -> None:
     with pytest.raises(ValueError, match=f"is no xsd:{literal.datatype.short}"):
         as_python(literal)
+
+
+@pytest.mark.parametrize(
+    ("text", "datatype", "wanted", "fits"),
+    [
+        ("1", "integer", "integer", True),
+        ("1", "integer", "decimal", True),
+        ("1e3", "double", "decimal", True),
+        ("INF", "double", "double", True),
+        ("INF", "string", "double", False),
+        ("1.5", "decimal", "integer", False),
+        ("1", "string", "integer", False),
+        ("300", "integer", "byte", False),
+        ("true", "boolean", "boolean", True),
+        ("true", "string", "boolean", False),
+        ("2026-01-31", "date", "date", True),
+        ("2026-01-31", "string", "date", False),
+        ("31.1.2026", "date", "date", False),
+        ("2026-01-31T12:00:00", "dateTime", "date", False),
+        ("5", "integer", "anyURI", True),
+    ],
+)
+def test_a_literal_is_what_a_property_of_a_datatype_wants(text: str, datatype: str, wanted: str, fits: bool) -> None:
+    assert of_range(text, XSD_NAMESPACE + datatype, XSD_NAMESPACE + wanted) is fits

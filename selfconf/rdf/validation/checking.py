@@ -81,8 +81,9 @@ class FileChecker:
     @cached_property
     def knowledge(self) -> bytes:
         """A digest of the shapes and of the terms that are known."""
+        ranges = (" ".join((one, *sorted(kinds))) for one, kinds in self.index.ranges.items())
         known = (self.index.terms, self.index.object_properties, self.index.covered)
-        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.index.above)))
+        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.index.above), ranges))
         return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
 
     def key(self, suspect: UnclearedFile) -> str:

@@ -20,7 +20,7 @@ from selfconf.model.term import IRI
 from selfconf.model.unit_dimension import meant_unit
 from selfconf.model.wording import is_one_line
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_COMPONENT, SAID_BY, Field, Subject, foreign_terms
-from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE, XSD
 
 MOST_PROBLEMS = 100
 """After so many syntax errors a file is taken for something else than Turtle."""
@@ -40,6 +40,7 @@ _MISPLACED = {link: foreign_terms(subject) for link, subject in LINKED.items()}
 _MISPLACED_AT_COMPONENT = foreign_terms(COMPONENT)
 _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
 _SCHEMA = frozenset((OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDFS.Class, RDF.Property))
+_STRINGS = frozenset((XSD.string, RDF.langString))
 _PLACING = frozenset((RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty))
 """What gives its subject a place in a hierarchy."""
 _REFERRING = (SC.template, SC.component, SC.recruited, SC["from"], SC.to)
@@ -98,13 +99,15 @@ class Prefiltered:
     """The terms of vocabularies that the file uses: predicates, classes, signal types, datatypes."""
     signals: set[str] = field(default_factory=set)
     """The signal types of ports."""
-    literal_of: set[str] = field(default_factory=set)
-    """The predicates that have a literal as an object."""
+    literals: set[tuple[str, str, str]] = field(default_factory=set)
+    """The literals by predicate, datatype and text; of strings, which are many and all of one kind, without text."""
     subjects: set[str] = field(default_factory=set)
     """What the file says something of."""
     terms: set[str] = field(default_factory=set)
     """The classes and properties that the file declares."""
     object_properties: set[str] = field(default_factory=set)
+    ranges: set[tuple[str, str]] = field(default_factory=set)
+    """The properties of others that the file declares to have literals, each with the datatype of these."""
     placed: set[str] = field(default_factory=set)
     """What the file gives a place in a hierarchy, which it may have declared or not."""
     above: set[tuple[str, str]] = field(default_factory=set)
@@ -176,7 +179,7 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
         found.size += len(values)
         for value in values:
             if isinstance(value, Lexical):
-                found.literal_of.add(predicate)
+                found.literals.add((predicate, value.datatype, "" if value.datatype in _STRINGS else value.form))
                 found.used.add(value.datatype)
             elif predicate in TERM_POSITIONS or value in SC or value in SH:
                 found.used.add(value)
@@ -190,6 +193,8 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
         found.terms.add(subject)
         if OWL.ObjectProperty in types:
             found.object_properties.add(subject)
+        if OWL.DatatypeProperty in types and subject not in SC and subject not in _FIELDS:
+            found.ranges.update((subject, kind) for kind in properties.get(RDFS.range, ()) if isinstance(kind, str))
     if SC.Component in types:
         found.components.append(subject)
     if SC.Template in types:

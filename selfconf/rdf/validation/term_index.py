@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import chain
 
+from selfconf.model.literal_values import of_range
 from selfconf.rdf.validation.prefilter import Prefiltered
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, XSD
 
@@ -52,6 +53,8 @@ class TermIndex:
 
     terms: set[str] = field(default_factory=set)
     object_properties: set[str] = field(default_factory=set)
+    ranges: dict[str, set[str]] = field(default_factory=dict)
+    """The datatypes of the values of properties, as far as they are stated."""
     covered: set[str] = field(default_factory=lambda: {SC.base})
     above: set[tuple[str, str]] = field(default_factory=set)
     """What the files say of the hierarchy of classes: a class, and one right above it."""
@@ -64,6 +67,8 @@ class TermIndex:
         So it does not matter whether an ontology is given as such, or is validated beside what uses it.
         """
         self.object_properties |= seen.object_properties
+        for one, datatype in seen.ranges:
+            self.ranges.setdefault(one, set()).add(datatype)
         self.above |= seen.above
         self.terms |= seen.placed
         if seen.terms:
@@ -89,6 +94,11 @@ class TermIndex:
     def foreign(self, signal: str) -> bool:
         """Whether a signal type lies in a namespace of which nothing is known, and which is not easily confused."""
         return self.undeclared(signal) and not self.strange(signal) and self.confused(namespace(signal)) is None
+
+    def unfit(self, predicate: str, datatype: str, lexical: str) -> bool:
+        """Whether a literal is none of those that the loaded ontologies state as the values of a property."""
+        wanted = self.ranges.get(predicate)
+        return wanted is not None and not any(of_range(lexical, datatype, one) for one in wanted)
 
     def serves(self, offered: str, wanted: str) -> bool:
         """Whether a class is another or lies below it, by what the loaded ontologies say."""
@@ -124,7 +134,7 @@ class TermIndex:
         prefixes = [prefix for prefix, _ in seen.prefixes]
         return not (
             any(self.strange(iri) for iri in seen.used)
-            or not self.object_properties.isdisjoint(seen.literal_of)
+            or any(one in self.object_properties or self.unfit(one, kind, text) for one, kind, text in seen.literals)
             or len(prefixes) != len(set(prefixes))
             or any(self.confused(iri) for _, iri in seen.prefixes)
             or any(self.confused(home) for home in set(map(namespace, seen.used)))

@@ -29,6 +29,7 @@ from selfconf.rdf.validation.lints.terms import (
     repeated_components,
     typed_operations,
     undeclared_prefixes,
+    unfit_literals,
     unknown_terms,
     untyped_ports,
 )
@@ -50,6 +51,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     typed_operations,
     misplaced_terms,
     literals_for_iris,
+    unfit_literals,
     local_components,
     misnamed_units,
 )

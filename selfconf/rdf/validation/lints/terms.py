@@ -17,6 +17,7 @@ from rdflib.term import Node
 
 from selfconf.model.curie import suggested_local_name
 from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.model.literal_values import DATATYPES, MOST_CHARACTERS, of_range
 from selfconf.model.term import IRI
 from selfconf.rdf import vocabulary
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_PARTS, foreign_terms
@@ -29,6 +30,20 @@ _STANDARD: dict[str, type[DefinedNamespace]] = {str(words._NS): words for words 
 _SC, _SH = vocabulary.SC, vocabulary.SH
 LIKE = 0.7
 """How alike two words have to be for one to be a misspelling of the other; 1 is equal."""
+EXAMPLES = {
+    str(XSD[name]): f'"{text}"^^xsd:{name}'
+    for name, text in {
+        "dateTime": "2026-01-31T12:00:00",
+        "dateTimeStamp": "2026-01-31T12:00:00Z",
+        "date": "2026-01-31",
+        "time": "12:00:00",
+        "duration": "P1DT12H",
+        "dayTimeDuration": "P1DT12H",
+        "yearMonthDuration": "P1Y6M",
+        "language": "en",
+    }.items()
+}
+"""A literal of each datatype of short texts."""
 _MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
 
 
@@ -194,6 +209,27 @@ def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
             message = f"The value of {file.short(str(predicate))} is a thing with an IRI, not a literal."
             hint = f"Write an IRI, such as :{suggested_local_name(value) or 'kitchen'}."
             yield at(file.positions, offsets.object, "SC-L07", message, hint=hint)
+
+
+def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:
+    """Literals that are not of the datatype that their property has, or not written as that is."""
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        if isinstance(value, Literal):
+            kind = str(value.datatype or XSD.string)
+            if file.index.unfit(str(predicate), kind, str(value)):
+                wanted = sorted(file.index.ranges[str(predicate)])
+                kinds = " or ".join(map(file.short, wanted))
+                message = f"The value of {file.short(str(predicate))} is of the datatype {kinds}, and this is none."
+                hint = f"Write {_written(str(value), wanted[0], file)}."
+                yield at(file.positions, offsets.object, "SC-L26", message, hint=hint)
+
+
+def _written(text: str, datatype: str, file: LintedFile) -> str:
+    """A text as a literal of a datatype, if it is one; an example otherwise."""
+    known = len(text) <= MOST_CHARACTERS and of_range(text, datatype, datatype)
+    if datatype in DATATYPES or datatype == str(XSD.boolean):
+        return text if known else "true or false" if datatype == str(XSD.boolean) else "a number, such as 10"
+    return f'"{text}"^^{file.short(datatype)}' if known else f"it as in {EXAMPLES[datatype]}"
 
 
 def local_components(file: LintedFile) -> Iterator[Diagnostic]:

@@ -165,3 +165,32 @@ def test_a_signal_type_of_an_operation_is_passed_over_and_that_of_a_port_is_not(
 def test_what_is_said_of_another_part_of_an_advertisement_is_passed_over_and_told(text: str, owners: str) -> None:
     found = only(text)
     assert (found.code, found.severity, found.hint) == ("SC-L25", Severity.WARNING, f"It is said of {owners}.")
+
+
+@pytest.mark.parametrize(
+    ("datatype", "value", "hint"),
+    [
+        ("integer", '"2"', "2"),
+        ("integer", '"two"', "a number, such as 10"),
+        ("boolean", '"true"', "true"),
+        ("boolean", '"yes"', "true or false"),
+        ("date", '"2026-01-31"', '"2026-01-31"^^xsd:date'),
+        ("date", '"31.1.2026"^^xsd:date', 'it as in "2026-01-31"^^xsd:date'),
+    ],
+)
+def test_a_literal_of_another_datatype_than_its_property_has_is_told(datatype: str, value: str, hint: str) -> None:
+    declared = f":p a owl:DatatypeProperty ; rdfs:label 'p' ; rdfs:range xsd:{datatype} .\n"
+    found = only(f"{declared}:a a sc:Component, rob:Tuner ; :p {value} .")
+    assert (found.code, found.severity, found.hint) == ("SC-L26", Severity.WARNING, f"Write {hint}.")
+
+
+def test_a_literal_of_one_of_the_datatypes_of_its_property_is_not_told() -> None:
+    declared = ":p a owl:DatatypeProperty ; rdfs:label 'p' ; rdfs:range xsd:integer, xsd:date .\n"
+    assert lints(f"{declared}:a a sc:Component, rob:Tuner ; :p 2, '2026-01-31'^^xsd:date .") == []
+
+
+def test_the_literal_of_a_file_is_told_whose_property_another_file_declares() -> None:
+    vocabulary = PREAMBLE + ":p a owl:DatatypeProperty ; rdfs:label 'p' ; rdfs:range xsd:integer ."
+    texts = [SourceText("a.ttl", (PREAMBLE + ":a a sc:Component, rob:Tuner ; :p '2' .").encode())]
+    ontologies = [*ONTOLOGIES, SourceText("v.ttl", vocabulary.encode())]
+    assert [one.code for one in validate_texts(texts, SHAPES, ontologies).diagnostics] == ["SC-L26"]
