@@ -46,11 +46,16 @@ class LintedFile:
 
     def items(self, head: Node) -> Iterator[Node]:
         """The members of a list, as far as it is one."""
+        for cell in self.cells(head):
+            yield from self.graph.objects(cell, RDF.first)
+
+    def cells(self, head: Node) -> Iterator[Node]:
+        """The cells of a list, as far as it is one, each once, and its end."""
         seen: set[Node] = set()
         cell: Node | None = head
         while cell is not None and cell not in seen:
             seen.add(cell)
-            yield from self.graph.objects(cell, RDF.first)
+            yield cell
             cell = self.graph.value(cell, RDF.rest)
 
     def said(self, statement: tuple[Node, Node, Node]) -> str:

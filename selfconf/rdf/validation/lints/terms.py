@@ -44,6 +44,8 @@ EXAMPLES = {
     }.items()
 }
 """A literal of each datatype of short texts."""
+VALUES = frozenset((SH.hasValue, SH.minInclusive, SH.minExclusive, SH.maxInclusive, SH.maxExclusive))
+"""What shapes compare values with."""
 _MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
 
 
@@ -203,25 +205,34 @@ def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
 
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
     """Literals where the property wants a thing."""
-    for (_, predicate, value), offsets in file.positions.triples.items():
-        ours = str(predicate) in _SC  # what selfconf's own properties want is a matter of the shapes
-        if isinstance(value, Literal) and not ours and str(predicate) in file.index.object_properties:
-            message = f"The value of {file.short(str(predicate))} is a thing with an IRI, not a literal."
+    for predicate, value, offset in _literals(file):
+        ours = predicate in _SC  # what selfconf's own properties want is a matter of the shapes
+        if not ours and predicate in file.index.object_properties:
+            message = f"The value of {file.short(predicate)} is a thing with an IRI, not a literal."
             hint = f"Write an IRI, such as :{suggested_local_name(value) or 'kitchen'}."
-            yield at(file.positions, offsets.object, "SC-L07", message, hint=hint)
+            yield at(file.positions, offset, "SC-L07", message, hint=hint)
 
 
 def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:
     """Literals that are not of the datatype that their property has, or not written as that is."""
-    for (_, predicate, value), offsets in file.positions.triples.items():
+    for predicate, value, offset in _literals(file):
+        if file.index.unfit(predicate, str(value.datatype or XSD.string), str(value)):
+            wanted = sorted(file.index.ranges[predicate])
+            kinds = " or ".join(map(file.short, wanted))
+            message = f"The value of {file.short(predicate)} is of the datatype {kinds}, and this is none."
+            hint = f"Write {_written(str(value), wanted[0], file)}."
+            yield at(file.positions, offset, "SC-L26", message, hint=hint)
+
+
+def _literals(file: LintedFile) -> Iterator[tuple[str, Literal, int]]:
+    """The literals, each with the property of which it is a value, or is asked to be one by a shape."""
+    listed = {cell: shape for shape, values in file.graph.subject_objects(SH["in"]) for cell in file.cells(values)}
+    for (node, predicate, value), offsets in file.positions.triples.items():
         if isinstance(value, Literal):
-            kind = str(value.datatype or XSD.string)
-            if file.index.unfit(str(predicate), kind, str(value)):
-                wanted = sorted(file.index.ranges[str(predicate)])
-                kinds = " or ".join(map(file.short, wanted))
-                message = f"The value of {file.short(str(predicate))} is of the datatype {kinds}, and this is none."
-                hint = f"Write {_written(str(value), wanted[0], file)}."
-                yield at(file.positions, offsets.object, "SC-L26", message, hint=hint)
+            shape = listed.get(node) if predicate == RDF.first else node if predicate in VALUES else None
+            of = predicate if shape is None else file.graph.value(shape, SH.path)
+            if isinstance(of, URIRef):
+                yield str(of), value, offsets.object
 
 
 def _written(text: str, datatype: str, file: LintedFile) -> str:

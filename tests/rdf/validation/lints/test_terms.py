@@ -194,3 +194,29 @@ def test_the_literal_of_a_file_is_told_whose_property_another_file_declares() ->
     texts = [SourceText("a.ttl", (PREAMBLE + ":a a sc:Component, rob:Tuner ; :p '2' .").encode())]
     ontologies = [*ONTOLOGIES, SourceText("v.ttl", vocabulary.encode())]
     assert [one.code for one in validate_texts(texts, SHAPES, ontologies).diagnostics] == ["SC-L26"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "code", "at"),
+    [
+        ("sh:path rob:place ; sh:hasValue 'kitchen'", "SC-L07", "'kitchen'"),
+        ("sh:path rob:place ; sh:in ( :hall 'kitchen' )", "SC-L07", "'kitchen'"),
+        ("sh:path :p ; sh:maxInclusive '2'", "SC-L26", "'2'"),
+        ("sh:path :p ; sh:in ( 1 '2' 3 )", "SC-L26", "'2'"),
+    ],
+)
+def test_what_a_shape_asks_of_a_property_is_as_the_property_wants_it(asked: str, code: str, at: str) -> None:
+    declared = ":p a owl:DatatypeProperty ; rdfs:label 'p' ; rdfs:range xsd:integer .\n"
+    role = f":r sh:property [ {asked} ] ."
+    found = only(declared + TEMPLATE + role)
+    assert (found.code, found.line, found.column) == (code, HEAD + 3, role.index(at) + 1)
+
+
+def test_what_a_shape_asks_of_a_longer_path_is_left_alone() -> None:
+    asked = "sh:path ( rob:support rob:place ) ; sh:hasValue 'kitchen'"
+    assert lints(f"{TEMPLATE}:r sh:property [ {asked} ] .") == []
+
+
+def test_a_list_of_thousands_may_be_asked_for() -> None:
+    many = " ".join(f":p{number}" for number in range(3000))
+    assert only(f"{TEMPLATE}:r sh:property [ sh:path rob:place ; sh:in ( {many} 'kitchen' ) ] .").code == "SC-L07"
