@@ -30,7 +30,7 @@ from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh.descriptors import sockets_at
 from selfconf.bus.zenoh.door import Door
 from selfconf.bus.zenoh.receivers import callback
-from selfconf.bus.zenoh.session import Security, open_session, with_port
+from selfconf.bus.zenoh.session import Security, check_free, open_session, with_port
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import replace
 from selfconf.protocol.endpoints import endpoint_port
@@ -90,6 +90,8 @@ class Hub:
         What connects while a router of Zenoh 1.10 still begins, as clients do that have lost the hub before, may stay
         connected and hear nothing of it, for good.
         """
+        for endpoint in self._listens_at:
+            check_free(endpoint)
         session = open_session("router", listen=self._listens_at, shared_memory=True, security=self.security)
         for endpoint in self._listens_at:
             cut_connections(endpoint, listens_on=True)

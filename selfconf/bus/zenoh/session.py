@@ -8,9 +8,13 @@ copied into it once, and only a reference goes through the sockets (`docs/benchm
 cannot see that memory, or all of it is in use, or a program may not lock as much memory as it likes, the payload itself
 goes through the socket, as it always does for small ones. A hub has room for 350 such clients; others cost it nothing.
 
-Zenoh divides its work among threads as it likes. With those of the application and the network handed over to those
-that receive (`ZENOH_RUNTIME`), what comes wakes one thread and not two, and a bare cold round trip takes 0.85 times as
-long. But from FAIL to the first message it took as long as before, and fifty sites longer to recover from a stall.
+Zenoh divides its work among threads as it likes, but for one thing: what it does on the network has three threads in
+place of one. The end of the last reference to a router waits for a task there, for up to ten seconds, and lets no other
+thread of Python run; if the only thread was in a callback, as of a link that has come, that waited for Python, and the
+site stood still until the ten seconds were over. With the work of the application and the network handed over to the
+threads that receive (`ZENOH_RUNTIME`), what comes wakes one thread and not two, and a bare cold round trip takes 0.85
+times as long. But from FAIL to the first message it took as long as before, and fifty sites longer to recover from a
+stall.
 """
 
 from __future__ import annotations
@@ -66,6 +70,10 @@ _EFFECTIVE = re.compile(r"^CapEff:\s*([0-9a-f]+)$", re.MULTILINE)
 FREE_DESCRIPTORS = 32
 """How many files a program must still be free to open: a session takes about twenty, and some for its first links.
 With fewer Zenoh does not fail: it may hang, or abort the process."""
+THREADS_VARIABLE = "ZENOH_RUNTIME"
+"""What says of a process how Zenoh divides its work among threads; read once, by the first session."""
+THREADS = "(net: (worker_threads: 3))"
+PORT_TAKEN = "the port is in use; port 0 is any free one"
 _PORTS_TRIED = 100
 _RETRY = {
     # A client is cut off as long as it has no router, and its components rest after a second.
@@ -122,11 +130,11 @@ def open_session(
     begin_log()
     config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory(), security)
     try:
-        return zenoh.open(config)
+        return _opened(config)
     except zenoh.ZError as error:
         where = ", ".join(connect if mode == "client" else listen[:1])
         if "Address already in use" in str(error):
-            raise NetworkError(f"cannot listen on {where}: the port is in use; port 0 is any free one") from None
+            raise NetworkError(f"cannot listen on {where}: {PORT_TAKEN}") from None
         what = "no site answers at" if mode == "client" else "cannot listen on"
         raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
     except BaseException as error:  # a panic of Zenoh is no Exception
@@ -135,6 +143,17 @@ def open_session(
         raise NetworkError(
             f"Zenoh cannot begin ({error}); may this program start threads (`ulimit -u`), and is the clock right?"
         ) from None
+
+
+def _opened(config: zenoh.Config) -> Any:
+    """A session; with the first one of a process its threads begin. What this program starts may divide otherwise."""
+    if THREADS_VARIABLE in os.environ:
+        return zenoh.open(config)
+    os.environ[THREADS_VARIABLE] = THREADS
+    try:
+        return zenoh.open(config)
+    finally:
+        os.environ.pop(THREADS_VARIABLE, None)
 
 
 def with_port(endpoint: str) -> str:
@@ -153,6 +172,23 @@ def with_port(endpoint: str) -> str:
             else:
                 return with_other_port(endpoint, probe.getsockname()[1])
     raise NetworkError(f"cannot listen on {endpoint}: no port is free")
+
+
+def check_free(endpoint: str) -> None:
+    """Raise NetworkError if another listens at an endpoint of TCP, without reading what a session would be opened with.
+
+    Zenoh reads the rules of a hub first, which takes a millisecond for each component that they name.
+    """
+    host, port = endpoint_host(endpoint), endpoint_port(endpoint)
+    if not (port and endpoint.partition("/")[0] in ("tcp", "tls")):
+        return
+    try:
+        with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind((host, port))
+    except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            raise NetworkError(f"cannot listen on {endpoint}: {PORT_TAKEN}") from None
 
 
 def _has_shared_memory() -> bool:

@@ -144,6 +144,17 @@ def test_a_hub_on_a_local_socket_is_closed(tmp_path: Path) -> None:
     Hub(f"unixsock-stream/{tmp_path / 'hub'}").close()
 
 
+def test_a_hub_at_a_port_that_is_taken_reads_no_rules(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A site that takes the place of another tries several ports; the rules of hundreds of components take a while."""
+
+    def opened(*_: object, **__: object) -> None:
+        raise AssertionError("Zenoh reads the rules before it looks whether the port is free")
+
+    monkeypatch.setattr(relaying, "open_session", opened)
+    with socket.create_server(("127.0.0.1", 0)) as taken, pytest.raises(NetworkError, match="the port is in use"):
+        Hub(f"tcp/127.0.0.1:{taken.getsockname()[1]}")
+
+
 def test_a_hub_whose_keys_are_gone_stays_as_it_is(tmp_path: Path) -> None:
     hub = Hub(ANYWHERE_ON_LOOPBACK)
     gone = Credentials("site.home", tmp_path / "certificate.pem", tmp_path / "key", tmp_path / "authority", tmp_path)

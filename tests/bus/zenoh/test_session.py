@@ -51,6 +51,38 @@ def test_an_endpoint_may_be_of_any_protocol_that_zenoh_speaks(tmp_path: Path) ->
             router.close()
 
 
+LET_GO = """
+import os, threading, time
+from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, open_session, with_port
+from selfconf.bus.zenoh.receivers import callback
+endpoint = with_port(ANYWHERE_ON_LOOPBACK)
+gone, hub = (open_session("router", listen=[one]) for one in (with_port(ANYWHERE_ON_LOOPBACK), endpoint))
+client = open_session("client", connect=[endpoint], connect_seconds=10.0)
+gone.close()
+came = threading.Event()
+def changed(event):
+    if str(event.kind) == "SampleKind.PUT":
+        came.set()
+        time.sleep(0.2)
+listener = client.info.declare_transport_events_listener(callback(changed))
+hub.close()
+hub = open_session("router", listen=[endpoint])
+assert came.wait(20.0)
+began = time.monotonic()
+del gone
+print(time.monotonic() - began, flush=True)
+os._exit(0)
+"""
+"""A router is let go of while a callback for a link that has come waits for its turn in Python."""
+
+
+@pytest.mark.process
+def test_the_end_of_a_router_waits_for_no_callback() -> None:
+    """No other thread of the program could run meanwhile, the callback included: for ten seconds."""
+    done = subprocess.run([sys.executable, "-c", LET_GO], capture_output=True, text=True, timeout=60)
+    assert float(done.stdout) < 5.0, done.stderr
+
+
 def test_those_that_connect_and_stay_silent_keep_no_client_out() -> None:
     endpoint = with_port(ANYWHERE_ON_LOOPBACK)
     with ExitStack() as stack:
