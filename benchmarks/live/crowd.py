@@ -45,6 +45,18 @@ class QuietSink(Component):
         """Nothing."""
 
 
+def kinds_of(name: str, count: int) -> list[type[Component]]:
+    """The components of a process by its name, which are so many pairs or one."""
+    if name == "pairs":
+        return [
+            type(which, (paired,), {"advertisement": str(pair_file(which, number))})
+            for number in range(count)
+            for which, paired in (("source", Source), ("sink", QuietSink))
+        ]
+    kind: type[Component] = Sink if name == "sink" else Source
+    return [type(name, (kind,), {"advertisement": str(written_for(name))})]
+
+
 def end_with_stdin(over: threading.Event) -> None:
     """Set the event when stdin ends."""
     sys.stdin.read()
@@ -65,14 +77,10 @@ def main() -> None:
         bus.run(over.is_set)
         bus.close()
         return
-    host = open_host()
-    if name == "pairs":
-        for number in range(count):
-            for which, paired in (("source", Source), ("sink", QuietSink)):
-                host.add(type(which, (paired,), {"advertisement": str(pair_file(which, number))})())
-    else:
-        kind: type[Component] = Sink if name == "sink" else Source
-        host.add(type(name, (kind,), {"advertisement": str(written_for(name))})())
+    kinds = kinds_of(name, count)
+    host = open_host(kinds=kinds)
+    for kind in kinds:
+        host.add(kind())
     print("ready", flush=True)
     host.run(over.is_set)
     host.close()

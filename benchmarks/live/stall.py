@@ -1,10 +1,11 @@
 """Many sites on one machine: what they cost while nothing happens, and whether they recover from a common stall.
 
-    python -m benchmarks.live.stall [--sites 50] [--tasks 0] [--seconds 3] [--smoke]
+    python -m benchmarks.live.stall [--sites 50] [--tasks 0] [--seconds 3] [--keys] [--smoke]
 
 All sites are processes of one ecology. They are left alone, then all stopped at once (SIGSTOP) and let go on; a bare
 client asks who lives until it sees as many as before, and the cost of idleness is measured once more. With tasks the
-sites keep so many, each of a source and a sink of its own, which one more process runs and which go on.
+sites keep so many, each of a source and a sink of its own, which one more process runs and which go on. With keys all
+programs have one authority's, and each site learns the certificates of the others.
 
     up       from the first process to the last site that is seen
     idle     processor time of all sites together, per cent of one core, before and after the stall
@@ -31,6 +32,7 @@ from benchmarks.live import world
 from benchmarks.live.__main__ import cost, line, processor_time, program
 from benchmarks.machine import described, table
 from selfconf import rendezvous, this_machine
+from selfconf.access import Authority, PrincipalKind, introduce
 from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.protocol.keys import Keys
 
@@ -77,7 +79,16 @@ def until_all_run(ecology: str, tasks: int) -> float:
     raise SystemExit(f"after {PATIENCE:.0f} s not all of {tasks} tasks run")
 
 
-def measure(sites: int, tasks: int, seconds: float) -> list[str]:
+def joined(ecology: str) -> ZenohBus:
+    """A bare client, let in by all sites where there are keys."""
+    shown = rendezvous.credentials(None, PrincipalKind.CONFIGURATOR.value)
+    bus = client(rendezvous.find(ecology, [], shown)[1], credentials=shown)
+    if shown is not None:
+        introduce(bus, ecology, shown)
+    return bus
+
+
+def measure(sites: int, tasks: int, seconds: float, keys: bool) -> list[str]:
     """The row of one ecology."""
     ecology = f"stall-{secrets.token_hex(3)}"
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
@@ -86,6 +97,8 @@ def measure(sites: int, tasks: int, seconds: float) -> list[str]:
             rendezvous.ECOLOGY_VARIABLE: ecology,
             world.FOLDER_VARIABLE: name,
         }
+        if keys:
+            os.environ[rendezvous.KEYS_VARIABLE] = str(Authority.init(Path(name) / "keys").path)
         empty, pairs = Path(name) / "empty", Path(name) / "pairs"
         empty.mkdir()
         pairs.mkdir()
@@ -98,7 +111,7 @@ def measure(sites: int, tasks: int, seconds: float) -> list[str]:
             if not number:
                 while not this_machine.local_sites(ecology) and time.monotonic() < began + PATIENCE:
                     threading.Event().wait(LOOK)
-        bus = client(rendezvous.find(ecology, [])[1])
+        bus = joined(ecology)
         stack.callback(bus.close)
         until_all_live(bus, ecology, sites)
         up = time.monotonic() - began
@@ -124,7 +137,7 @@ def measure(sites: int, tasks: int, seconds: float) -> list[str]:
         after, _ = cost(served)
         ended = sum(process.poll() is not None for process in served)
     shown = [f"{up:.1f}", f"{100 * before:.1f}", f"{back:.1f}", running, f"{busy:.1f}", f"{100 * after:.1f}"]
-    return [str(sites), str(tasks), f"{seconds:g}", *shown, f"{megabytes:.0f}", str(ended)]
+    return [str(sites), str(tasks), "yes" if keys else "no", f"{seconds:g}", *shown, f"{megabytes:.0f}", str(ended)]
 
 
 def main() -> None:
@@ -133,13 +146,15 @@ def main() -> None:
     parser.add_argument("--sites", type=int, default=50)
     parser.add_argument("--tasks", type=int, default=0, help="how many tasks the sites keep")
     parser.add_argument("--seconds", type=float, default=3.0, help="how long all stand still")
+    parser.add_argument("--keys", action="store_true", help="all programs have keys")
     parser.add_argument("--smoke", action="store_true", help="three sites and two tasks, to see that it works")
     given = parser.parse_args()
     sites, tasks = (3, 2) if given.smoke else (given.sites, given.tasks)
-    row = measure(sites, tasks, given.seconds)
+    row = measure(sites, tasks, given.seconds, given.keys)
     head = [
         "sites",
         "tasks",
+        "keys",
         "stall s",
         "up s",
         "idle %",
