@@ -14,7 +14,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TypeGuard
+from typing import NamedTuple, TypeGuard
 
 from selfconf.access.certificate_files import read_certificate
 from selfconf.access.certificates import Certificate
@@ -82,6 +82,17 @@ def _processes(components: Iterable[tuple[IRI, IRI]]) -> list[Process]:
     return [tuple(map(Principal.component, dict.fromkeys((program, *mine)))) for program, mine in found.items()]
 
 
+class _Advertised(NamedTuple):
+    """What the rules of a site follow from, beside the certificates that were shown."""
+
+    own: Mapping[IRI, IRI]
+    """Its components, as those of a `SiteIdentity`."""
+    others: Mapping[str, frozenset[IRI]]
+    """The components that each other site advertises."""
+    beside: frozenset[str]
+    """The sites of its host."""
+
+
 @immutable
 class SiteIdentity:
     """Who a site with keys is."""
@@ -122,6 +133,8 @@ class Doorkeeper:
         self._warning = bus.publisher(self._keys.reopens(site.name), Urgency.EVENT)
         self._others: dict[str, frozenset[IRI]] = {}
         """The components that other sites advertise."""
+        self._ruled: _Advertised | None = None
+        """What was advertised, and by which sites, when the rules were made."""
         self._revisions: dict[str, int] = {}
         self._disputed: frozenset[IRI] = frozenset()
         self._known_for = 0
@@ -209,17 +222,18 @@ class Doorkeeper:
             self._introduce()
 
     def _met(self, replies: Replies) -> None:
-        all_know = replies.complete and not replies.errors
+        all_know, known = replies.complete and not replies.errors, True
         for sample in replies.samples:
             try:
                 answer = decode(sample.payload, Introduction)
                 all_know &= answer.known
-                all_know &= self._admit(answer.certificate)
+                known &= self._admit(answer.certificate)
             except SelfconfError as error:
                 all_know = False
                 self._reports.tell("", str(error), sample.key)
-        self._known_for = KNOWN_FOR - 1 if all_know else 0
-        self._renew_rules()
+        self._known_for = KNOWN_FOR - 1 if all_know and known else 0
+        if not known:
+            self._renew_rules()
 
     def _site_changed(self, *_: object) -> None:
         self._known_for = 0
@@ -257,7 +271,8 @@ class Doorkeeper:
                 self._revisions[revision] = page.revision
         for site, vouched in found.items():
             self._others[site] = frozenset(vouched)
-        self._renew_rules()
+        if self._advertised() != self._ruled:
+            self._renew_rules()
 
     def _is_advertised(self, component: IRI | None, site: str, key: str) -> TypeGuard[IRI]:
         return component is not None and key == self._keys.advertisement(site, component)
@@ -267,14 +282,18 @@ class Doorkeeper:
     def _made(self) -> AccessRules:
         shown = _principals(self._folder, self._keys.ecology)
         sites = {process[0].name for process in shown if process[0].kind is PrincipalKind.SITE}
-        own = self._own()
-        advertised = {self._name: frozenset(own), **{s: c for s, c in self._others.items() if s in sites}}
+        own, others, beside = ruled = self._advertised()
+        advertised = {self._name: frozenset(own), **{s: c for s, c in others.items() if s in sites}}
         undisputed = self._undisputed(advertised)
         processes = _processes((component, own[component]) for component in undisputed[self._name])
-        for site in set(self._hub.sites()) & undisputed.keys() - {self._name}:
+        for site in beside & undisputed.keys() - {self._name}:
             processes += _processes((component, component) for component in undisputed[site])
-        others = {site: components for site, components in undisputed.items() if site != self._name}
-        return rules_of(self._keys.ecology, self._name, processes, others, shown)
+        vouched = {site: components for site, components in undisputed.items() if site != self._name}
+        self._ruled = ruled
+        return rules_of(self._keys.ecology, self._name, processes, vouched, shown)
+
+    def _advertised(self) -> _Advertised:
+        return _Advertised(dict(self._own()), dict(self._others), frozenset(self._hub.sites()))
 
     def _undisputed(self, advertised: Mapping[str, frozenset[IRI]]) -> dict[str, frozenset[IRI]]:
         """The components that each site speaks for; complains of those that have become disputed."""

@@ -46,7 +46,8 @@ class Door:
         self.hub_opens = True
         self.refusals = RefusalLog(clock=lambda: 0.0)
         credentials = folder.credentials((PrincipalKind.SITE,), "home")
-        site = SiteIdentity("lab", "home", folder, credentials, own=lambda: {LAMP: LAMP})
+        self.own = {LAMP: LAMP}
+        site = SiteIdentity("lab", "home", folder, credentials, own=lambda: self.own)
         hub = GuardedHub(
             first_rules("lab", "home", folder, {LAMP: LAMP}),
             relays=lambda: True,
@@ -230,6 +231,31 @@ def vouched(door: Door, site: str) -> set[str]:
 def test_another_site_speaks_for_what_it_advertises(door: Door) -> None:
     advertise(door, "attic", BELL)
     assert vouched(door, "attic") == {Principal.component(BELL).name}
+
+
+def test_what_the_site_itself_advertises_anew_is_in_its_rules_at_once(door: Door) -> None:
+    changed = door.network.node().publisher(KEYS.changed("home"), Urgency.EVENT)
+    door.own[BELL] = BELL
+    changed.put(b"")
+    door.pass_time(1.0)
+    assert Principal.component(BELL).common_name in door.principals
+    del door.own[BELL]
+    changed.put(b"")
+    door.pass_time(1.0)
+    assert Principal.component(BELL).common_name not in door.principals
+
+
+def test_a_site_whose_advertisements_stay_costs_no_new_rules(tmp_path: Path) -> None:
+    folder = CountedReads(Authority.init(tmp_path / "keys").path)
+    door = Door(folder)
+    bus = advertise(door, "attic", BELL)
+    before = folder.reads
+    for number in range(20):
+        end = bus.announce(KEYS.site_life("attic", f"2{number}"))
+        door.pass_time(0.2)
+        end()
+        door.pass_time(0.2)
+    assert folder.reads - before <= 4, "those of the looks from time to time"
 
 
 def test_what_two_sites_advertise_is_nobodys_until_somebody_says_whose(door: Door) -> None:
