@@ -147,9 +147,9 @@ def main() -> None:
     parser.add_argument("--tasks", type=int, default=0, help="how many tasks the sites keep")
     parser.add_argument("--seconds", type=float, default=3.0, help="how long all stand still")
     parser.add_argument("--keys", action="store_true", help="all programs have keys")
-    parser.add_argument("--smoke", action="store_true", help="three sites and two tasks, to see that it works")
+    parser.add_argument("--smoke", action="store_true", help="three sites and six tasks, to see that it works")
     given = parser.parse_args()
-    sites, tasks = (3, 2) if given.smoke else (given.sites, given.tasks)
+    sites, tasks = (3, 6) if given.smoke else (given.sites, given.tasks)
     row = measure(sites, tasks, given.seconds, given.keys)
     head = [
         "sites",

@@ -90,7 +90,7 @@ class _Advertised(NamedTuple):
     others: Mapping[str, frozenset[IRI]]
     """The components that each other site advertises."""
     beside: frozenset[str]
-    """The sites of its host."""
+    """The other sites of its host."""
 
 
 @immutable
@@ -286,14 +286,15 @@ class Doorkeeper:
         advertised = {self._name: frozenset(own), **{s: c for s, c in others.items() if s in sites}}
         undisputed = self._undisputed(advertised)
         processes = _processes((component, own[component]) for component in undisputed[self._name])
-        for site in beside & undisputed.keys() - {self._name}:
+        for site in beside & undisputed.keys():
             processes += _processes((component, component) for component in undisputed[site])
         vouched = {site: components for site, components in undisputed.items() if site != self._name}
         self._ruled = ruled
-        return rules_of(self._keys.ecology, self._name, processes, vouched, shown)
+        return rules_of(self._keys.ecology, self._name, processes, vouched, shown, beside)
 
     def _advertised(self) -> _Advertised:
-        return _Advertised(dict(self._own()), dict(self._others), frozenset(self._hub.sites()))
+        beside = frozenset(self._hub.sites()) - {self._name}
+        return _Advertised(dict(self._own()), dict(self._others), beside)
 
     def _undisputed(self, advertised: Mapping[str, frozenset[IRI]]) -> dict[str, frozenset[IRI]]:
         """The components that each site speaks for; complains of those that have become disputed."""

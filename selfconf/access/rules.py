@@ -76,11 +76,13 @@ def rules_of(
     processes: Iterable[Sequence[Principal]],
     others: Mapping[str, Collection[IRI]],
     shown: Iterable[Sequence[Principal]],
+    beside: Collection[str] = (),
 ) -> AccessRules:
     """The rules of a site, in an order that does not depend on chance.
 
     `processes` are those of components of this host, each with the principals of its certificate, its subject first;
     `shown` what other certificates have been shown. `others` are the components that each other site vouches for.
+    `beside` are the other sites of this host, which are connected to no hub but this one: it passes on everything.
     """
     keys = Keys(ecology)
     speaks: dict[Principal, dict[Principal, None]] = {}
@@ -98,7 +100,8 @@ def rules_of(
         elif principal.kind is PrincipalKind.READER:
             found.append(_reader(keys, principal))
         elif principal.name != site:
-            found.append(_other_site(keys, principal, others.get(principal.name, ()), said_here))
+            told = () if principal.name in beside else said_here
+            found.append(_other_site(keys, principal, others.get(principal.name, ()), told))
     return AccessRules(tuple(found), replace(_everybody(keys), says=(keys.introduce("*"),)))
 
 
@@ -182,10 +185,11 @@ def _configurator(keys: Keys, principal: Principal) -> Access:
     )
 
 
-def _other_site(keys: Keys, principal: Principal, components: Collection[IRI], said_here: Collection[str]) -> Access:
-    """What a hub passes on to another site is what is said on its own host.
+def _other_site(keys: Keys, principal: Principal, components: Collection[IRI], told: Collection[str]) -> Access:
+    """What another site may say and hear; of what it hears, only `told` is passed on to it, if any is.
 
-    It would pass on what third sites say as well, to sites that refuse it from there.
+    To a site of another host a hub passes on what is said on its own host: what third sites say, too, would be refused
+    there as coming from this one.
     """
     vouched = tuple(sorted(map(component_chunk, components)))
     said = [*keys.all_of_site(principal.name), *keys.all_of_configurators("*"), keys.task()]
@@ -199,7 +203,7 @@ def _other_site(keys: Keys, principal: Principal, components: Collection[IRI], s
         asked=(*keys.everything(), any_ecology()),
         hears=asks,
         about=vouched,
-        told=tuple(said_here),
+        told=tuple(told),
     )
 
 

@@ -44,6 +44,7 @@ class Door:
         self.enforced: list[AccessRules] = []
         self.said: list[str] = []
         self.hub_opens = True
+        self.sites = ["home"]
         self.refusals = RefusalLog(clock=lambda: 0.0)
         credentials = folder.credentials((PrincipalKind.SITE,), "home")
         self.own = {LAMP: LAMP}
@@ -51,7 +52,7 @@ class Door:
         hub = GuardedHub(
             first_rules("lab", "home", folder, {LAMP: LAMP}),
             relays=lambda: True,
-            sites=lambda: ["home"],
+            sites=lambda: self.sites,
             open_anew=self.open_anew,
             refusals=self.refusals,
         )
@@ -231,6 +232,18 @@ def vouched(door: Door, site: str) -> set[str]:
 def test_another_site_speaks_for_what_it_advertises(door: Door) -> None:
     advertise(door, "attic", BELL)
     assert vouched(door, "attic") == {Principal.component(BELL).name}
+
+
+def test_another_site_of_the_host_hears_what_third_sites_say(door: Door) -> None:
+    """It has no other hub, and may keep a task of which components live at a third site of the host."""
+    bus = advertise(door, "attic", BELL)
+    (attic,) = (access for access in door.keeper.rules.accesses if access.principal == "site.attic")
+    assert attic.told
+    door.sites.append("attic")
+    bus.announce(KEYS.site_life("attic", "2"))
+    door.pass_time(1.0)
+    (attic,) = (access for access in door.keeper.rules.accesses if access.principal == "site.attic")
+    assert not attic.told, "all that it hears"
 
 
 def test_what_the_site_itself_advertises_anew_is_in_its_rules_at_once(door: Door) -> None:

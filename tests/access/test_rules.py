@@ -104,6 +104,19 @@ def test_only_sites_that_are_known_answer_who_shows_a_certificate() -> None:
     assert not passes("site.unknown", "ingress", "put", KEYS.changed("unknown"), at_uplinks=True)
 
 
+def test_a_hub_passes_everything_on_to_another_site_of_its_host() -> None:
+    """That is connected to no other hub; sites of other hosts are, and hear from each what is said there."""
+    known = [(Principal(PrincipalKind.SITE, name),) for name in ("home", "attic", "cellar")]
+    made = rules_of("lab", "home", [], {"attic": {IRI("urn:bell")}}, known, beside=["cellar"])
+    told = {access.principal: access.told or access.hears for access in made.accesses}
+    third = KEYS.advertisement("attic", IRI("urn:bell"))
+
+    def hears(site: str) -> bool:
+        return any(zenoh.KeyExpr(key).includes(zenoh.KeyExpr(third)) for key in told[site])
+
+    assert (hears("site.cellar"), hears("site.attic")) == (True, False)
+
+
 def test_the_rules_do_not_depend_on_an_order() -> None:
     one = rules_of("lab", "home", [(Principal.component(CAMERA),), (Principal.component(DRIVE),)], {}, [])
     other = rules_of("lab", "home", [(Principal.component(DRIVE),), (Principal.component(CAMERA),)], {}, [])
