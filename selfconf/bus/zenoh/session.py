@@ -9,8 +9,9 @@ cannot see that memory, or all of it is in use, or a program may not lock as muc
 goes through the socket, as it always does for small ones. A hub has room for 350 such clients; others cost it nothing.
 
 Zenoh divides its work among threads as it likes, but for one thing: what it does on the network has three threads in
-place of one. The end of the last reference to a router waits for a task there, for up to ten seconds, and lets no other
-thread of Python run; if the only thread was in a callback, as of a link that has come, that waited for Python, and the
+place of one in programs that begin with a router or have keys: of these, routers may be opened anew, and elsewhere one
+thread answers more evenly. The end of the last reference to a router waits for a task there, up to ten seconds, and no
+other thread of Python runs; if the only thread was in a callback, as of a link that has come, it waited for Python: the
 site stood still until the ten seconds were over. With the work of the application and the network handed over to the
 threads that receive (`ZENOH_RUNTIME`), what comes wakes one thread and not two, and a bare cold round trip takes 0.85
 times as long. But from FAIL to the first message it took as long as before, and fifty sites longer to recover from a
@@ -130,7 +131,7 @@ def open_session(
     begin_log()
     config = _config(mode, listen, connect, connect_seconds, shared_memory and _has_shared_memory(), security)
     try:
-        return _opened(config)
+        return _opened(config) if mode == "router" or security is not None else zenoh.open(config)
     except zenoh.ZError as error:
         where = ", ".join(connect if mode == "client" else listen[:1])
         if "Address already in use" in str(error):
@@ -146,7 +147,10 @@ def open_session(
 
 
 def _opened(config: zenoh.Config) -> Any:
-    """A session; with the first one of a process its threads begin. What this program starts may divide otherwise."""
+    """A session of a program that may let a router go; with the first one of a process its threads begin.
+
+    What this program starts may divide its work otherwise.
+    """
     if THREADS_VARIABLE in os.environ:
         return zenoh.open(config)
     os.environ[THREADS_VARIABLE] = THREADS
