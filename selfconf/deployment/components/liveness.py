@@ -208,6 +208,7 @@ class Liveness:
         component may have turned itself off, or obey another configurator.
         """
         held = self._state().held.get(component)
+        acted = held is not None and held.confirmed and self._state().phase is not Phase.DISMANTLING
         if answer is None:
             self._step(Failed(component, life, Cause.CRASH, "it does not answer since it was cut off"))
         elif answer.supervisor == self._calls.supervisor:
@@ -215,7 +216,7 @@ class Liveness:
                 self._step(Failed(component, life, Cause.FAIL, "it failed while it was cut off"))
             else:
                 self._calls.heed_ends(component, answer)
-        elif held is not None and held.confirmed and (answer.supervisor or not answer.active):
+        elif acted and (answer.supervisor or not answer.active):
             self._reconnected()
 
     def _reconnected(self) -> None:

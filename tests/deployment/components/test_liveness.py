@@ -19,7 +19,7 @@ from selfconf.discovery import ecology_view
 from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Cause, Page
+from selfconf.protocol.messages import CallAnswer, Cause, Page, Verdict
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.simulated import home, living_room
 from tests.deployment.tasks import TASK
@@ -368,6 +368,17 @@ def test_a_component_that_died_while_the_configurator_was_cut_off_is_replaced(la
     lab.let_pass(SETTLING + 1.0)
     assert agent.state.phase is Phase.RUNNING
     assert lab.active() == TASK | {"odometry"}
+
+
+def test_components_that_have_come_to_rest_out_of_sight_are_no_news_to_a_task_that_is_taken_down(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    agent.stop()
+    assert agent.state.phase is Phase.DISMANTLING
+    for component in list(agent.state.held):
+        agent._liveness._seen(component, "1", CallAnswer(Verdict.DONE, component, "1"))
+    assert lab.until(lambda: bool(lab.ended))
+    assert not lab.acts("connected")
 
 
 def test_a_configurator_that_is_cut_off_can_be_stopped(lab: Lab) -> None:
