@@ -269,7 +269,8 @@ class Composer:
         At most `STANDBY` candidates for each role that feeds, none of them lost.
         """
         problem = Problem(self._task, self._partition.without(lost), self.hierarchy)
-        playing = {*configuration.components, self.outside}
+        role_of = {component: each.role for each in configuration.assignments for component in each.components}
+        playing = {*role_of, self.outside}
         found: dict[IRI, dict[str, tuple[Wire, ...]]] = {}
         spare = [
             [candidate for candidate in candidates if candidate.profile.component not in playing][:STANDBY]
@@ -278,7 +279,7 @@ class Composer:
         for position, candidates in enumerate(problem.candidates):
             for candidate in candidates:
                 profile = candidate.profile
-                if configuration.role_of(profile.component) != problem.roles[position].iri:
+                if role_of.get(profile.component) != problem.roles[position].iri:
                     continue
                 for wanted in profile.inputs:
                     feeders = problem.feeders(position, wanted, spare)

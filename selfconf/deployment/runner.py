@@ -80,6 +80,8 @@ log = logging.getLogger(__name__)
 
 AT_LEISURE = 0.01
 """Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
+APPEARED_TOGETHER = 0.3
+"""Seconds for which what appears while a task runs is gathered, before it is found out what may come next."""
 RETURN = 3.0
 """Seconds for which a task that does not wait is not refused for lack of what has gone without a word.
 
@@ -143,6 +145,8 @@ class TaskRunner:
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self._events: deque[Event] = deque()
         self._stepping = False
+        self._stands_by_anew = False
+        """Whether the time is set to be ready for a failure with what has appeared."""
         self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
         self._last_pulse = bus.now()
@@ -253,8 +257,9 @@ class TaskRunner:
         if isinstance(event, Appeared) and self.state.target is not None:
             self._retries.settle()
             self._search.prepare()
-            if event.lives:
-                self._stand_by(self.state.target)
+            if event.lives and not self._stands_by_anew:
+                self._stands_by_anew = True
+                self.bus.later(APPEARED_TOGETHER, self._stand_by_anew)
         if isinstance(event, Composed):
             self._search.prepare()  # what was found, or is held by others, may be other than before
             if self.state.left_to_others:
@@ -288,6 +293,12 @@ class TaskRunner:
         """Take in a failure that was heard of, perhaps before the first pulse after a suspension."""
         self._look_whether_suspended()
         self._liveness.heed(failed)
+
+    def _stand_by_anew(self) -> None:
+        """Be ready for a failure with all that has appeared for a while, as a process may hold many components."""
+        self._stands_by_anew = False
+        if self.state.phase is Phase.RUNNING and self.state.target is not None:
+            self._stand_by(self.state.target)
 
     def _stand_by(self, configuration: Configuration) -> None:
         """Be ready for a failure: what may come next is listened to, and one is gone through."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,6 +14,7 @@ from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Loss, Phase, Policy
 from selfconf.deployment.runner import LOSSES_TOLD
 from selfconf.model.refusal import TooFewEligible
+from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Release, Status, Verdict
 from selfconf.render.run_events import event_body
@@ -258,3 +260,41 @@ def test_of_very_many_losses_the_newest_are_told_so_that_the_status_can_be_sent(
     agent.state = replace(agent.state, lost=lost)
     told = decode(encode(agent.status()), Status).lost
     assert list(told) == list(agent.losses) == list(lost)[-LOSSES_TOLD:]
+
+
+def test_however_many_components_come_back_at_once_it_is_found_out_once_what_may_come_next(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    found_out: list[object] = []
+    monkeypatch.setattr(agent._calls, "stand_by", lambda configuration, standby: found_out.append(standby))
+    for _ in range(5):
+        lab.crash("odometry")
+        lab.let_pass(0.01)
+        lab.component("odometry")
+        lab.let_pass(0.01)
+    lab.let_pass(1.0)
+    assert len(found_out) == 1
+
+
+def test_no_component_is_told_anew_what_may_come_next_where_that_has_stayed(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    asked: list[IRI] = []
+    ask = agent._calls._calling.ask
+
+    def noted(component: IRI, *more: Any) -> None:
+        asked.append(component)
+        ask(component, *more)
+
+    monkeypatch.setattr(agent._calls._calling, "ask", noted)
+    lab.crash("odometry")
+    lab.let_pass(0.1)
+    lab.component("odometry")
+    lab.let_pass(1.0)
+    assert asked == []

@@ -86,6 +86,8 @@ class Calls:
         self.look = self._calling.look
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""
+        self._stood_by: dict[IRI, Apply] = {}
+        """By which call each component listens to what may come next, until it is applied to anew."""
         self._held_back: list[ApplyTo] = []
         """What is applied to once it is known what stands behind the composites that it is connected to."""
         self._ending: set[IRI] = set()
@@ -177,6 +179,7 @@ class Calls:
         calling = self._ends.callers(effect.callers)
         message = Apply(**claim, inputs=inputs, values=dict(effect.values), callers=calling, gently=effect.gently)
         message = replace(message, rests=effect.rests)
+        self._stood_by.pop(effect.component, None)
         self._calling.call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         life = message.life
@@ -214,7 +217,10 @@ class Calls:
         self._connections.clear()
 
     def stand_by(self, configuration: Configuration, standby: Standby) -> None:
-        """Let the inputs listen to what may come next, now that there is time; the answers are not waited for."""
+        """Let the inputs listen to what may come next, now that there is time; the answers are not waited for.
+
+        Only those are called for which that is other than before.
+        """
         plan = plan_of(configuration)
         for component, outputs in standby.items():
             claim = self._calling.claim(component, self._state().epoch)
@@ -224,7 +230,9 @@ class Calls:
             message = Apply(
                 **claim, inputs=inputs, standby=spare, values=plan.values[component], callers=who, rests=rests
             )
-            self._calling.ask(component, Call.APPLY, message)
+            if self._stood_by.get(component) != message:
+                self._stood_by[component] = message
+                self._calling.ask(component, Call.APPLY, message)
 
     # Turning off.
 
