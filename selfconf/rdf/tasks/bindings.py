@@ -238,7 +238,9 @@ def _check(parameter: Parameter, value: Term, document: Document) -> None:
         hint = ""
         if isinstance(value, Literal) and "IRI" in problem:
             local = value.lexical if is_local_name(value.lexical) else suggested_local_name(value.lexical)
-            hint = f"; write a CURIE such as :{local or 'kitchen'}, or an <IRI>"
+            home = parameter.iri[: max(parameter.iri.rfind("#"), parameter.iri.rfind("/")) + 1]
+            named = name(IRI.unchecked(f"{home}{local or 'kitchen'}"))
+            hint = "; write an <IRI>" if named.startswith("<") else f"; write a CURIE such as {named}, or an <IRI>"
         elif (meant := _meant(parameter, value, document)) is not None:
             hint = f"; write {binding(parameter.name, meant.turtle(name))}"
         raise BindingError(

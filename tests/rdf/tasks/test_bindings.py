@@ -198,6 +198,24 @@ def test_a_value_of_another_datatype_is_shown_as_it_is_with_what_would_do(
     assert str(told.value).endswith(hint) if hint else "; write" not in str(told.value)
 
 
+@pytest.mark.parametrize(
+    ("prefix", "advice"), [("home:", "; write a CURIE such as home:3, or an <IRI>"), (None, "; write an <IRI>")]
+)
+def test_a_curie_that_is_proposed_has_a_prefix_of_the_template(prefix: str | None, advice: str) -> None:
+    home = "https://example.org/home#"
+    declared = (
+        f"@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @base <{home}> ."
+    )
+    text = f"""{declared} {f"@prefix {prefix} <{home}> ." if prefix else ""}
+        <#t> a sc:Template ; sc:parameter <#place> ; sc:roles ( <#r> ) .
+        <#place> a sc:Parameter ; sc:name "place" ; sh:nodeKind sh:IRI .
+        <#r> a sc:Role ; sh:property [ sh:path <#at> ; sh:in ( <#place> ) ] ."""
+    task = templates.read_task(turtle.parse(text, "t.ttl"))
+    with pytest.raises(BindingError) as told:
+        bindings.complete(bindings.bind(task, [("place", "3")]))
+    assert str(told.value).endswith(advice)
+
+
 def test_a_task_binds_for_itself_and_may_not_be_contradicted() -> None:
     text = TEMPLATE + ':k a sc:Task ; sc:template :t ; sc:binding [ sc:parameter :goal ; sc:value "y" ] .'
     task = templates.read_task(turtle.parse(PREFIXES + text, "t.ttl"))
