@@ -202,9 +202,11 @@ class Partitioner:
         return self.violations(tests, [one], ecology, {}).get(one.component, ())
 
     def akin(self, role: CompiledRole, ecology: AdvertisementIndex) -> Iterator[TypeSet]:
-        """The kinds that are of the classes that a role asks for."""
-        classes = {test.kind for test in role.classes}
-        return (kind for kind in ecology.type_sets if classes <= self._above[kind])
+        """The kinds that are of the classes that a role asks for, where these are alternatives of those of one."""
+        ways = role.ways_of_classes
+        return (
+            kind for kind in ecology.type_sets if all(any(way <= self._above[kind] for way in some) for some in ways)
+        )
 
     def tested(self, role: CompiledRole, ecology: AdvertisementIndex, type_sets: Iterable[TypeSet]) -> Iterator[Tested]:
         """What the tests of a role say of the components of some kinds; of those that are alike they say one thing."""

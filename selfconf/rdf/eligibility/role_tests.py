@@ -208,6 +208,12 @@ class CompiledRole:
         """The tests of which the types alone decide."""
         return tuple(test for test in self.tests if isinstance(test, ClassTest))
 
+    @property
+    def ways_of_classes(self) -> list[list[frozenset[IRI]]]:
+        """Sets of classes, grouped: a component is of all classes of one set of each group, or it does not conform."""
+        choices = [test.groups for test in self.tests if isinstance(test, Count) and test.minimum]
+        return [[_classes(way) for way in some] for some in ((self.tests,), *choices)]
+
     def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[Obstacle]:
         """Everything that keeps a component out, in the order of the shape; only that, where it cannot be judged."""
         try:
@@ -224,3 +230,7 @@ class CompiledRole:
                 for parameter, values in test.allows(profile, hierarchy).items():
                     found[parameter] = found.get(parameter, values) & values
         return found
+
+
+def _classes(tests: Iterable[RoleTest]) -> frozenset[IRI]:
+    return frozenset(test.kind for test in tests if isinstance(test, ClassTest))

@@ -11,7 +11,7 @@ from selfconf.model.refusal import Refusal
 from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.nearly_eligible import exclusions, near_misses
 from selfconf.rdf.eligibility.partitioner import Partitioner
-from selfconf.rdf.eligibility.role_tests import ClassTest
+from selfconf.rdf.eligibility.role_tests import ClassTest, Count
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
@@ -43,6 +43,17 @@ def test_near_misses_are_those_of_the_class_whom_one_thing_keeps_out() -> None:
     assert found == [("pippi-drive", "its support is Pippi, not Astrid")]
 
 
+def test_a_component_of_no_alternative_class_is_no_near_miss() -> None:
+    assert near(f"{ROLE} sh:or ( [ sh:class :Lift ] [ sh:class :Crane ] ) .", *ADVERTISEMENTS.values()) == []
+
+
+def test_a_component_of_one_alternative_class_may_be_a_near_miss() -> None:
+    one_of = "sh:or ( [ sh:class :Lift ] [ sh:class rob:MotorDrive ] )"
+    text = f"{ROLE} {one_of} ; sh:property [ sh:path rob:support ; sh:in ( :Astrid ) ] ."
+    found = near(text, ADVERTISEMENTS["pippi"], ADVERTISEMENTS["encoder"])
+    assert found == [("pippi-drive", "its support is Pippi, not Astrid")]
+
+
 @given(SHAPES, COMPONENTS, st.sampled_from(HIERARCHIES))
 def test_tests_and_pyshacl_agree_on_the_near_misses(
     shape: str, components: list[tuple[str, list[tuple[str, str]], bool]], hierarchy: Hierarchy
@@ -53,8 +64,13 @@ def test_tests_and_pyshacl_agree_on_the_near_misses(
     ads = ecology(components)
 
     def of_its_class(one: Advertisement) -> bool:
-        classes = [test for test in Partitioner(task, hierarchy).roles[0].tests if isinstance(test, ClassTest)]
-        return all(test.admits(one.types, hierarchy) for test in classes)
+        tests = Partitioner(task, hierarchy).roles[0].tests
+        choices = [test.groups for test in tests if isinstance(test, Count) and test.minimum]
+        classes = [[[test for test in way if isinstance(test, ClassTest)] for way in some] for some in choices]
+        own = [test for test in tests if isinstance(test, ClassTest)]
+        return all(
+            any(all(test.admits(one.types, hierarchy) for test in way) for way in some) for some in ([own], *classes)
+        )
 
     akin = {one.component for one in ads if of_its_class(one)}
     alone = {miss.component for miss in near_misses(by_pyshacl(Partitioner(task, hierarchy)), ads)}
