@@ -767,6 +767,18 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L27", "A role asks something of its component.",
+        "A role that every component meets is played by the first that is there, whatever that does.",
+        f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role .", _PAIR,
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L28", "The class of a role is one of components.",
+        "Signals have classes too, but no component is a signal, so no component can play such a role.",
+        f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Audio .", _PAIR,
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

@@ -14,10 +14,12 @@ from selfconf.rdf.validation.lints.sources import incommensurable_units, misname
 from selfconf.rdf.validation.lints.templates import (
     impossible_roles,
     queried_parameters,
+    signals_for_components,
     typed_roles,
     unjoined_optional_roles,
     unlisted_parameters,
     unlisted_roles,
+    unselective_roles,
     unused_parameters,
 )
 from selfconf.rdf.validation.lints.terms import (
@@ -59,6 +61,8 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
 TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unlisted_roles,
     typed_roles,
+    unselective_roles,
+    signals_for_components,
     unused_parameters,
     unlisted_parameters,
     queried_parameters,

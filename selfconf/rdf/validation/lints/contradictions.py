@@ -201,14 +201,19 @@ def _entailed(normal: NormalForm, shape: Node) -> ShapeStatement | None:
     return basis[-1] if _covers(normal, NormalForm(normal.source, (shape,)), basis) and basis else None
 
 
+def entails(more: NormalForm, less: NormalForm) -> bool:
+    """Whether all that satisfies one normal form certainly satisfies another."""
+    return _covers(more, less, [])
+
+
 # complexity: one rule for each part of a normal form; each needs what the one before it has found
 def _covers(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> bool:
     """Whether whatever satisfies `more` satisfies `less`; what shows it is added to `basis`."""
     if not less.whole or less.closed or less.nots or less.choices or not _all_in(more, less, basis):
         return False
     for path, values in less.values.items():
-        ours = more.along(path) if path in more.values else None
-        if ours is None or not _all_in(ours.each, values.each, basis) or values.each.values:
+        ours = more.along(path)
+        if not _all_in(ours.each, values.each, basis) or values.each.values:
             return False
         wanted = {one[2] for one in values.required}
         fewer = [pair[1] for most in values.most for pair in ours.most if pair[0] <= most[0]][: len(values.most)]
@@ -217,7 +222,7 @@ def _covers(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> 
             not values.each.whole
             or not wanted <= {one[2] for one in ours.required}
             or any(all(pair[0] > most for pair in ours.most) for most, _ in values.most)
-            or any(all(pair[0] < least for pair in ours.least) for least, _ in values.least)
+            or any(least > 0 and all(pair[0] < least for pair in ours.least) for least, _ in values.least)
         ):
             return False
         basis += [*fewer, *enough]

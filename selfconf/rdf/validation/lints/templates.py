@@ -12,9 +12,9 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
-from selfconf.rdf.validation.lints.contradictions import ShapeContradiction, contradictions
+from selfconf.rdf.validation.lints.contradictions import ShapeContradiction, contradictions, entails
 from selfconf.rdf.validation.lints.normal_form import NormalForm
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import ROB, SC
 
 _NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
 """An IRI in a query, or a prefix and what follows it."""
@@ -52,6 +52,41 @@ def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
                 yield at(
                     file.positions, file.positions.triples[role, RDF.type, kind].object, "SC-L14", message, hint=hint
                 )
+
+
+def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:
+    """Roles whose shape every component meets, and of which nothing else asks for a port or a parameter either."""
+    graph, component = file.graph, URIRef(SC.Component)
+    every = NormalForm(file.source, file.source.subjects(SH.targetClass, component))
+    every.own.append((component, SH["class"], component))
+    joined = {
+        role
+        for end, port in ((SC["from"], SC.output), (SC.to, SC.input))
+        for interaction in graph.subjects(URIRef(port))
+        for role in graph.objects(interaction, URIRef(end))
+    }
+    asked = {*graph.subjects(URIRef(SC.sets)), *graph.objects(None, URIRef(SC.of)), *joined}
+    for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - asked:
+        told = set(graph.objects(role, RDF.type)) - {URIRef(SC.Role), SH.NodeShape}  # SC-L14 says what is meant
+        if not told and entails(every, NormalForm(file.source, (role,))):
+            message = f"Every component meets the shape of the role {file.short(str(role))}, so any may play it."
+            hint = "Say of which class its component is, by sh:class."
+            yield at(file.positions, file.offset(role), "SC-L27", message, hint=hint)
+
+
+def signals_for_components(file: LintedFile) -> Iterator[Diagnostic]:
+    """Classes of signals where a role asks for the class of its component."""
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        for statement in NormalForm(file.source, (role,)).own:
+            kind = str(statement[2])
+            if statement[1] != SH["class"] or statement not in file.positions.triples:
+                continue
+            if file.index.serves(kind, ROB.Signal) and not file.index.serves(kind, SC.Component):
+                short = file.short(kind)
+                message = f"{short} is a kind of signals, so no component is one, and none can play this role."
+                path = f"sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue {short} ]"
+                hint = f"Name a class of components; for one that issues such signals, write {path}."
+                yield at(file.positions, file.positions.triples[statement].object, "SC-L28", message, hint=hint)
 
 
 def unlisted_parameters(file: LintedFile) -> Iterator[Diagnostic]:

@@ -77,6 +77,45 @@ def test_a_closed_role_that_does_not_let_a_component_have_a_type_is_told_how_to(
     assert "sh:ignoredProperties" in found.hint
 
 
+@pytest.mark.parametrize(
+    "role",
+    [
+        "",
+        " ; sh:class sc:Component",
+        " ; sh:nodeKind sh:IRI",
+        " ; sh:property [ sh:path rob:place ]",
+        " ; sh:property [ sh:path rob:place ; sh:minCount 0 ]",
+    ],
+)
+def test_a_role_that_every_component_meets_is_noticed(role: str) -> None:
+    assert only(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role{role} .").code == "SC-L27"
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        ":r sh:property [ sh:path rob:place ; sh:minCount 1 ] .",
+        ":r sh:property [ sh:path rob:place ; sh:in ( :kitchen ) ] .",
+        ":r sh:or ( [ sh:class rob:Tuner ] [ sh:class rob:Display ] ) .",
+        ":r sc:sets [ sc:parameterType rob:Station ; sc:value 3 ] .",
+        ':t sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :r ] .',
+    ],
+)
+def test_a_role_of_which_anything_is_asked_is_left_alone(more: str) -> None:
+    assert not lints(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role . {more}")
+
+
+def test_a_role_whose_port_an_interaction_names_is_left_alone() -> None:
+    roles = ":t a sc:Template ; sc:roles ( :r :s ) . :r a sc:Role . :s a sc:Role ; sh:class rob:Display ."
+    assert not lints(f'{roles} [] a sc:Interaction ; sc:from :r ; sc:to :s ; sc:output "text" .')
+
+
+def test_a_role_for_a_kind_of_signals_is_noticed() -> None:
+    found = only(":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class rob:Audio .")
+    assert found.code == "SC-L28"
+    assert "sc:signalType" in (found.hint or "")
+
+
 def test_a_contradiction_in_a_shape_that_is_no_role_is_not_reported() -> None:
     shape = ":s a sh:NodeShape ; sh:property [ sh:path rob:place ; sh:minCount 2 ; sh:maxCount 1 ] ."
     assert not lints(TEMPLATE + shape)
