@@ -54,6 +54,11 @@ def test_a_component_of_one_alternative_class_may_be_a_near_miss() -> None:
     assert found == [("pippi-drive", "its support is Pippi, not Astrid")]
 
 
+def test_a_class_that_is_ruled_out_is_none_of_the_role() -> None:
+    text = f"{ROLE} sh:not [ sh:class :Lift ] ; sh:property [ sh:path rob:support ; sh:in ( :Astrid ) ] ."
+    assert near(text, ADVERTISEMENTS["pippi"]) == [("pippi-drive", "its support is Pippi, not Astrid")]
+
+
 @given(SHAPES, COMPONENTS, st.sampled_from(HIERARCHIES))
 def test_tests_and_pyshacl_agree_on_the_near_misses(
     shape: str, components: list[tuple[str, list[tuple[str, str]], bool]], hierarchy: Hierarchy
