@@ -298,3 +298,30 @@ def test_no_component_is_told_anew_what_may_come_next_where_that_has_stayed(
     lab.component("odometry")
     lab.let_pass(1.0)
     assert asked == []
+
+
+def test_a_component_that_is_applied_to_anew_is_told_again_what_may_come_next(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    agent = lab.agent()
+    calls, applied, asked = agent._calls, dict[IRI, Any](), list[IRI]()
+    apply, ask = calls._apply, calls._calling.ask
+
+    def noted(effect: Any) -> None:
+        applied[effect.component] = effect
+        apply(effect)
+
+    def noted_ask(component: IRI, *more: Any) -> None:
+        asked.append(component)
+        ask(component, *more)
+
+    monkeypatch.setattr(calls, "_apply", noted)
+    lab.running(agent)
+    lab.let_pass(1.0)
+    component = next(iter(calls._stood_by))
+    monkeypatch.setattr(calls._calling, "ask", noted_ask)
+    apply(applied[component])
+    assert agent.state.target is not None
+    agent._stand_by(agent.state.target)
+    lab.let_pass(1.0)
+    assert asked == [component] * 2, "it is applied to, and then told"
