@@ -36,12 +36,12 @@ from selfconf.rdf.vocabulary import RDF, SC, SH, TYPE, XSD
 _COMPARED = {SH.minInclusive: ">=", SH.maxInclusive: "<=", SH.minExclusive: ">", SH.maxExclusive: "<"}
 _LESS = {SH.lessThan: "<", SH.lessThanOrEquals: "<="}
 _KIND_OF_NODE = {
-    SH.IRI: "isIRI(?v)",
-    SH.Literal: "isLiteral(?v)",
-    SH.BlankNode: "isBlank(?v)",
-    SH.BlankNodeOrIRI: "!isLiteral(?v)",
-    SH.BlankNodeOrLiteral: "!isIRI(?v)",
-    SH.IRIOrLiteral: "!isBlank(?v)",
+    SH.IRI: "isIRI({})",
+    SH.Literal: "isLiteral({})",
+    SH.BlankNode: "isBlank({})",
+    SH.BlankNodeOrIRI: "!isLiteral({})",
+    SH.BlankNodeOrLiteral: "!isIRI({})",
+    SH.IRIOrLiteral: "!isBlank({})",
 }
 _CAST = frozenset((XSD.integer, XSD.decimal, XSD.double, XSD.float, XSD.boolean, XSD.dateTime))
 
@@ -165,7 +165,12 @@ class _Speller:
         for value in test.required:
             yield f"EXISTS {{ ?component {path} {_term(value)} }}"
         for one in test.each:
-            yield f"NOT EXISTS {{ ?component {path} ?v FILTER ( !COALESCE( {_on_value(one)} , false ) ) }}"
+            yield f"NOT EXISTS {{ ?component {path} ?v FILTER ( !{_passes('?v', one)} ) }}"
+        for part in test.qualified:
+            if part.minimum:
+                yield f"EXISTS {{ {_several(path, part.minimum, part.value)} }}"
+            if part.maximum is not None:
+                yield f"NOT EXISTS {{ {_several(path, part.maximum + 1, part.value)} }}"
         for pair in test.compared:
             less = f"COALESCE( ?v {_LESS[pair.constraint]} ?w , false )"
             yield f"NOT EXISTS {{ ?component {path} ?v ; {self._path(pair.other)} ?w FILTER ( !{less} ) }}"
@@ -188,12 +193,26 @@ def _any(conditions: Iterable[str]) -> str:
     return " || ".join(conditions)
 
 
-def _several(path: str, number: int) -> str:
-    """A pattern that so many different values match."""
+def _several(path: str, number: int, value: PropertyTest | None = None) -> str:
+    """A pattern that so many different values match, each of which conforms to what is asked of a single value."""
     names = [f"?v{k}" for k in range(number)]
     pattern = " ".join(f"?component {path} {name} ." for name in names)
-    differ = [f"!sameTerm({a}, {b})" for k, a in enumerate(names) for b in names[k + 1 :]]
-    return f"{pattern} FILTER ( {' && '.join(differ)} )" if differ else pattern
+    conditions = [f"!sameTerm({a}, {b})" for k, a in enumerate(names) for b in names[k + 1 :]]
+    if value is not None:
+        conditions += [condition for name in names for condition in _conforms(name, value)]
+    return f"{pattern} FILTER ( {' && '.join(conditions)} )" if conditions else pattern
+
+
+def _conforms(name: str, test: PropertyTest) -> Iterator[str]:
+    """What a test asks of a single value, as conditions on a variable."""
+    yield from (f"!( {_none(name, members)} )" for members in test.allowed)
+    yield from (f"sameTerm({name}, {_term(value)})" for value in test.required)
+    yield from (_passes(name, one) for one in test.each)
+
+
+def _passes(name: str, test: ValueTest) -> str:
+    """A test of one value as a condition on a variable, false where SPARQL has an error."""
+    return f"COALESCE( {_on_value(name, test)} , false )"
 
 
 def _none(name: str, members: Iterable[Term]) -> str:
@@ -201,21 +220,21 @@ def _none(name: str, members: Iterable[Term]) -> str:
     return " && ".join(f"!sameTerm({name}, {_term(member)})" for member in sorted(members, key=_term)) or "true"
 
 
-def _on_value(test: ValueTest) -> str:
-    """A test of one value as a condition on ?v."""
+def _on_value(name: str, test: ValueTest) -> str:
+    """A test of one value as a condition on a variable."""
     wanted = test.wanted
     if test.constraint == SH.nodeKind and isinstance(wanted, IRI):
-        return _KIND_OF_NODE[wanted]
+        return _KIND_OF_NODE[wanted].format(name)
     if test.constraint == SH.datatype and isinstance(wanted, IRI):
-        same = f"DATATYPE(?v) = {_term(wanted)}"
-        return f"{same} && BOUND(?v) && ({_term(wanted)}(STR(?v)) = ?v)" if wanted in _CAST else same
+        same = f"DATATYPE({name}) = {_term(wanted)}"
+        return f"{same} && BOUND({name}) && ({_term(wanted)}(STR({name})) = {name})" if wanted in _CAST else same
     if test.constraint in _COMPARED:
-        return f"?v {_COMPARED[test.constraint]} {_term(wanted)}"
+        return f"{name} {_COMPARED[test.constraint]} {_term(wanted)}"
     if test.constraint == SH.pattern:
         flags = f", {_term(Literal(test.flags))}" if test.flags else ""
-        return f"!isBlank(?v) && REGEX(STR(?v), {_term(wanted)}{flags})"
+        return f"!isBlank({name}) && REGEX(STR({name}), {_term(wanted)}{flags})"
     order = ">=" if test.constraint == SH.minLength else "<="
-    return f"!isBlank(?v) && STRLEN(STR(?v)) {order} {wanted}"
+    return f"!isBlank({name}) && STRLEN(STR({name})) {order} {wanted}"
 
 
 def _term(value: Term) -> str:
