@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from importlib import import_module
 from pathlib import Path
 
@@ -52,3 +53,41 @@ def test_what_interrupts_python_as_it_makes_a_class_is_no_traceback(
     monkeypatch.setattr(program, "main", interrupted)
     assert command_line() == 130
     assert capsys.readouterr().err == "selfconf: interrupted\n"
+
+
+LOST = """
+import signal, sys, time, weakref
+from selfconf import __main__ as command
+from selfconf.cli import main as program
+
+class Referred:
+    pass
+
+def interrupted(_):
+    signal.raise_signal(signal.SIGINT)
+
+def run():
+    referred = Referred()
+    reference = weakref.ref(referred, interrupted)
+    del referred
+    print("goes on", flush=True)
+    time.sleep(60)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+program.main = run
+sys.exit(command.main())
+"""
+
+
+def test_what_interrupts_python_where_it_ignores_exceptions_ends_a_command_all_the_same() -> None:
+    began = time.monotonic()
+    ended = subprocess.run([sys.executable, "-c", LOST], cwd=ROOT, capture_output=True, text=True)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (130, "goes on\n", "selfconf: interrupted\n")
+    assert time.monotonic() - began < 30
+
+
+def test_other_exceptions_that_python_ignores_are_shown() -> None:
+    ignored = LOST.replace("signal.raise_signal(signal.SIGINT)", "1 / 0").replace("time.sleep(60)", "return 0")
+    ended = subprocess.run([sys.executable, "-c", ignored], cwd=ROOT, capture_output=True, text=True)
+    assert (ended.returncode, ended.stdout) == (0, "goes on\n")
+    assert "ZeroDivisionError" in ended.stderr
