@@ -154,9 +154,10 @@ class Termination:
         if self._then is None:
             self._ending = True
             self._told()
-        self._bus.wake_up(self._end)
+        self._bus.wake_up(self.end)
 
-    def _end(self) -> None:
+    def end(self) -> None:
+        """Let the program end, as a signal does; to be called on the bus's thread."""
         first, self._ending = not self._ending, True
         if first and self._then is not None:
             self._then()
@@ -165,6 +166,6 @@ class Termination:
 
     def _look(self) -> None:
         if orphaned(self._parent):
-            self._end()
+            self.end()
         else:
             self._bus.later(PARENT_CHECK, self._look)

@@ -68,10 +68,7 @@ class Authority(KeysFolder):
         """Issue a certificate with a new key into a folder of its own. Raises AuthorError."""
         if out.exists() and (not out.is_dir() or any(out.iterdir())):
             raise AuthorError(f"{out} exists and is not empty; to renew what is in it: `selfconf keys renew {out}`")
-        if self._has_revoked(principal):
-            raise AuthorError(
-                f"a certificate of {principal} was revoked and has not expired: choose another name until it has"
-            )
+        self._check_name(principal)
         return self._issued(principal, out, new_key(), hosts, days)
 
     def renew(self, folder: Path, days: float = DAYS) -> Certificate:
@@ -154,11 +151,16 @@ class Authority(KeysFolder):
     # What programs that are given this folder show.
 
     def credentials(self, kinds: Sequence[PrincipalKind], name: str = MAIN) -> Credentials:
-        """What a program of some kinds shows: a certificate of the first, of a name, made or renewed now."""
+        """What a program of some kinds shows: a certificate of the first, of a name, made or renewed now.
+
+        Raises AuthorError for a name that was revoked, besides what is wrong with the folder.
+        """
         principal = Principal(kinds[0], name)
         folder = self.path / "own" / principal.common_name
         with exclusive(self.path):
             if self.is_stale(folder):
+                if name != MAIN:  # the folder itself is to be of use in any case
+                    self._check_name(principal)
                 self._issued(principal, folder, new_key(), (), DAYS)
         return replace(KeysFolder(folder).credentials(kinds), folder=self.path)
 
@@ -185,6 +187,13 @@ class Authority(KeysFolder):
         except OSError as error:
             raise AuthorError(reason(error)) from None
         return certificate
+
+    def _check_name(self, principal: Principal) -> None:
+        """Raise AuthorError for a name that was revoked, until its certificates have expired."""
+        if self._has_revoked(principal):
+            raise AuthorError(
+                f"a certificate of {principal} was revoked and has not expired: choose another name until it has"
+            )
 
     def _has_revoked(self, principal: Principal) -> bool:
         """Whether a certificate of a name that has not expired was revoked."""

@@ -118,6 +118,8 @@ class GuardedHub:
     """The names of the sites of this host, whose components connect to the hub."""
     open_anew: Callable[[AccessRules], None]
     """Opens it with other rules; raises NetworkError."""
+    distrusted: Callable[[], None]
+    """Ends the site, as its certificate was revoked: nothing is to pass through its hub, nor its components to act."""
     refusals: RefusalLog
 
 
@@ -160,7 +162,7 @@ class Doorkeeper:
         bus.serve(self._keys.access(site.name), self._tell)
         bus.subscribe(self._keys.changed(), lambda _: self._others_changed())
         bus.watch(self._keys.any_site_life(), self._site_changed)
-        CertificateWatch(bus, site.ecology, site.credentials, complain)
+        CertificateWatch(bus, site.ecology, site.credentials, complain, distrusted=hub.distrusted)
         for pause in INTRODUCTIONS:
             bus.later(pause, self._introduce)
         bus.later(INTRODUCE_AGAIN, self._introduce_again)

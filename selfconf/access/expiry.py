@@ -51,10 +51,14 @@ class CertificateWatch:
         credentials: Credentials,
         complain: Callable[[str], None] = log.error,  # a person has to do something
         now: Callable[[], datetime] = lambda: datetime.now(timezone.utc),
+        distrusted: Callable[[], None] = lambda: None,
     ) -> None:
-        """To be made before the bus runs on its own thread, or on that thread."""
+        """To be made before the bus runs on its own thread, or on that thread.
+
+        `distrusted` is called there, after each look, once the certificate was revoked.
+        """
         self._bus, self._key, self._credentials = bus, Keys(ecology).introduce("*"), credentials
-        self._complain, self._now = complain, now
+        self._complain, self._now, self._distrusted = complain, now, distrusted
         self._certificate = Certificate.read(credentials.certificate.read_bytes())
         self._changed_at, self._link = self._modified(), bus.link
         self._revoked, self._list_changed_at = False, 0
@@ -82,6 +86,8 @@ class CertificateWatch:
             why = reason(error) if isinstance(error, OSError) else str(error)
             sentence = f"{self._whose} cannot be renewed: {why}"
         self._tell(sentence)
+        if self._revoked:
+            self._distrusted()
 
     def _read(self) -> Certificate:
         """The certificate as it lies in its file now. Raises AuthorError where it is of another key or holder."""

@@ -69,10 +69,16 @@ def test_who_is_revoked_is_admitted_no_more_and_gets_no_new_certificate(authorit
     ):
         with pytest.raises((AuthorError, PeerError), match="revoked"):
             forbidden()
+    bob = Principal(READ, "bob")
+    authority.credentials((bob.kind,), bob.name)
+    authority.revoke(bob)
+    with pytest.raises(AuthorError, match="choose another name"):
+        authority.credentials((bob.kind,), bob.name)
     assert authority.revoke(Principal(CONF, "main")) == 1
+    authority.credentials((CONF,))
     assert certificate.serial in authority.revoked(), "a list holds what it held before"
     with pytest.raises(AuthorError, match="nothing to revoke"):
-        authority.revoke(Principal(READ, "bob"))
+        authority.revoke(Principal(READ, "eve"))
 
 
 def test_a_site_whose_folder_cannot_be_told_what_is_revoked_is_named(authority: Authority, tmp_path: Path) -> None:

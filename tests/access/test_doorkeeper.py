@@ -54,6 +54,7 @@ class Door:
             relays=lambda: True,
             sites=lambda: self.sites,
             open_anew=self.open_anew,
+            distrusted=lambda: self.said.append("it ends"),
             refusals=self.refusals,
         )
         self.keeper = Doorkeeper(self.bus, site, hub, self.said.append)
@@ -318,6 +319,12 @@ def test_who_is_revoked_is_out(door: Door, tmp_path: Path) -> None:
     door.folder.revoke(Principal(PrincipalKind.CONFIGURATOR, "eve"))
     door.pass_time(1.5)
     assert "conf.eve" not in door.principals
+
+
+def test_a_site_that_is_revoked_ends(door: Door) -> None:
+    door.folder.revoke(Principal(PrincipalKind.SITE, "home"))
+    door.pass_time(1.5)
+    assert door.said[-1] == "it ends"
 
 
 def test_a_folder_in_which_nothing_changes_is_read_seldom_and_at_once_when_something_does(tmp_path: Path) -> None:

@@ -35,11 +35,15 @@ class Watched:
     def __init__(self, folder: Path, keys: KeysFolder) -> None:
         credentials = keys.credentials((PrincipalKind.CONFIGURATOR,))
         self.path, self.said, self.shown = folder, list[str](), list[str]()
+        self.is_trusted = True
         self.now = Certificate.read(credentials.certificate.read_bytes()).issued
         network = Network(1)
         network.node().serve(Keys("lab").introduce("home"), self._hear)
         self._bus = network.node()
-        CertificateWatch(self._bus, "lab", credentials, self.said.append, lambda: self.now)
+        CertificateWatch(self._bus, "lab", credentials, self.said.append, lambda: self.now, self._distrust)
+
+    def _distrust(self) -> None:
+        self.is_trusted = False
 
     def _hear(self, request: Request) -> None:
         self.shown.append(decode(request.payload, Introduction).certificate)
@@ -79,9 +83,11 @@ def test_a_certificate_that_is_revoked_is_told_of_once(tmp_path: Path) -> None:
     watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
     watched.pass_days(0.0)
     assert watched.said == []
+    assert watched.is_trusted
     authority.revoke(ALICE)
     watched.pass_days(0.0)
     watched.pass_days(0.1)
+    assert not watched.is_trusted
     (said,) = watched.said
     assert said.startswith("the certificate of conf.alice was revoked: it is not trusted any more")
 
@@ -221,3 +227,33 @@ def test_a_site_whose_certificate_has_expired_takes_the_place_of_no_hub(home: Ho
     )
     home.authority.renew(home.folder / "attic")
     assert home.until(lambda: "is good until " in attic.complaints)
+
+
+@of_keys
+@pytest.mark.process
+@pytest.mark.parametrize("with_authority", [False, True], ids=["own folder", "folder of the authority"])
+def test_a_site_that_is_revoked_ends_though_all_are_connected_to_its_hub(home: Home, with_authority: bool) -> None:
+    assert home.authority is not None
+    kitchen = Principal(PrincipalKind.SITE, "kitchen")
+    keys = home.authority.path
+    if not with_authority:
+        keys = home.folder / "kitchen"
+        home.authority.issue(kitchen, keys)
+    for name in ("sonar", "encoder", "tracker", "control", "drive", "odometry"):
+        dormant(home, name)
+    served = [f"ads/{name}.ttl" for name in ("sonar", "encoder", "odometry", "control", "drive")]
+    hub = home.site("kitchen", "ads/tracker.ttl", options=("--keys", str(keys)))
+    attic = home.site("attic", *served)
+    task = home.run()
+    task.act("running")
+    home.authority.revoke(kitchen)
+    assert hub.ended() == 2
+    assert "the site kitchen and its components have ended, as its certificate was revoked" in hub.complaints
+    assert task.act("lost")["component"] == component_of("tracker"), "that is its own"
+    task.act("running")
+    assert not attic.over, attic.complaints
+    again = home.selfconf(
+        "site", "ads/tracker.ttl", "--ecology", home.ecology, "--name", "kitchen", "--keys", str(keys)
+    )
+    assert again.ended() == 2
+    assert "revoked" in again.complaints

@@ -80,8 +80,13 @@ class SecuredSite:
         """
         return {**dict.fromkeys(self._programs(), self.name), **believed(self._folder.path)}
 
-    def keep_door(self, site: Site, joining: Joining, complain: Callable[[str], None]) -> None:
-        """From now on, let in clients that show a good certificate, and renew what expires."""
+    def keep_door(
+        self, site: Site, joining: Joining, complain: Callable[[str], None], distrusted: Callable[[], None]
+    ) -> None:
+        """From now on, let in clients that show a good certificate, and renew what expires.
+
+        `distrusted` is to end the site: it is called as soon as its own certificate was revoked, and again each second.
+        """
         self._programs = lambda: site.programs
         ecology = site.keys.ecology
         identity = SiteIdentity(ecology, site.name, self._folder, self._credentials, own=self._programs)
@@ -90,6 +95,7 @@ class SecuredSite:
             relays=lambda: joining.relays,
             sites=this_machine.LocalSiteNames(ecology),
             open_anew=lambda rules: joining.secure(self._security(rules)),
+            distrusted=distrusted,
             refusals=self._refusals,
         )
         Doorkeeper(site.bus, identity, hub, complain)

@@ -112,6 +112,7 @@ class _SiteProgram:
         self._ecology = ecology
         self._secured, self._name = _named(rendezvous.keys_folder(options.keys), options.name)
         self._believed = None if self._secured is None else self._secured.believed
+        self._was_revoked = False
         self._is_open_to_all = self._secured is None and _beyond_loopback(options.listen)
         if self._is_open_to_all and not options.insecure:
             raise AuthorError(
@@ -151,7 +152,7 @@ class _SiteProgram:
             changed=self._composites.refresh,
         )
         if secured is not None:
-            secured.keep_door(self._site, self._joining, self._complain)
+            secured.keep_door(self._site, self._joining, self._complain, self._distrusted)
         records = TaskFolder((options.state or this_machine.runtime_folder() / "tasks") / f"{ecology}@{name}")
         self._keeper = Keeper(self._bus, ecology, name, records, partial(_request_of, self._work, self._believed))
         self._joining.announce()
@@ -181,8 +182,13 @@ class _SiteProgram:
         where = f"{self._joining.endpoint}{how}"
         self._complain(f"site {self._name} of ecology {self._ecology} serves {served} on {where}")
 
+    def _distrusted(self) -> None:
+        """End, as the certificate of this site was revoked."""
+        self._was_revoked = True
+        self._ended.end()
+
     def run(self, beside: Beside) -> None:
-        """Serve until the program is to end; then close."""
+        """Serve until the program is to end; then close. Raises NetworkError where its certificate was revoked."""
         self._bus.run_aside()  # what takes long, such as a search for a task that this site keeps, is done here
         try:
             with beside(self._ecology, self._session):
@@ -193,6 +199,8 @@ class _SiteProgram:
             self._bus.wake_up(self._composites.close)
             self._bus.wake_up(self._keeper.close)
             self._site.close()
+        if self._was_revoked:
+            raise NetworkError(f"the site {self._name} and its components have ended, as its certificate was revoked")
 
     def _session(self) -> Bus:
         """Another session in the ecology, as this site."""
