@@ -88,6 +88,7 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
         ((folder, "--ecology", "e", "--name", "a b"), "cannot name a site"),
         ((folder, "--ecology", "e", "--listen", taken.endpoint), f"cannot listen on {taken.endpoint}"),
         ((folder, "--ecology", "e", "--listen", "here"), "here"),
+        ((folder, "--ecology", "e", "--listen", "tcp/127.0.0.1:99999"), "tcp/127.0.0.1:99999 is no endpoint"),
         ((folder, "--ecology", "e", "--listen", "tcp/no.such.host.invalid:0"), "cannot listen on"),
         ((folder, "--ecology", "e", "--connect", "there"), "there"),
     ):

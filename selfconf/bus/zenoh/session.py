@@ -184,8 +184,8 @@ def check_free(endpoint: str) -> None:
     Zenoh reads the rules of a hub first, which takes a millisecond for each component that they name.
     """
     host, port = endpoint_host(endpoint), endpoint_port(endpoint)
-    if not (port and endpoint.partition("/")[0] in ("tcp", "tls")):
-        return
+    if not (port and endpoint.partition("/")[0] in ("tcp", "tls") and is_zenoh_endpoint(endpoint)):
+        return  # what is no endpoint is refused as the session is opened
     try:
         with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM) as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
