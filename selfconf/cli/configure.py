@@ -20,6 +20,7 @@ from selfconf.cli.options import (
     method_of,
     task_of,
 )
+from selfconf.cli.progress import progress
 from selfconf.cli.terminal import complain, display
 
 if TYPE_CHECKING:
@@ -58,13 +59,15 @@ def run(given: argparse.Namespace) -> int:
     task = task_of(given)
     method = method_of(given, task)
     with closing(given_ecology(given)) as ecology:
-        inquiry = Inquiry(task, ecology, method)
+        with progress("looking which components are eligible"):
+            inquiry = Inquiry(task, ecology, method)
         gc.freeze()  # the partition stays until the command ends, as the files do
         complain_of_left_out(inquiry.left_out)
         if given.ads is None:  # what does not conform among files was named when they were read
             complain_of(ecology)
         absent = _absent(ecology, inquiry.ecology) if given.ads is None and given.endpoint is None else frozenset()
-    answer = inquiry.answer(given.what_if)
+    with progress("searching for a configuration"):
+        answer = inquiry.answer(given.what_if)
     if isinstance(answer, Answer):
         _tell_absent(answer, absent)
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:

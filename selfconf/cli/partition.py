@@ -19,6 +19,7 @@ from selfconf.cli.options import (
     given_ecology,
     task_of,
 )
+from selfconf.cli.progress import progress
 from selfconf.cli.terminal import display
 from selfconf.errors import AuthorError
 
@@ -67,7 +68,8 @@ def run(given: argparse.Namespace) -> int:
     task = task_of(given)
     with closing(given_ecology(given)) as ecology:
         strategy = "best" if given.why else "first"
-        inquiry = Inquiry(task, ecology, Method.of(strategy, given.reasoning, given.ontology))
+        with progress("looking which components are eligible"):
+            inquiry = Inquiry(task, ecology, Method.of(strategy, given.reasoning, given.ontology))
         gc.freeze()  # the partition stays until the command ends, as the files do
         complain_of_left_out(inquiry.left_out)
         if given.ads is None:  # what does not conform among files was named when they were read
@@ -76,7 +78,10 @@ def run(given: argparse.Namespace) -> int:
         display(_exported(inquiry, given.show))
         return 0
     found = PartitionTable.of(inquiry)
-    why = alternatives(inquiry) if given.why else {}
+    why: Why = {}
+    if given.why:
+        with progress("computing what configurations with each candidate would cost"):
+            why = alternatives(inquiry)
     if given.format == "json":
         display(json.dumps(_body(found, why), indent=2, ensure_ascii=False))
     else:

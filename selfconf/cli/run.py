@@ -25,6 +25,7 @@ from selfconf.cli.options import (
     one_ecology,
     task_of,
 )
+from selfconf.cli.progress import Progress
 from selfconf.cli.run_lines import LinePrinter, TextLines, json_lines
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, NetworkError, reason
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     from selfconf.rdf.advertisements import Advertisement
 
 EXAMPLE = """  selfconf run examples/clock/tell-the-time.ttl --ads examples/clock"""
+MAY_TAKE_LONG = {"query": "asking the ecology", "discovered": "searching for a configuration"}
+"""What a run does after an event, by its act, where that may take long."""
 SETTLE = 5.0
 """Seconds that a component has to be there before a task is changed for it, unless it is said."""
 
@@ -139,8 +142,12 @@ def run(given: argparse.Namespace) -> int:
         lines = TextLines(task)
         report, stream = (json_lines, sys.stdout) if given.format == "json" else (lines, sys.stderr)
         printer = LinePrinter(report, stream, running.stop)
-        for event in running.events():
-            printer.put(event)
+        with Progress() as shown:
+            for event in running.events():
+                shown.end()
+                printer.put(event)
+                if event.act in MAY_TAKE_LONG:
+                    shown.begin(MAY_TAKE_LONG[event.act])
         printer.end()
     ignore_from_now_on()
     if site is not None and site.exit_code_before_end is not None:

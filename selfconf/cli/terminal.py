@@ -50,6 +50,10 @@ class Terminal(io.TextIOBase):
         self.write(text)
         self.flush()
 
+    def renew_line(self, text: str) -> None:
+        """Show a text in place of the line that the cursor is in, past the buffer. Raises OSError."""
+        write_text(self._stream, f"\r\x1b[2K{self.shown(text)}")
+
     def flush(self) -> None:
         """Let the terminal have it; as Python ends, that may be gone first."""
         if not self._stream.closed:

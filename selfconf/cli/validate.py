@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from selfconf.cli.progress import progress
 from selfconf.cli.terminal import complain, display
 from selfconf.errors import AuthorError
 from selfconf.model.wording import one_line
@@ -75,7 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
     from selfconf.api.validation import validate
     from selfconf.cli.reports import RENDERERS, text
 
-    result = validate(paths, ontologies=arguments.ontology, cache=arguments.cache)
+    with progress("validating"):
+        result = validate(paths, ontologies=arguments.ontology, cache=arguments.cache)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
     display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
     complain(text.summary(result))

@@ -130,7 +130,7 @@ class TaskRunner:
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._lives = HeldLives(self.ecology)
-        context = TaskContext(self.ecology, lambda: self.state, self._step, self._report)
+        context = TaskContext(self.ecology, lambda: self.state, self._step, self._report, self._report_all)
         self._waking = Waking(context, self._lives)
         self._ends = PortEnds(self.ecology, request.outside)
         self._calls = Calls(context, self.identity, self.supervisor, self._lives, self._waking, self._ends)

@@ -22,6 +22,10 @@ that have begun at the same time want the processors too."""
 MOST_UNDISTURBED = 5.0
 """For how many seconds at most, where it was interrupted again and again: it is begun anew each time."""
 
+HELD_UP = 0.05
+"""For how many seconds a work may wait for the events before it to be read: a reader is to hear what has led to a long
+search, and one that takes long over each event is to hold up no search."""
+
 MOST_AT_LEISURE = 30.0
 """For how many seconds something is done that nothing waits for: a search may go on for hours."""
 
@@ -32,6 +36,10 @@ class _Work:
 
     do: Callable[[], None]
     owner: str
+    after: int = 0
+    """How many events were reported before it."""
+    since: float = -math.inf
+    """Since when it waits, as told by the monotonic clock."""
 
 
 @dataclass(eq=False, slots=True)
@@ -43,7 +51,10 @@ class _Leisurely:
 
 
 class WorkQueue:
-    """What a run hands from the thread of its bus to the thread that reads its events: work first, then events."""
+    """What a run hands from the thread of its bus to the thread that reads its events: work and events, in order.
+
+    A work overtakes events that are not read for `HELD_UP` seconds.
+    """
 
     def __init__(self) -> None:
         self._works: deque[_Work] = deque()
@@ -56,13 +67,15 @@ class WorkQueue:
         self._disturbed = -math.inf
         """When there was something else to do, as told by the monotonic clock."""
         self._events: deque[AnyRunEvent] = deque()
+        self._read = 0
+        """How many events were read."""
         self._more = threading.Condition()
         self._woken = False
 
     def work(self, work: Callable[[], None], owner: str = "") -> Callable[[], None]:
         """Have something done that takes long, for an owner where there are several; calling the result abandons it."""
-        one = _Work(work, owner)
         with self._more:
+            one = _Work(work, owner, self._read + len(self._events), time.monotonic())
             self._works.append(one)
             self._notify()
         return partial(self._abandon, one)
@@ -144,11 +157,14 @@ class WorkQueue:
         return bool(self._works or self._events or self._woken)
 
     def next(self, seconds: float) -> AnyRunEvent | None:
-        """Do all the work there is, and return the next event; None if none has come after that long."""
+        """Do the work that comes before the next event, and return that; None if none has come after that long."""
         with self._more:
             if not self._has_more and seconds > 0:
                 self._more.wait(min(seconds, self._until_leisure))
             disturbed, self._woken = self._has_more, False
+            if self._comes_later():
+                self._disturbed = time.monotonic()
+                return self._read_event()
             waiting = len(self._works)
         for _ in range(waiting):
             self._do_first()  # one at a time: where one breaks, the others wait for the next call
@@ -156,7 +172,18 @@ class WorkQueue:
             self._disturbed = time.monotonic()
         self._do_at_leisure()
         with self._more:
-            return self._events.popleft() if self._events else None
+            return self._read_event()
+
+    def _comes_later(self) -> bool:
+        """Whether the first work that waits comes after an event that has not been read yet."""
+        first = next(iter(self._works), None)
+        return first is not None and self._read < first.after and time.monotonic() - first.since < HELD_UP
+
+    def _read_event(self) -> AnyRunEvent | None:
+        if not self._events:
+            return None
+        self._read += 1
+        return self._events.popleft()
 
     @property
     def _until_leisure(self) -> float:

@@ -345,17 +345,6 @@ def test_searches_are_done_by_the_thread_that_reads_the_events_and_keep_the_run_
     assert house.active(*EVERYBODY) == set()
 
 
-def test_work_is_done_before_events_are_read_and_in_order() -> None:
-    queue, done = WorkQueue(), list[int]()
-    event, other = EcologyAsked(), TaskStopped()
-    queue.report(event)
-    for number in range(3):
-        queue.work(lambda number=number: done.append(number))  # type: ignore[misc]  # a default binds it
-    queue.report(other)
-    assert (queue.next(0.0), done) == (event, [0, 1, 2])
-    assert (queue.next(0.0), queue.next(0.0)) == (other, None)
-
-
 def test_work_that_makes_an_event_is_followed_by_it() -> None:
     queue, event = WorkQueue(), EcologyAsked()
     queue.work(lambda: queue.report(event))

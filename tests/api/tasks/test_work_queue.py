@@ -1,4 +1,4 @@
-"""What is handed to the thread that does what takes long: work comes before events, and none is lost."""
+"""What is handed to the thread that does what takes long: work and events keep their order, and none is lost."""
 
 from __future__ import annotations
 
@@ -12,14 +12,30 @@ from selfconf.api.tasks.work_queue import WorkQueue
 from selfconf.model.run_event import EcologyAsked
 
 
-def test_work_is_done_before_the_next_event_is_given() -> None:
+def test_a_reader_hears_what_has_led_to_a_work_before_that_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work_queue, "HELD_UP", 60.0)
     queue, done = WorkQueue(), list[str]()
-    event = EcologyAsked()
-    queue.report(event)
+    before, after = EcologyAsked(), EcologyAsked()
+    queue.report(before)
     queue.work(lambda: done.append("searched"))
-    assert queue.next(0.0) is event
+    queue.report(after)
+    assert queue.next(0.0) is before
+    assert done == []
+    assert queue.next(0.0) is after
     assert done == ["searched"]
     assert queue.next(0.0) is None
+
+
+def test_a_reader_that_takes_long_over_each_event_holds_up_no_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work_queue, "HELD_UP", 0.0)
+    queue, done = WorkQueue(), list[str]()
+    events = [EcologyAsked(), EcologyAsked()]
+    for event in events:
+        queue.report(event)
+    queue.work(lambda: done.append("searched"))
+    assert queue.next(0.0) is events[0]
+    assert done == ["searched"]
+    assert queue.next(0.0) is events[1]
 
 
 def test_a_wake_up_ends_the_wait() -> None:
