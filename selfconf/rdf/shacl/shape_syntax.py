@@ -44,8 +44,14 @@ BESIDES: dict[IRI, tuple[IRI, ...]] = {
     SH.ignoredProperties: (SH.closed,),
 }
 """What says nothing without one of others; pySHACL judges no shape with it."""
-STATED_ONCE = COUNTS | _terms("closed", "deactivated", "uniqueLang", "in", "languageIn", "datatype", "nodeKind")
-"""What a shape says once, if it does (SHACL, appendix C); pySHACL judges no shape that says one of them twice."""
+STATED_ONCE = (
+    COUNTS
+    | SWITCHES
+    | LIMITS
+    | _terms("in", "languageIn", "ignoredProperties", "datatype", "nodeKind", "pattern", "flags", "severity")
+    | _terms("qualifiedValueShape")
+)
+"""What a shape says once, if it does (SHACL, appendix C): of some that are said twice, pySHACL judges no shape."""
 PATH_FORMS = _terms("inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
 """What leads from a path in brackets to the path that it is made of; an alternative leads to a list of paths."""
 DEEPEST_PATH = 50

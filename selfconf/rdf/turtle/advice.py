@@ -15,11 +15,27 @@ _ADVICE = (
     ("property lists should end", "Perhaps a semicolon or the closing ] is missing before this."),
     ("Invalid IRI code point ' '", "In an IRI a blank is written %20."),
     ("Line jumps are not allowed", "Perhaps the closing quotation mark is missing."),
-    (", is not a valid RDF object", "The members of a list stand side by side, without commas."),
-    ("‘", 'Quotation marks are straight: ".'),
-    ("“", 'Quotation marks are straight: ".'),
+    ("^, is not a valid RDF object", "The members of a list stand side by side, without commas."),
+    (r"^[].;] is not a valid RDF object", "Perhaps an object or the closing ) is missing before this."),
+    (r"^\. is not a valid subject", "Perhaps a dot is too many; behind PREFIX, unlike @prefix, there is none."),
+    (r"^[])] is not a valid subject", "Perhaps it is too many, or what it closes is not opened."),
+    (r"^(True|False|TRUE|FALSE) is not", "Truth values are written true and false."),
+    (r"^[?$]\w* is not", "Variables belong to SPARQL; a parameter stands as its IRI, such as :room."),
+    (r"^[^\W\d_]\w* is not", 'A name has a prefix, as in :lamp; a text stands in quotation marks, as in "lamp".'),
+    (
+        r"^[-+.\d\"']\S* is not a valid subject",
+        "A literal is no subject. Between values stand commas, and around a date quotation marks.",
+    ),
+    ("[\u2018\u2019\u201c-\u201e\u00ab\u00bb]", 'Quotation marks are straight: ".'),
+    ("'[\u2010-\u2015\u2212]' is not allowed", "A minus is written -."),
+    (r"'[\s\u200b]' is not allowed", "This is a special blank, such as the no-break space; write a plain one."),
+    ("'/' is not allowed", r"A comment begins with #; in a name behind a prefix / is written \/."),
+    ("Unexpected end of file", "Perhaps a closing quotation mark or a > is missing."),
     ("Unexpected end", "Perhaps the dot after the last statement is missing."),
 )
+"""Regular expressions for what the parser says, each with what to try; the first that matches counts."""
+_WITHOUT_BRACKETS = frozenset(("http", "https", "urn", "file", "mailto"))
+"""What looks like a prefix where an IRI has no angle brackets."""
 
 
 def undeclared_prefix(message: str) -> str | None:
@@ -32,9 +48,11 @@ def advice(message: str) -> str | None:
     """What to try after a message of the parser, in a sentence, if that is known."""
     prefix = undeclared_prefix(message)
     if prefix is not None:
+        if prefix in _WITHOUT_BRACKETS:
+            return f"An IRI stands in angle brackets: <{prefix}:...>."
         stands_for = USUAL[prefix].base if prefix in USUAL else "..."
         return f"Write @prefix {prefix}: <{stands_for}> . at the head of the file."
-    return next((said for words, said in _ADVICE if words in message), None)
+    return next((said for words, said in _ADVICE if re.search(words, message)), None)
 
 
 def with_advice(message: str) -> str:

@@ -144,6 +144,8 @@ def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, s
         stated = [positions.triples.get((focus, URIRef(once), one)) for one in shapes.objects(focus, URIRef(once))]
         if len(stated) > 1:
             return max((one.object for one in stated if one), default=offset), f"{said_twice(once)}."
+    if (focus, SH.path, None) in shapes:
+        return offset, ILL_FORMED
     for predicate, value in shapes.predicate_objects(focus):
         statement = positions.triples.get((focus, predicate, value))
         if statement and isinstance(predicate, URIRef) and IRI.unchecked(predicate) in ONLY_WITH_A_PATH:

@@ -13,6 +13,21 @@ SLIPS = [
     ("<urn:a> a rob:Tuner .", "Write @prefix rob: <https://w3id.org/selfconf/robotics#> . at the head of the file."),
     ("<urn:a> <urn:p> 'x' <urn:q> 'y' .", "Perhaps a semicolon is missing before this."),
     ("<urn:a> a <urn:b>", "Perhaps the dot after the last statement is missing."),
+    ("<urn:a> <urn:p> 'x .", "Perhaps a closing quotation mark or a > is missing."),
+    ("<urn:a> <urn:p> True .", "Truth values are written true and false."),
+    ("<urn:a> <urn:p> Lamp .", 'A name has a prefix, as in :lamp; a text stands in quotation marks, as in "lamp".'),
+    ("<urn:a> <urn:p> ?room .", "Variables belong to SPARQL; a parameter stands as its IRI, such as :room."),
+    (
+        "<urn:a> <urn:p> 2026-01-02 .",
+        "A literal is no subject. Between values stand commas, and around a date quotation marks.",
+    ),
+    ("<urn:a> <urn:p> http://example.org/ .", "An IRI stands in angle brackets: <http:...>."),
+    ("<urn:a> <urn:p> ( 1 ] .", "Perhaps an object or the closing ) is missing before this."),
+    ("<urn:a> <urn:p> 1 ) .", "Perhaps it is too many, or what it closes is not opened."),
+    ("PREFIX : <urn:x> . <urn:a> a :b .", "Perhaps a dot is too many; behind PREFIX, unlike @prefix, there is none."),
+    ("<urn:a> <urn:p>\u00a01 .", "This is a special blank, such as the no-break space; write a plain one."),
+    ("<urn:a> <urn:p> \u22121 .", "A minus is written -."),
+    ("// <urn:a> a <urn:b> .", r"A comment begins with #; in a name behind a prefix / is written \/."),
 ]
 
 
