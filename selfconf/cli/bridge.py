@@ -6,7 +6,7 @@ import argparse
 import importlib.util
 from pathlib import Path
 
-from selfconf.cli.options import domain
+from selfconf.cli.options import add_ontology_argument, domain
 from selfconf.cli.parsing import add_parser
 from selfconf.cli.site_options import add_site_arguments
 from selfconf.cli.terminal import complaining_aside
@@ -53,6 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a host to which a description may lead that was fetched from another one; repeatable",
     )
+    add_ontology_argument(wot)
     add_site_arguments(wot, LISTENING, "--sites")
     does = "let the nodes of a ROS 2 domain play in an ecology, over rmw_zenoh: jazzy, kilted and lyrical"
     ros2 = add_parser(worlds, "ros2", does, ROS2_EXAMPLE)
@@ -94,6 +95,7 @@ def run(given: argparse.Namespace) -> int:
         connect=tuple(given.sites),
         keys=given.keys,
         insecure=given.insecure,
+        ontologies=tuple(given.ontology) if given.world == "wot" else (),
     )
     with complaining_aside() as complain:
         if given.world == "ros2":

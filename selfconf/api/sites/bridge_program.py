@@ -36,7 +36,8 @@ def serve_things(
     Sources are read again and again, so that things come and go; but files of which none can be read now are a mistake.
 
     `rate` is how often a property is read that cannot be followed, in hertz; `credentials` is the file with the
-    secrets of origins; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources.
+    secrets of origins; `hosts` are those to which fetched descriptions may lead besides the hosts of the sources. The
+    ontologies of the `site` say of which fields signals consist, besides those of selfconf.
     """
     from selfconf.bridging.wot import (
         ThingCredentials,
@@ -54,7 +55,8 @@ def serve_things(
     if wrong[0] is not None and all(wrong):
         raise wrong[0]
     told = ThingCredentials() if credentials is None else read_credentials(credentials)
-    serve_bridge(ThingWorld(sources, ThingSettings(rate, told, frozenset(hosts))), site, complain)
+    settings = ThingSettings(rate, told, frozenset(hosts), site.ontologies)
+    serve_bridge(ThingWorld(sources, settings), site, complain)
 
 
 def serve_nodes(

@@ -15,10 +15,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, TypeVar
 
 from selfconf import files, library
 from selfconf.bridging.wot.forms import FOLLOWED, ThingForm, ThingForms
+from selfconf.errors import AuthorError
 from selfconf.importing import (
     DescribedThing,
     ImportedComponent,
@@ -100,9 +102,15 @@ class ThingInteractions:
         return any(output.read is self.probe for output in self.outputs)
 
 
-def interactions(thing: DescribedThing, forms: ThingForms, rate: float) -> ThingInteractions:
-    """What a bridge does with a thing; `rate` is how often it reads what it cannot follow, in hertz."""
-    component, fields, affordances = thing.component, _fields(thing.component), _Affordances(thing.description)
+def interactions(
+    thing: DescribedThing, forms: ThingForms, rate: float, ontologies: tuple[Path, ...] = ()
+) -> ThingInteractions:
+    """What a bridge does with a thing; `rate` is how often it reads what it cannot follow, in hertz.
+
+    Some `ontologies`, besides those of selfconf, say of which fields signals consist.
+    """
+    component, affordances = thing.component, _Affordances(thing.description)
+    fields = _fields(component, ontologies, forms)
     outputs = _usable(component.outputs, lambda port: _output(port, affordances, forms, fields))
     inputs = _usable(component.inputs, lambda port: _write(port, affordances, forms, fields))
     operations = _usable(component.operations, lambda operation: _action(operation, affordances, forms, fields))
@@ -226,15 +234,23 @@ def _plain_field(schema: Mapping[str, Any], types: tuple[IRI, ...], fields: Mapp
     return None
 
 
-def _fields(component: ImportedComponent) -> Mapping[IRI, SignalFields]:
-    """The fields of the signal types of a thing, as far as the ontologies of selfconf know them."""
+def _fields(
+    component: ImportedComponent, ontologies: tuple[Path, ...], forms: ThingForms
+) -> Mapping[IRI, SignalFields]:
+    """The fields of the signal types of a thing, as far as ontologies tell; one that cannot be read is a problem."""
     types = {kind for port in (*component.outputs, *component.inputs) for kind in port.types}
     called = (kind for each in component.operations for kind in (each.request, each.response))
     types |= {kind for kind in called if kind is not None}
-    return _known_fields(frozenset(types)) if types else {}
+    if not types:
+        return {}
+    try:
+        return _known_fields(frozenset(types), ontologies)
+    except AuthorError as error:
+        forms.problems[str(error)] = None
+        return _known_fields(frozenset(types), ())
 
 
 @lru_cache(maxsize=1024)
-def _known_fields(types: frozenset[IRI]) -> Mapping[IRI, SignalFields]:
-    """What the ontologies say of some types, kept: to read them takes some hundredths of a second."""
-    return files.signal_fields(library.ontologies(), types)
+def _known_fields(types: frozenset[IRI], ontologies: tuple[Path, ...]) -> Mapping[IRI, SignalFields]:
+    """What ontologies say of some types, kept: to read them takes some hundredths of a second. Raises AuthorError."""
+    return files.signal_fields([*library.ontologies(), *files.ontology_files(ontologies)], types)

@@ -60,6 +60,8 @@ class ThingSettings:
     credentials: ThingCredentials = field(default_factory=ThingCredentials)
     hosts: frozenset[str] = frozenset()
     """The hosts to which descriptions may lead that were fetched from another one."""
+    ontologies: tuple[Path, ...] = ()
+    """Files and folders of ontologies that say of which fields signals consist, besides those of selfconf."""
     look: float = 2.0
     """From one look whether a thing is there to the next."""
     reread: float = 5.0
@@ -166,7 +168,7 @@ class ThingWorld:
             return not fetched or host in self._hosts
 
         forms = ThingForms(thing.description, shown if fetched else "", self._settings.credentials, reachable)
-        found = interactions(thing, forms, self._settings.rate)
+        found = interactions(thing, forms, self._settings.rate, self._settings.ontologies)
         for problem in found.problems:
             self._tell(f"{shown}: {thing.component.iri.short}: {problem}")
         return found

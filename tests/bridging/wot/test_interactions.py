@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
@@ -9,13 +10,14 @@ from selfconf.importing import ImportedDocument, described_text
 from selfconf.rdf.advertisements import read_advertisements
 from tests.bridging.thing_server import CONTEXT, ROB
 from tests.bridging.wot.things import described, forms_of
+from tests.lab import PREFIXES
 
 SWITCH = {"@type": "rob:Switch", "type": "boolean"}
 
 
-def found(rate: float = 2.0, **members: Any) -> ThingInteractions:
+def found(rate: float = 2.0, ontologies: tuple[Path, ...] = (), **members: Any) -> ThingInteractions:
     description = {"@context": CONTEXT, "id": "urn:thing:lamp", "title": "lamp", "base": "http://192.0.2.7/", **members}
-    return interactions(described(description), forms_of(description), rate)
+    return interactions(described(description), forms_of(description), rate, ontologies)
 
 
 def test_what_can_be_observed_is_followed_and_the_rest_promises_the_rate() -> None:
@@ -86,6 +88,27 @@ def test_a_plain_value_is_the_one_field_of_its_type() -> None:
     )
     assert {each.name: each.field for each in thing.outputs} == {"on": "on", "whole": None, "pose": None, "other": None}
     assert {each.name: each.field for each in thing.inputs} == {"on": "on", "whole": None, "pose": None, "other": None}
+
+
+def test_the_fields_of_types_are_known_by_further_ontologies_too(tmp_path: Path) -> None:
+    volume = {"@type": "https://example.org/x#Volume", "type": "number", "forms": [{"href": "volume"}]}
+    told = tmp_path / "words.ttl"
+    told.write_text(
+        PREFIXES + '<https://example.org/x#Volume> rdfs:subClassOf rob:Signal ; rob:field ( [ rob:fieldName "litres" ; '
+        "rob:datatype xsd:double ] ) ."
+    )
+
+    def field_of(*ontologies: Path) -> tuple[str | None, tuple[str, ...]]:
+        thing = found(properties={"volume": volume}, ontologies=ontologies)
+        return thing.outputs[0].field, thing.problems
+
+    assert field_of() == (None, ())
+    assert field_of(tmp_path) == ("litres", ())
+    broken = tmp_path / "broken.ttl"
+    broken.write_text("no Turtle")
+    field, (problem,) = field_of(broken)
+    assert field is None
+    assert "broken.ttl:1:" in problem
 
 
 def test_an_action_is_an_operation_and_an_input_that_calls_it() -> None:
