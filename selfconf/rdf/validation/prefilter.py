@@ -45,9 +45,14 @@ _PLACING = frozenset((RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, 
 """What gives its subject a place in a hierarchy."""
 _REFERRING = (SC.template, SC.component, SC.recruited, SC["from"], SC.to)
 """How tasks and configurations name their templates and components."""
-TERM_POSITIONS = frozenset(
-    (TYPE, SC.signalType, SC.parameterType, RDFS.subClassOf, RDFS.subPropertyOf, RDFS.domain, RDFS.range)
-) | {SH[name] for name in ("class", "path", "datatype", "nodeKind", "targetClass", "inversePath")}
+TERM_POSITIONS = (
+    frozenset((TYPE, SC.signalType, SC.parameterType, SC.request, SC.response, ROB.datatype))
+    | {RDFS[name] for name in ("subClassOf", "subPropertyOf", "domain", "range")}
+    | {OWL[name] for name in ("equivalentClass", "equivalentProperty", "disjointWith", "inverseOf")}
+    | {SH[name] for name in ("class", "datatype", "nodeKind", "targetClass", "equals", "disjoint", "lessThan")}
+    | {SH[name] for name in ("lessThanOrEquals", "path", "inversePath", "zeroOrMorePath", "oneOrMorePath")}
+    | {SH.zeroOrOnePath}
+)
 """Where an object is a term of some vocabulary, not a thing in the world."""
 
 

@@ -43,15 +43,24 @@ def unjoined_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
-    """Roles that are given the type that their component should have."""
+    """Roles that say by their own type, or by a target alone, of which class their component should be."""
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
-        for kind in file.graph.objects(role, RDF.type):
-            if isinstance(kind, URIRef) and file.index.serves(str(kind), SC.Component):
-                message = f"This says that the role is a component of the type {file.short(kind)}; it asks for none."
-                hint = f"Write sh:class {file.short(kind)}."
-                yield at(
-                    file.positions, file.positions.triples[role, RDF.type, kind].object, "SC-L14", message, hint=hint
-                )
+        asked = (role, SH["class"], None) in file.graph
+        for said, ignored in ((RDF.type, False), (SH.targetClass, asked)):
+            for kind in () if ignored else file.graph.objects(role, said):
+                if isinstance(kind, URIRef) and (said == SH.targetClass or file.index.serves(str(kind), SC.Component)):
+                    yield _typed_role(file, role, said, kind)
+
+
+def _typed_role(file: LintedFile, role: Node, said: URIRef, kind: URIRef) -> Diagnostic:
+    name = file.short(kind)
+    message = (
+        f"This says that the role is a component of the type {name}; it asks for none."
+        if said == RDF.type
+        else f"A target asks nothing of a component, so one that is no {name} may play this role."
+    )
+    offset = file.positions.triples[role, said, kind].object
+    return at(file.positions, offset, "SC-L14", message, hint=f"Write sh:class {name}.")
 
 
 def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:

@@ -51,6 +51,10 @@ def test_a_misspelt_term_of_selfconf_or_shacl_is_an_error(text: str, meant: str)
         (":a a sc:Component, rob:Tuner ; :weight '5'^^xsd:integr .", "xsd:integer"),
         (TEMPLATE.replace("rob:Lamp", "rob:Lmap"), "rob:Lamp"),
         (TEMPLATE + ":r sh:property [ sh:path rob:palce ; sh:minCount 1 ] .", "rob:place"),
+        (TEMPLATE + ":r sh:property [ sh:path rob:place ; sh:disjoint rob:palce ] .", "rob:place"),
+        (":a a sc:Component, :A ; sc:hasOperation [ sc:name 'x' ; sc:request rob:Imge ] .", "rob:Image"),
+        (":a a sc:Component, :A ; sc:hasOperation [ sc:name 'x' ; sc:response rob:Imge ] .", "rob:Image"),
+        (":A a owl:Class ; rdfs:label 'a' ; owl:equivalentClass rob:Lmap .", "rob:Lamp"),
     ],
 )
 def test_a_misspelt_term_of_a_loaded_ontology_is_a_warning(text: str, meant: str) -> None:
