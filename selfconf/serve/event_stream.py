@@ -7,9 +7,9 @@ if that is too much, the word to begin anew.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 import secrets
+import time
 from collections import deque
 from collections.abc import AsyncIterator, Callable, Collection
 from typing import NamedTuple
@@ -105,16 +105,19 @@ class EventStream:
             for event in missed or ():
                 if event.kind in kinds:
                     yield self._text(event._replace(data=worded(event.data)))
+            due = time.monotonic() + STILL_THERE
             while True:
-                heard: ServerEvent | None = ServerEvent(0, "", None)
-                with contextlib.suppress(asyncio.TimeoutError):
-                    heard = await asyncio.wait_for(queue.get(), STILL_THERE)
-                if heard is None:
-                    return
-                if not heard.kind:
+                try:
+                    heard = await asyncio.wait_for(queue.get(), max(0.0, due - time.monotonic()))
+                except asyncio.TimeoutError:
                     yield b": still there\n\n"
-                elif heard.kind in kinds:
+                else:
+                    if heard is None:
+                        return
+                    if heard.kind not in kinds:
+                        continue
                     yield self._text(heard._replace(data=worded(heard.data)))
+                due = time.monotonic() + STILL_THERE
         finally:
             self._listeners.discard(queue)
 

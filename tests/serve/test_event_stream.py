@@ -5,6 +5,9 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 
+import pytest
+
+from selfconf.serve import event_stream
 from selfconf.serve.event_stream import EVENTS_KEPT, WAITING, EventStream
 
 
@@ -25,6 +28,26 @@ def test_who_listens_hears_events_of_the_kinds_that_are_wanted() -> None:
         assert stream.listeners == 1
         stream.close()
         assert [line async for line in lines] == []
+
+    asyncio.run(play())
+
+
+def test_who_is_sent_nothing_is_told_so_though_other_kinds_of_events_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(event_stream, "STILL_THERE", 0.1)
+
+    async def play() -> None:
+        stream = EventStream()
+        lines = stream.lines(["change"], "")
+        assert (await anext(lines)).startswith(b": ")
+
+        async def go_on() -> None:
+            while True:
+                stream.put("other", 1)
+                await asyncio.sleep(0.01)  # the rate of the events
+
+        others = asyncio.ensure_future(go_on())
+        assert await asyncio.wait_for(heard(lines, 2), 20.0) == [": still there\n\n"] * 2
+        others.cancel()
 
     asyncio.run(play())
 
