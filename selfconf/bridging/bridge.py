@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager
 from pathlib import Path
@@ -38,10 +38,13 @@ class ForeignWorld(Protocol):
 class Bridge:
     """The components of this side that stand for what lives on the other one."""
 
-    def __init__(self, folder: Path, complain: Callable[[str], None]) -> None:
-        """`folder` is where the advertisements go; `complain` hears, on any thread, what cannot be bridged, and why."""
+    def __init__(self, folder: Path, complain: Callable[[str], None], ontologies: Sequence[Path] = ()) -> None:
+        """`folder` is where the advertisements go; `complain` hears, on any thread, what cannot be bridged, and why.
+
+        What the components issue is checked against the fields that `ontologies` state, besides those of selfconf.
+        """
         self.complain = complain
-        self._folder = folder
+        self._folder, self._ontologies = folder, ontologies
         self._paths: dict[IRI, Path] = {}
         self._numbers = itertools.count(1)
         self._living: dict[IRI, Component] = {}
@@ -120,7 +123,7 @@ class Bridge:
 
         Raises NetworkError where the ecology or the world cannot be reached.
         """
-        self._host = Host(session(), ecology, self.complain)
+        self._host = Host(session(), ecology, self.complain, self._ontologies)
         thread = threading.Thread(target=self._run, args=(self._host,), name="code of foreign components")
         thread.start()
         opened = False

@@ -7,7 +7,7 @@ a call of a configurator nor the end of its life waits for that code, and so tha
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 from typing import TypeVar
@@ -46,17 +46,25 @@ _Heard = TypeVar("_Heard")
 class Host:
     """Components that share one session and one thread: the thread that calls `run` or `poll`."""
 
-    def __init__(self, bus: Bus, ecology: str, hung: Callable[[str], None] = lambda what: None) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        ecology: str,
+        hung: Callable[[str], None] = lambda what: None,
+        ontologies: Sequence[Path] = (),
+    ) -> None:
         """`hung` is called, on the bus's thread, when code of a component does not return within its deadline.
 
         So it is when an actuator breaks as it is to come to rest: either may act on, and obeys no call any more.
+
+        Some `ontologies` say of which fields signals consist, besides those of selfconf and of the environment.
         """
         self.bus, self.keys = bus, Keys(ecology)
         self.runtimes: list[ComponentRuntime] = []
         self.superseded: str | None = None
         """Why a component had to leave, where another process is the same one."""
         self.code = CodeThread(inline=not bus.run_aside())
-        self._hung = hung
+        self._hung, self._ontologies = hung, tuple(ontologies)
         self._overdue: RunningCode | None = None
         """The code that was found to hang last."""
         if not self.code.inline:
@@ -73,7 +81,7 @@ class Host:
         kind = type(component)
         path = advertisement or kind.advertisement_path()
         profile = _profile(path, kind.__name__, kind.component)
-        fields = signal_fields_of(path, profile)
+        fields = signal_fields_of(path, profile, self._ontologies)
         self._check_alone(profile)
 
         def join(done: Callable[[ComponentRuntime], None]) -> None:
@@ -211,16 +219,18 @@ class Host:
                 self._hung(f"{runtime.profile.component}: `{overdue.what}` has not returned within {overdue.limit:g} s")
 
 
-def signal_fields_of(path: Path, profile: Profile) -> Mapping[IRI, SignalFields]:
+def signal_fields_of(path: Path, profile: Profile, ontologies: Sequence[Path] = ()) -> Mapping[IRI, SignalFields]:
     """The fields of what a component emits, sends along and answers.
 
-    What they are is said by its advertisement, the ontologies of selfconf, and those of the site that has started it.
+    What they are is said by its advertisement, the ontologies of selfconf, those of the site that has started it, and
+    those that are given.
     """
     carried = {signal for port in profile.signal_outputs for signal in port.signals}
     calls = [(port.request, port.response) for port in profile.operations]
     calls += [(port.request, port.response) for port in profile.needed_operations]
     carried.update(one for call in calls for one in call if one is not None)
-    return _signal_fields(path, tuple(files.ontology_files(rendezvous.site_ontologies())), frozenset(carried))
+    others = files.ontology_files([*rendezvous.site_ontologies(), *ontologies])
+    return _signal_fields(path, tuple(others), frozenset(carried))
 
 
 @cache

@@ -18,7 +18,7 @@ def serve_bridge(world: ForeignWorld, site: SiteOptions, complain: Callable[[str
     `site` is what the site of the bridge begins with, but for what it serves.
     """
     with tempfile.TemporaryDirectory(prefix="selfconf-bridge-") as folder:
-        bridge = Bridge(Path(folder), complain)
+        bridge = Bridge(Path(folder), complain, site.ontologies)
         options = replace(site, paths=(Path(folder),))
         serve(options, complain, lambda ecology, session: bridge.living(world, ecology, session))
 

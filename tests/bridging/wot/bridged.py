@@ -23,10 +23,10 @@ HASTY = ThingSettings(rate=50.0, look=0.05, reread=0.05, longest_wait=0.2, limit
 class Bridged:
     """A bridge in an ecology, and what it has complained of."""
 
-    def __init__(self, stage: LivingStage, folder: Path) -> None:
+    def __init__(self, stage: LivingStage, folder: Path, ontologies: tuple[Path, ...]) -> None:
         self.stage, self.folder = stage, folder
         self.complaints: list[str] = []
-        self.bridge = Bridge(folder, self.complaints.append)
+        self.bridge = Bridge(folder, self.complaints.append, ontologies)
 
     def lives(self, name: str) -> bool:
         """Whether a thing lives on this side."""
@@ -52,7 +52,7 @@ class Bridged:
 def bridging(stage: LivingStage, folder: Path, *sources: str, settings: ThingSettings = HASTY) -> Iterator[Bridged]:
     """Bridge the things of some sources inside the `with` block."""
     folder.mkdir(exist_ok=True)
-    found = Bridged(stage, folder)
+    found = Bridged(stage, folder, settings.ontologies)
     with found.bridge.living(ThingWorld(sources, settings), stage.ecology, stage.node):
         yield found
     assert until(lambda: not stage.hangs)

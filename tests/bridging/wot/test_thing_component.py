@@ -8,11 +8,12 @@ from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 from typing import Any
 
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Reserve, Wire
 from selfconf.sdk import Component, Response
 from tests.bridging.thing_server import ROB, ThingServer, reply
-from tests.bridging.wot.bridged import active, bridging, button, written
+from tests.bridging.wot.bridged import HASTY, active, bridging, button, written
 from tests.sdk.living import PATIENCE, LivingStage, until
 
 Start = Callable[[], ThingServer]
@@ -234,3 +235,23 @@ def test_a_value_that_is_not_of_its_signal_type_is_blamed_on_the_thing(
         server.values["/on"] = "maybe"
         assert until(lambda: found.causes())
         assert "what it emits on 'on'" in found.causes()[0]
+
+
+def test_so_is_a_value_that_is_not_of_a_type_of_further_ontologies(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server, ontology = thing_server(), tmp_path / "own.ttl"
+    ontology.write_text(
+        f"@prefix rob: <{ROB}> . @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n"
+        '<urn:x:Level> rob:field ( [ rob:fieldName "litres" ; rob:datatype xsd:double ] ) .'
+    )
+    server.values["/on"] = 2.5
+    level = {"on": {"@type": "urn:x:Level", "type": "number", "forms": [{"href": "on"}]}}
+    source, settings = written(tmp_path, server.describe(properties=level)), replace(HASTY, ontologies=(ontology,))
+    with bridging(living, tmp_path / "ads", source, settings=settings) as found:
+        values = found.heard("lamp", "on")
+        active(found)
+        assert until(lambda: {"litres": 2.5} in values)
+        server.values["/on"] = "full"
+        assert until(lambda: found.causes())
+        assert "what it emits on 'on' has 'full' as 'litres'" in found.causes()[0]
