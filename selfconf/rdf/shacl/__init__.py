@@ -2,10 +2,10 @@
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
 makes tests of the constraints that can be; two `exclude` each other if no value passes both. `misfit`, `unfit`,
-`of_values`, `said_twice`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE` and `ILL_FORMED` say what may stand as a value
-of SHACL's own properties. `component_parameters` are the predicates by which a document constrains by components of its
-own. `pattern` is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is
-`MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL.
+`of_values`, `said_twice`, `LISTS`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE` and `ILL_FORMED` say what may stand as
+a value of SHACL's own properties. `component_parameters` are the predicates by which a document constrains by
+components of its own. `pattern` is a regular expression that a text cannot make expensive (`Pattern`); where that
+cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL.
 Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
@@ -13,6 +13,7 @@ from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, shacl_
 from selfconf.rdf.shacl.shape_syntax import (
     COUNTS,
     ILL_FORMED,
+    LISTS,
     LITERAL,
     ONLY_WITH_A_PATH,
     STATED_ONCE,
@@ -27,6 +28,7 @@ from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled,
 __all__ = [
     "COUNTS",
     "ILL_FORMED",
+    "LISTS",
     "LITERAL",
     "ONLY_WITH_A_PATH",
     "PAIRS",

@@ -84,10 +84,13 @@ def unfit(predicate: IRI) -> str:
 
 
 def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[Term]) -> tuple[Triple, str] | None:
-    """The first statement whose value cannot stand where it does, and a sentence; `variables` may stand anywhere."""
+    """The first statement whose value cannot stand where it does, and a sentence.
+
+    A variable may stand wherever no list has to be: its value is an IRI or a literal.
+    """
     for triple in triples:
         shape, predicate, value = triple
-        if value in variables:
+        if value in variables and predicate not in LISTS:
             continue
         query = _refused(document, value) if predicate == SH.sparql else None
         if query is not None or (predicate in WANTED and not _fits(document, predicate, value)):

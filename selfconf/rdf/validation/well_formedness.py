@@ -31,7 +31,7 @@ from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.read_shapes import ReadShapes
-from selfconf.rdf.shacl import COUNTS, ILL_FORMED, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
+from selfconf.rdf.shacl import COUNTS, ILL_FORMED, LISTS, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.vocabulary import SC
@@ -99,8 +99,8 @@ def _with_samples(graph: Graph) -> Graph:
     shapes = Graph()
     for subject, predicate, value in graph:
         sample = samples.get(value, value)
-        if sample is None and (predicate == RDF.first or predicate == SH.hasValue):
-            sample = value  # any term will do there
+        if str(predicate) in LISTS or (sample is None and (predicate == RDF.first or predicate == SH.hasValue)):
+            sample = value  # no parameter will do for a list, and any term as a member
         if sample is not None:
             shapes.add((subject, predicate, sample))
     for prefix, namespace in graph.namespaces():

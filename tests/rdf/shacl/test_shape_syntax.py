@@ -78,7 +78,14 @@ def test_of_a_constraint_in_sparql_the_query_is_named() -> None:
     assert found[0][1] == SH.select
 
 
-def test_a_parameter_may_stand_anywhere() -> None:
+def test_a_parameter_is_no_list() -> None:
+    document = parse(f"{PREFIXES}:r sh:in :n .", "r.ttl")
+    found = misfit(document, list(document.triples()), frozenset({iri("n")}))
+    assert found is not None
+    assert found[1] == "The value of sh:in has to be a list in parentheses"
+
+
+def test_a_parameter_may_stand_wherever_no_list_has_to_be() -> None:
     document = parse(f"{PREFIXES}:r sh:minCount :n .", "r.ttl")
     assert misfit(document, list(document.triples()), frozenset({iri("n")})) is None
     assert misfit(document, list(document.triples()), frozenset({IRI("urn:other")})) is not None

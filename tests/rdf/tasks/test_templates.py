@@ -153,7 +153,7 @@ def test_whatever_validation_refuses_in_a_template_or_task_its_reader_refuses(pa
 def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
     task = read(
         f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :n . {ROLE} :n a sc:Parameter ; sc:name 'n' ."
-        " :r sh:property [ sh:path rob:place ; sh:minCount :n ; sh:in :n ; sh:pattern :n ; sh:minInclusive :n ] ."
+        " :r sh:property [ sh:path rob:place ; sh:minCount :n ; sh:in ( :n ) ; sh:pattern :n ; sh:minInclusive :n ] ."
     )
     assert [parameter.in_shape for parameter in task.template.parameters] == [True]
 
