@@ -8,6 +8,9 @@ nothing of what it is sent. uvicorn bounds the size of a head and the time betwe
 from __future__ import annotations
 
 import asyncio
+import errno
+import logging
+import math
 from typing import Any
 
 import h11
@@ -19,6 +22,31 @@ UNREAD_SECONDS = 30.0
 """Seconds for which an answer waits that is not taken, beyond the buffers of 64 KiB here and those of the system."""
 MOST_CONNECTIONS = 400
 """Connections at a time; a browser has up to six, one of them for the stream of events."""
+
+
+REFUSED_AGAIN = 60.0
+"""Seconds after which it is said again that the system lets no connection be taken."""
+
+log = logging.getLogger(__name__)
+
+
+class LoopFaults:
+    """Reports what goes wrong on a loop of asyncio: where no connection can be taken, once a minute.
+
+    asyncio tries again and again, and would log thousands of times a second why it fails.
+    """
+
+    def __init__(self) -> None:
+        self._refused = -math.inf
+
+    def __call__(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Take a fault in, as `asyncio.loop.set_exception_handler` has it."""
+        error = context.get("exception")
+        if not (isinstance(error, OSError) and error.errno in (errno.EMFILE, errno.ENFILE)):
+            loop.default_exception_handler(context)
+        elif loop.time() - self._refused >= REFUSED_AGAIN:
+            self._refused = loop.time()
+            log.error("no further connection can be taken: %s; allow more (`ulimit -n`)", error.strerror)
 
 
 class BoundedConnection(H11Protocol):

@@ -24,7 +24,7 @@ from selfconf.model.setting_names import setting
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
-from selfconf.serve.connections import BoundedConnection
+from selfconf.serve.connections import BoundedConnection, LoopFaults
 from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
 from selfconf.serve.look_endpoint import Onlookers
@@ -135,6 +135,7 @@ async def _serve(
     listening: Callable[[str], None],
 ) -> None:
     loop, metrics = asyncio.get_running_loop(), Metrics()
+    loop.set_exception_handler(LoopFaults())
     board = Board(membership.ecology, metrics)
     sparql = SparqlEndpoint(record.dataset, metrics, options.seconds)
     host, port = place.getsockname()[:2]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import socket
 import threading
 import time
@@ -13,7 +14,7 @@ import pytest
 import uvicorn
 
 from selfconf.serve import connections
-from selfconf.serve.connections import BoundedConnection
+from selfconf.serve.connections import BoundedConnection, LoopFaults
 
 SHORT = 0.3
 LARGE = 400
@@ -133,3 +134,22 @@ def test_who_opens_connections_without_an_end_is_served_no_longer_than_the_other
     assert answered(place)
     for link in held:
         link.close()
+
+
+def test_that_no_file_is_left_for_a_connection_is_said_once_and_other_faults_as_always(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refused = {"message": "socket.accept() out of system resource", "exception": OSError(errno.EMFILE, "Too many")}
+    monkeypatch.setattr(connections, "REFUSED_AGAIN", 60.0)
+
+    async def play() -> None:
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(LoopFaults())
+        for context in (refused, refused, {"message": "broken", "exception": ValueError("x")}):
+            loop.call_exception_handler(context)
+        monkeypatch.setattr(connections, "REFUSED_AGAIN", 0.0)
+        loop.call_exception_handler(refused)
+
+    asyncio.run(play())
+    sentence = "no further connection can be taken: Too many; allow more (`ulimit -n`)"
+    assert [record.getMessage().splitlines()[0] for record in caplog.records] == [sentence, "broken", sentence]
