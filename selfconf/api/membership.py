@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Callable
 
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.zenoh import ZenohBus, client
@@ -24,8 +25,11 @@ class Membership:
     credentials: Credentials | None = None
     """None without keys."""
 
-    def connect(self) -> ZenohBus:
-        """A bus that is connected to a hub which lets this program in. Raises NetworkError."""
+    def connect(self, distrusted: Callable[[], None] = lambda: None) -> ZenohBus:
+        """A bus that is connected to a hub which lets this program in. Raises NetworkError.
+
+        `distrusted` is called on its thread, each second, once the certificate of this program was revoked.
+        """
         with suspended_sites_named(self.endpoints):
             bus = client(list(self.endpoints), credentials=self.credentials)
         if self.credentials is not None:
@@ -33,7 +37,7 @@ class Membership:
 
             try:
                 introduce(bus, self.ecology, self.credentials)
-                CertificateWatch(bus, self.ecology, self.credentials)
+                CertificateWatch(bus, self.ecology, self.credentials, distrusted=distrusted)
             except BaseException:
                 bus.close()
                 raise

@@ -257,3 +257,20 @@ def test_a_site_that_is_revoked_ends_though_all_are_connected_to_its_hub(home: H
     )
     assert again.ended() == 2
     assert "revoked" in again.complaints
+
+
+@of_keys
+@pytest.mark.process
+def test_a_run_that_is_revoked_ends_and_says_so(home: Home) -> None:
+    assert home.authority is not None
+    alice = home.folder / "alice"
+    home.authority.issue(ALICE, alice)
+    for name in ("sonar", "encoder", "tracker", "control", "drive"):
+        dormant(home, name)
+    home.site("kitchen", "ads")
+    task = home.run("--keys", str(alice))
+    task.act("running")
+    home.authority.revoke(ALICE)
+    assert task.ended() == 2
+    assert "has ended, as the certificate of this program was revoked" in task.complaints
+    assert home.until(lambda: not home.active("sonar", "encoder", "tracker", "control", "drive"))

@@ -24,7 +24,7 @@ from selfconf.bus.zenoh import ZenohBus
 from selfconf.composition import Composer, TimeLimit
 from selfconf.configurator import Loss
 from selfconf.deployment import RunRequest, TaskRunner
-from selfconf.errors import ProgrammerError
+from selfconf.errors import NetworkError, ProgrammerError
 from selfconf.model.immutable import FrozenMapping, replace
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
@@ -92,7 +92,7 @@ class Run:
         """The refusal that was explained last, of which ecology, and the explanation."""
         self._work = WorkQueue()
         self._begun: _Begun | None = None
-        self._left = self._ended = False
+        self._left = self._ended = self._revoked = False
         self._membership = membership
         record = task_record(self.task, method, options)
         self._named = bool(options.name)
@@ -118,7 +118,7 @@ class Run:
         """Connect, claim the name, and begin. Raises NetworkError, also for a name that was given and is taken."""
         if self._begun is not None:
             raise ProgrammerError(f"the run of {self.task_name} was entered already; ask the ecology for another run")
-        bus = self._membership.connect()
+        bus = self._membership.connect(self._distrusted)
         try:
             with ExitStack() as undone:
                 tasks = self._tasks(bus)
@@ -170,7 +170,7 @@ class Run:
         """What happens, in order, until the task has ended; does the work of the run while it waits for the next event.
 
         Raises ProgrammerError outside of a `with` statement, in which alone the task runs, and SelfconfError where the
-        shapes of the task cannot be judged, once everything is taken down.
+        shapes of the task cannot be judged, or the certificate of this program was revoked, once all is taken down.
         """
         runner = self._in_ecology().runner
         while True:
@@ -182,6 +182,8 @@ class Run:
                 break
         if runner.trouble is not None:
             raise runner.trouble
+        if self._revoked:
+            raise NetworkError(f"the task {self.task_name} has ended, as the certificate of this program was revoked")
 
     def stop(self) -> None:
         """Take the configuration down; `events` ends when that is done. May be called from any thread.
@@ -238,6 +240,11 @@ class Run:
             )
             self._told = refusal, ecology, explained
         return self._told[2]
+
+    def _distrusted(self) -> None:
+        self._revoked = True
+        if self._begun is not None:
+            self._begun.runner.stop()
 
     def _settle(self, refusal: Refusal | Undecided | None) -> None:
         self._refusal, self._ended = refusal, True
