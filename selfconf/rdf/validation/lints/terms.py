@@ -69,8 +69,13 @@ def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
 def _known(iri: str, index: TermIndex) -> bool:
     if not index.strange(iri):
         return True
-    words = _STANDARD.get(namespace(iri))
-    return words is not None and (URIRef(iri) in words or bool(_MEMBERSHIP.fullmatch(iri)))
+    home = namespace(iri)
+    return _has_word(home, iri[len(home) :]) or bool(_MEMBERSHIP.fullmatch(iri))
+
+
+def _has_word(home: str, name: str) -> bool:
+    """Whether a standard namespace has a word; rdflib cannot say so of a prefix with no name behind it."""
+    return name != "" and home in _STANDARD and URIRef(home + name) in _STANDARD[home]
 
 
 def _meant(file: LintedFile, iri: str) -> str | None:
@@ -100,7 +105,7 @@ def _elsewhere(iri: str, file: LintedFile) -> str | None:
     fixed = (
         []
         if home not in STANDARD and not home.startswith(OWN)
-        else [URIRef(base + name) for base, words in _STANDARD.items() if URIRef(base + name) in words]
+        else [URIRef(base + name) for base in _STANDARD if _has_word(base, name)]
     )
     declared = [term for term in file.index.terms if term[len(namespace(term)) :] == name]
     return min((*map(str, fixed), *declared), default=None)

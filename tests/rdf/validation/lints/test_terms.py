@@ -62,6 +62,13 @@ def test_a_misspelt_term_of_a_loaded_ontology_is_a_warning(text: str, meant: str
     assert (found.code, found.severity, found.hint) == ("SC-L02", Severity.WARNING, f"Did you mean {meant}?")
 
 
+@pytest.mark.parametrize("prefix", ["rdf", "rdfs", "owl", "xsd", "rob"])
+def test_a_prefix_with_no_name_behind_it_is_no_term(prefix: str) -> None:
+    found = only(f":a a sc:Component, :A ; {prefix}: 1 .")
+    assert (found.code, found.hint) == ("SC-L02", None)
+    assert found.message.endswith(f" {prefix}:.")
+
+
 @pytest.mark.parametrize(
     ("text", "meant"),
     [
