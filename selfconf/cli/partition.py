@@ -25,6 +25,7 @@ from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
     from selfconf.api.configuring import Inquiry
+    from selfconf.api.ecology import Ecology
     from selfconf.api.partition_table import PartitionTable, RolePartition
     from selfconf.model.alternative import Alternative
     from selfconf.model.term import IRI
@@ -66,7 +67,7 @@ def run(given: argparse.Namespace) -> int:
     if given.show and given.format != "text":
         raise AuthorError(f"--show {given.show} writes what other tools read as it is; leave out --format")
     task = task_of(given)
-    with closing(given_ecology(given)) as ecology:
+    with closing(_ecology(given)) as ecology:
         strategy = "best" if given.why else "first"
         with progress("looking which components are eligible"):
             inquiry = Inquiry(task, ecology, Method.of(strategy, given.reasoning, given.ontology))
@@ -87,6 +88,15 @@ def run(given: argparse.Namespace) -> int:
     else:
         display("\n".join(line for one in found.roles for line in _lines(one, found.names, why, bool(inquiry.holders))))
     return 0 if found.sufficient else 1
+
+
+def _ecology(given: argparse.Namespace) -> Ecology:
+    """The ecology that the arguments name; an empty one for a shape, which says the same of any, if they name none."""
+    if given.show == "shape" and given.ads is None and given.endpoint is None:
+        from selfconf.api.reading import read
+
+        return read()
+    return given_ecology(given)
 
 
 def _exported(inquiry: Inquiry, how: str) -> str:

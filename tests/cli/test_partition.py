@@ -159,6 +159,12 @@ def test_each_role_as_a_shape_gives_the_same_candidates(
         assert components - outside == set(expected[role])
 
 
+def test_a_shape_needs_no_ecology(home: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    at = home.index("--ads")
+    alone = (*home[:at], *home[at + 2 :])
+    assert told(capsys, *alone, "--show", "shape") == told(capsys, *home, "--show", "shape")
+
+
 def test_a_role_beyond_sparql_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "t.ttl").write_text(
         PREFIXES + ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:property [ sh:path :p ; sh:equals :q ] ."
