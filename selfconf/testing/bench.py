@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from selfconf.model.run_event import CallDeclined, ComponentLost
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.advertisements import Advertisement, read_advertisements
 from selfconf.rdf.turtle import ntriples
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import SC, XSD
 from selfconf.sdk import Component, Refused, Response, Signal
 from selfconf.testing.memory_ecology import MemoryEcology, MemoryRun
 
@@ -138,7 +139,8 @@ class ComponentBench:
     def start(self, **parameters: str | int | float | bool) -> None:
         """Activate the component, with values for its operational parameters by name.
 
-        Raises ProgrammerError if it declines, breaks, acts already, or declares no parameter of that name.
+        Raises ProgrammerError if it declines, breaks, acts already, or declares no parameter of that name, and where a
+        value is none that a parameter is set to.
         """
         if self.active:
             raise ProgrammerError(f"{self.profile.component.short} acts already; stop it first")  # it would be awaited
@@ -248,15 +250,21 @@ class ComponentBench:
         unknown = sorted(parameters.keys() - types.keys())
         if unknown:
             raise ProgrammerError(f"{self.profile.component.short} declares no parameter {unknown[0]!r}")
-        said = [f"; sc:sets [ sc:parameterType <{types[n]}> ; sc:value {_turtle(v)} ]" for n, v in parameters.items()]
+        said = [
+            f"; sc:sets [ sc:parameterType <{types[n]}> ; sc:value {_turtle(n, v)} ]" for n, v in parameters.items()
+        ]
         return " ".join(said)
 
 
-def _turtle(value: str | int | float | bool) -> str:
-    """A value as Turtle writes it."""
-    if isinstance(value, bool):
+def _turtle(name: str, value: object) -> str:
+    """The value of a parameter as Turtle writes it. Raises ProgrammerError where the parameter cannot be set to it."""
+    if isinstance(value, str):
+        return Literal(value).turtle(str)
+    if isinstance(value, bool | int):
         return str(value).lower()
-    return Literal(value).turtle(str) if isinstance(value, str) else f"{value!r}{'e0' * isinstance(value, float)}"
+    if isinstance(value, float) and isfinite(value):
+        return Literal(str(value), XSD.double).turtle(repr)
+    raise ProgrammerError(f"a parameter is set to text, a finite number or a truth value; {name} is not, by {value!r}")
 
 
 def _interaction(source: str, output: str, sink: str, port: str) -> str:

@@ -68,6 +68,19 @@ def test_parameters_are_set_as_what_they_are() -> None:
     assert bench.emitted["heating"] == [{"on": False}]
 
 
+@pytest.mark.parametrize("value", [1e-7, 1e22, -0.5, 3, -4, True, "1e-7"])
+def test_a_parameter_is_set_to_any_number_or_text(value: Any) -> None:
+    thermostat = Thermostat()
+    ComponentBench(thermostat, ADVERTISEMENT).start(wanted=value)
+    assert (type(thermostat.wanted), thermostat.wanted) == (type(value), value)
+
+
+@pytest.mark.parametrize("value", [None, float("inf"), [1]])
+def test_what_no_parameter_is_set_to_is_named(value: Any) -> None:
+    with pytest.raises(ProgrammerError, match="a finite number or a truth value; wanted is not, by"):
+        ComponentBench(Thermostat(), ADVERTISEMENT).start(wanted=value)
+
+
 def test_time_is_turned_by_hand() -> None:
     bench = ComponentBench(Thermostat(), ADVERTISEMENT)
     bench.start()
