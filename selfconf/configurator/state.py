@@ -91,6 +91,11 @@ class Loss:
     """Whether its process has ended, or is about to, and its site can start it again."""
 
     @property
+    def why(self) -> str:
+        """The cause, with its detail if there is one, for people."""
+        return f"{self.cause.value}, {self.detail}" if self.detail else self.cause.value
+
+    @property
     def lasts(self) -> bool:
         """Whether it was lost for what is known of a life that goes on: it is lost until it lives anew."""
         excused = self.busy or self.startable or self.cause is Cause.CRASH

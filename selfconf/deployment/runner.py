@@ -336,7 +336,7 @@ class TaskRunner:
     @property
     def losses(self) -> Mapping[IRI, str]:
         """Why each component was lost, for people, as of now; of very many those that were lost last."""
-        return FrozenMapping({c: f"{loss.cause.value}, {loss.detail}" for c, loss in self._newest_losses()})
+        return FrozenMapping({component: loss.why for component, loss in self._newest_losses()})
 
     def _newest_losses(self) -> Iterable[tuple[IRI, Loss]]:
         lost = self.state.lost

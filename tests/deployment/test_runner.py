@@ -262,6 +262,14 @@ def test_of_very_many_losses_the_newest_are_told_so_that_the_status_can_be_sent(
     assert list(told) == list(agent.losses) == list(lost)[-LOSSES_TOLD:]
 
 
+def test_why_a_component_was_lost_is_its_cause_where_nothing_else_is_known(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.components["tracker"].fail("")
+    lab.let_pass(1.0)
+    assert agent.losses == {iri("person-tracker"): "fail"}
+
+
 def test_however_many_components_come_back_at_once_it_is_found_out_once_what_may_come_next(
     lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
