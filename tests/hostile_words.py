@@ -32,7 +32,7 @@ TEMPLATE = f"""{PREFIXES}
 @prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .
 :task a sc:Template ; sc:roles ( :watch :listen :reach :tell ) .
 :watch a sc:Role ; sh:class :Camera ; sc:feeds :tell ;
-    sh:property [ sh:path :model ; sh:minCount 1 ; sh:pattern "{WORD}" ; sh:pattern "\\\\S$" ] ,
+    sh:property [ sh:path :model ; sh:minCount 1 ; sh:pattern "{WORD}" ] , [ sh:path :model ; sh:pattern "\\\\S$" ] ,
         [ sh:path :twice ; sh:pattern "^(?=(\\\\w+)+$)" ] , [ sh:path :size ; sh:minExclusive 0.0 ] ,
         [ sh:path :weight ; sh:minInclusive 1 ; sh:maxInclusive 20 ] .
 :listen a sc:Role ; sh:class :Ear ;

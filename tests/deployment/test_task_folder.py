@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import logging
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -82,11 +83,10 @@ def test_a_folder_that_cannot_be_read_is_named_and_the_site_goes_on_without_its_
 ) -> None:
     TaskFolder(tmp_path).learn(FIRST)
 
-    def refuse(path: object = ".") -> list[str]:
+    def refuse(folder: Path) -> Iterator[Path]:
         raise trouble
 
-    monkeypatch.setattr(os, "listdir", refuse)
-    monkeypatch.setattr(os, "scandir", refuse)  # who is root may read every folder
+    monkeypatch.setattr(Path, "iterdir", refuse)  # who is root may read every folder
     with caplog.at_level(logging.ERROR):
         assert TaskFolder(tmp_path).records == {}
     assert f"the tasks in {tmp_path} cannot be read, and this site runs none of them" in caplog.text
