@@ -2,6 +2,7 @@
 
     python -m supply.pins installer            prints the part for pip, which installs the others
     python -m supply.pins select build sim     prints the part for these extras, for `pip install --require-hashes`
+    python -m supply.pins select --half 1 dev  prints half of that part: two pips install it side by side
     python -m supply.pins renew [--upgrade]    writes the file; needs uv (`pip install uv`), and the registry of pip
 
 The file has the SHA-256 of every file of every version, for all platforms, and names no registry. pip takes hashes from
@@ -37,8 +38,11 @@ def requirements(text: str) -> Iterator[tuple[frozenset[str], str]]:
         yield frozenset(who.split()), requirement
 
 
-def selected(text: str, extras: Collection[str]) -> str:
-    """The requirements of the core and of some extras, or of `build`. Raises SystemExit for an extra without any."""
+def selected(text: str, extras: Collection[str], half: int | None = None) -> str:
+    """The requirements of the core and of some extras, or of `build`: all, or the first or second half.
+
+    Neither half is all of the large ones. Raises SystemExit for an extra without any.
+    """
     found = list(requirements(text))
     unknown = set(extras).difference(*(who for who, _ in found))
     if unknown:
@@ -46,7 +50,8 @@ def selected(text: str, extras: Collection[str]) -> str:
             f"{FILE}: nothing is pinned for {', '.join(sorted(unknown))}; type: python -m supply.pins renew"
         )
     wanted = {CORE, *extras}
-    return "".join(f"{requirement}\n" for who, requirement in found if who & wanted)
+    chosen = [f"{requirement}\n" for who, requirement in found if who & wanted]
+    return "".join(chosen if half is None else chosen[half - 1 :: 2])
 
 
 def installer(text: str) -> str:
@@ -126,13 +131,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="the pinned versions in requirements.txt")
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("installer", help="print that of pip")
-    commands.add_parser("select", help="print those of some extras").add_argument("extras", nargs="*")
+    select = commands.add_parser("select", help="print those of some extras")
+    select.add_argument("extras", nargs="*")
+    select.add_argument("--half", type=int, choices=[1, 2], help="print one half of them alone")
     commands.add_parser("renew", help="write them anew").add_argument("--upgrade", action="store_true")
     given = parser.parse_args()
     if given.command == "installer":
         sys.stdout.write(installer(FILE.read_text("utf-8")))
     elif given.command == "select":
-        sys.stdout.write(selected(FILE.read_text("utf-8"), given.extras))
+        sys.stdout.write(selected(FILE.read_text("utf-8"), given.extras, given.half))
     else:
         FILE.write_text(renew(given.upgrade), "utf-8")
 

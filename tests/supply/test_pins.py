@@ -85,6 +85,16 @@ def test_the_core_is_selected_without_what_it_does_not_need_and_in_a_bare_python
     assert "hatchling" in pinned(selected(TEXT, ["build"]))
 
 
+def test_two_halves_are_the_whole() -> None:
+    extras = ("dev", "sim")
+    whole, one, other = (
+        [line for line in selected(TEXT, extras, half).splitlines() if not line.startswith(" ")]
+        for half in (None, 1, 2)
+    )
+    assert sorted([*one, *other]) == sorted(whole)
+    assert len(one) - len(other) in (0, 1)
+
+
 def test_the_installer_is_pip_alone_and_is_selected_in_a_bare_python() -> None:
     command = [sys.executable, "-I", "-S", str(ROOT / "supply" / "pins.py"), "installer"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path("/")).stdout
