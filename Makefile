@@ -12,7 +12,7 @@ SEEDS  ?= 20
 # as containers with this variable have it, costs a minute and more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-keys quick nightly foreign mangled faults fuzz check beside-the-tests audit package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test test-keys quick nightly foreign mangled faults fuzz check audit package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -81,14 +81,10 @@ faults: $(VENV)/with-dev
 fuzz: $(VENV)/with-dev
 	$(BIN)/python -m benchmarks.fuzz --number 60 --seed $$(date +%j) --show
 
-# What is over in seconds comes first. What takes longer, and only computes, has what time the tests leave: these wait
-# for programs now and then.
+# What looks at the files and what builds the package wait for each other in no way; the tests use all processors.
 check: $(VENV)/with-dev
-	@$(MAKE) --jobs=2 --output-sync=target lint floors shapes docs-check
-	@$(MAKE) --jobs=2 test beside-the-tests
-
-beside-the-tests: $(VENV)/with-dev
-	@nice -n 5 $(MAKE) --output-sync=target types package audit
+	@$(MAKE) --jobs=2 --output-sync=target lint types floors shapes docs-check package audit
+	@$(MAKE) test
 
 package: $(VENV)/with-dev
 	.ci/package
