@@ -46,7 +46,7 @@ def _interrupt() -> None:
     import os
     import time
 
-    time.sleep(INTERRUPT_AGAIN)
+    time.sleep(INTERRUPT_AGAIN)  # until the callback is over in which an exception is ignored
     os.kill(os.getpid(), 2)  # SIGINT; the module `signal` may be what is being loaded
 
 
