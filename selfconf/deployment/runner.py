@@ -130,7 +130,7 @@ class TaskRunner:
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._lives = HeldLives(self.ecology)
-        context = TaskContext(self.ecology, lambda: self.state, self._step, self._report, self._report_all)
+        context = TaskContext(self.ecology, lambda: self.state, self._step, self._report)
         self._waking = Waking(context, self._lives)
         self._ends = PortEnds(self.ecology, request.outside)
         self._calls = Calls(context, self.identity, self.supervisor, self._lives, self._waking, self._ends)
@@ -360,14 +360,15 @@ class TaskRunner:
     def _report(self, event: AnyRunEvent) -> None:
         """Note an event with its time, and report it when there is nothing more urgent to do."""
         if not self._unreported:
-            self.bus.later(AT_LEISURE, self._report_all)
+            self.bus.later(AT_LEISURE, self.report_all)
         self._unreported.append(replace(event, time=self.clock()))
 
     def explained(self, event: TaskWaiting, refusal: Refusal) -> None:
         """Tell observers what else was found out about an event that was reported; may be called from any thread."""
         self.bus.wake_up(lambda: self._notices.amend(event, replace(event, refusal=refusal)))
 
-    def _report_all(self) -> None:
+    def report_all(self) -> None:
+        """Report now all that has happened; called in the thread of the bus."""
         unreported, self._unreported = self._unreported, []
         for event in unreported:
             self._notices.put(event)
@@ -429,7 +430,7 @@ class TaskRunner:
         refusal, lost, owed = effect.refusal, self.losses, self._out_of_control
         self._report(TaskStopped(lost=lost, owed=owed) if refusal is None else TaskRefused(refusal, lost, owed))
         try:
-            self._report_all()
+            self.report_all()
         finally:  # the end of a task must not depend on what receives the reports
             self._leave()  # a component that could not be released turns itself off now
             self._messages.close()

@@ -21,5 +21,3 @@ class TaskContext:
     """Feeds the machine with an event, and carries out what it wants done."""
     report: EventListener
     """Hears what happens, when there is nothing more urgent to do."""
-    report_all: Callable[[], None]
-    """Lets the listener hear now all that has happened: something is about to begin that may take long."""

@@ -47,7 +47,6 @@ class TaskSearch:
         """`give_up` ends the task where it cannot be searched for."""
         self._bus, self._ecology, self._request, self._liveness = task.ecology.bus, task.ecology, request, liveness
         self._state, self._step, self._report, self._give_up = task.state, task.step, task.report, give_up
-        self._report_all = task.report_all
         self._contingencies = Contingencies(task.ecology.bus, request, self._advertised, lambda: self._runs)
         self._better: _Better | None = None
         """What was answered last when the task ran and looked for something better."""
@@ -101,7 +100,6 @@ class TaskSearch:
                 self._better = _Better(found, effect.lost, outcome, not_judged)
             self._bus.wake_up(lambda: self._searched(composed, seconds, not_judged))
 
-        self._report_all()
         self._outdated = self._request.aside(work)
 
     def prepare(self) -> None:

@@ -68,24 +68,6 @@ def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> No
     assert lab.active() == TASK | {"odometry"}
 
 
-def test_what_has_led_to_a_search_is_reported_before_that_begins(lab: Lab) -> None:
-    heard, before = list[str](), list[list[str]]()
-
-    def aside(work: Callable[[], None]) -> Undo:
-        before.append([*heard])
-        work()
-        return lambda: None
-
-    agent = lab.agent()
-    agent.request = replace(agent.request, report=lambda event: heard.append(event.act))
-    agent._search._request = replace(agent.request, aside=aside)
-    agent._search._contingencies.answer = lambda *_: None  # type: ignore[method-assign]  # else there is no search
-    assert lab.running(agent)
-    lab.components["tracker"].fail("Astrid has left the picture")
-    assert lab.until(lambda: len(before) == 2)
-    assert [acts[-1] for acts in before] == ["discovered", "lost"]
-
-
 def test_a_task_that_runs_searches_for_something_better_once_for_each_change(tmp_path: Path) -> None:
     advertised = SPARE | {"third": SPARE["left"].replace(":left", ":third")}
     lab = Lab(tmp_path, advertised=advertised)

@@ -20,6 +20,7 @@ from selfconf.api.tasks.detached import AS_USUAL, TaskOptions, task_record
 from selfconf.api.tasks.living_tasks import LivingTasks
 from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.api.tasks.work_queue import UNDISTURBED, WorkQueue
+from selfconf.bus.port import Undo
 from selfconf.bus.zenoh import ZenohBus
 from selfconf.composition import Composer, TimeLimit
 from selfconf.configurator import Loss
@@ -106,7 +107,7 @@ class Run:
             suspended_sites=partial(this_machine.suspended_sites, membership.ecology),
             priority=record.priority,
             upgrade=options.upgrade,
-            aside=partial(self._work.work, owner=OF_TASK),
+            aside=self._aside,
             at_leisure=partial(self._work.at_leisure, owner=OF_TASK),
             abandon=partial(self._work.abandon, OF_TASK),  # and not what explains how the task has ended
             record=record,
@@ -240,6 +241,11 @@ class Run:
             )
             self._told = refusal, ecology, explained
         return self._told[2]
+
+    def _aside(self, work: Callable[[], None]) -> Undo:
+        """Have the thread that reads the events do what takes long, once it has read what has led to it."""
+        self._in_ecology().runner.report_all()
+        return self._work.work(work, OF_TASK)
 
     def _distrusted(self) -> None:
         self._revoked = True

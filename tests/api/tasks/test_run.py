@@ -14,6 +14,7 @@ import selfconf as sc
 from selfconf import read, template
 from selfconf.api.membership import Membership
 from selfconf.api.method import Method
+from selfconf.api.tasks import work_queue
 from selfconf.api.tasks.run import Run, WorkQueue
 from selfconf.composition import Composer, TimeLimit
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
@@ -343,6 +344,23 @@ def test_searches_are_done_by_the_thread_that_reads_the_events_and_keep_the_run_
     assert searched_by == [threading.current_thread()]
     assert moments[0] < 0.5  # it takes a few milliseconds; the processors of a test are shared
     assert house.active(*EVERYBODY) == set()
+
+
+def test_what_has_led_to_a_search_is_read_before_that_begins(house: Home, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work_queue, "HELD_UP", 10.0)  # else a search begins where other programs keep this from reading
+    heard, before, answers = list[str](), list[list[str]](), Composer.answers
+
+    def answered(*arguments: Any) -> Any:
+        before.append([*heard])
+        return answers(*arguments)
+
+    monkeypatch.setattr(Composer, "answers", answered)
+    with run(house) as running:
+        for event in running.events():
+            heard.append(event.act)
+            if isinstance(event, TaskRunning):
+                running.stop()
+    assert before[0][-1] == "discovered"
 
 
 def test_work_that_makes_an_event_is_followed_by_it() -> None:
