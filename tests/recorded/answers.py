@@ -13,6 +13,7 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Any
 
@@ -133,6 +134,8 @@ def differences(recorded: Any, found: Any, path: str = "") -> Iterator[str]:
     elif isinstance(recorded, list) and isinstance(found, list) and len(recorded) == len(found):
         for number, pair in enumerate(zip(recorded, found, strict=True)):
             yield from differences(*pair, f"{path}[{number}]")
+    elif isinstance(recorded, list) and isinstance(found, list):
+        yield from _elements(recorded, found, path)
     elif isinstance(recorded, str) and isinstance(found, str) and recorded != found:
         begins = max(0, _same(recorded, found) - 40) if len(recorded) > 300 else 0
         where = f" from character {begins}" if begins else ""
@@ -153,6 +156,16 @@ def _members(recorded: dict[str, Any], found: dict[str, Any], path: str) -> Iter
             yield from differences(recorded[name], found[name], where)
     if list(recorded) != list(found) and set(recorded) == set(found):
         yield f"{path}: members in another order, {list(found)} for {list(recorded)}"
+
+
+def _elements(recorded: list[Any], found: list[Any], path: str) -> Iterator[str]:
+    texts = ([json.dumps(one) for one in values] for values in (recorded, found))
+    for kind, start, stop, new_start, new_stop in SequenceMatcher(None, *texts, autojunk=False).get_opcodes():
+        if kind != "equal":
+            for number in range(start, stop):
+                yield f"{path}[{number}]: is gone, was {_short(recorded[number])}"
+            for number in range(new_start, new_stop):
+                yield f"{path}[{number}]: is new, {_short(found[number])}"
 
 
 def _same(one: str, other: str) -> int:

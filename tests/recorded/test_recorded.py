@@ -74,6 +74,11 @@ def test_a_difference_is_told_with_its_place() -> None:
         "stdout.cost: is gone, was 1",
         'stdout.roles[0].components[0]: was "b", is "c"',
     ]
+    assert list(differences(["a", "b", "d"], ["b", "c", "e", "d"])) == [
+        '[0]: is gone, was "a"',
+        '[1]: is new, "c"',
+        '[2]: is new, "e"',
+    ]
     assert list(differences({"a": 1, "b": 2}, {"b": 2, "a": 1})) == [
         ": members in another order, ['b', 'a'] for ['a', 'b']"
     ]

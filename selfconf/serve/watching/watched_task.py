@@ -16,7 +16,7 @@ TOLD = frozenset(
         *("waiting", "refused", "stopped", "detached", "cut off", "connected", "complaint", "left out"),
     }
 )
-"""The acts of a run that are worth a line on the page."""
+"""The acts of a run that clients of `/events` hear of; which are worth a line, `page/model.js` says."""
 
 _UNKNOWN = Status("", "unknown", IRI.unchecked(""), 0, 0.0)
 """What is said of a task whose configurator has not said anything yet."""
@@ -54,7 +54,7 @@ class WatchedTask:
         self.lost = {component: why for component, why in self.lost.items() if component in status.lost}
 
     def hear(self, notice: Notice) -> Body | None:
-        """Note an event; return it as the page shows it, or None if it is known or not worth a line."""
+        """Note an event; return it as clients hear of it, or None if it is known or they do not."""
         if notice.sequence <= self.sequence:
             if notice.sequence == self._waits_since:  # it comes once more when its refusal is explained
                 self.refusal = checked_event(notice.event).get("refusal") or self.refusal
