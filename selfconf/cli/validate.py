@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     from selfconf.cli.reports import RENDERERS, text
 
     with progress("validating"):
-        result = validate(paths, ontologies=arguments.ontology, cache=arguments.cache)
+        result = validate(paths, ontologies=_ontologies(arguments, paths), cache=arguments.cache)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
     display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
     complain(text.summary(result))
@@ -95,6 +95,16 @@ def _project_paths(project: Project) -> list[Path]:
     """
     ads = (path for path in project.values.get("ads", ()) if path.exists())
     return [project.path, *ads] if project.path.is_file() else []
+
+
+def _ontologies(arguments: argparse.Namespace, paths: Iterable[str | Path]) -> list[str | Path]:
+    """The ontologies that are given, without those that are not there of a project file that is checked itself."""
+    ontologies: list[str | Path] = arguments.ontology
+    project = arguments.project.path.resolve()
+    checked = any(project.is_relative_to(Path(path).resolve()) for path in paths)
+    if "ontology" not in arguments.from_project or not checked:
+        return ontologies
+    return [path for path in ontologies if Path(path).exists()]
 
 
 def explanation(code: str) -> str:

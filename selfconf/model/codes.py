@@ -554,12 +554,12 @@ CODES: tuple[Code, ...] = (
         Severity.WARNING,
     ),
     Code(
-        "SC-O03", "A field of a kind of signal has one name and one datatype; it may be repeated and optional.",
+        "SC-O03", "A kind of signal has one list of fields, each of which has one name and one datatype.",
         "What an output emits is checked against these fields, so that a wrong signal is blamed on who sent it.",
         ':Bell a owl:Class ; rdfs:label "bell"@en ; rob:field ( [ rob:fieldName "rings" ] ) .',
         ':Bell a owl:Class ; rdfs:label "bell"@en ;\n'
         '    rob:field ( [ rob:fieldName "rings" ; rob:datatype xsd:unsignedInt ] ) .',
-        ("FieldsOnce", "FieldName", "FieldDatatype", "FieldRepeated", "FieldOptional"),
+        ("FieldsOnce", "FieldsListed", "FieldName", "FieldDatatype", "FieldRepeated", "FieldOptional"),
     ),
     Code(
         "SC-L01", "Terms of sc: and sh: are spelt as they are declared.",

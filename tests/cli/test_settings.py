@@ -224,6 +224,17 @@ def test_advertisements_that_are_not_there_are_one_mistake_of_the_project_file(
     assert f"1 error in 1 of {len(ADVERTISEMENTS) + 1} files." in outcome.err
 
 
+@pytest.mark.parametrize("named", ["", "..", "../selfconf.toml"])
+def test_an_ontology_that_is_not_there_is_a_mistake_of_the_project_file_where_that_is_checked(
+    project: Path, capsys: pytest.CaptureFixture[str], named: str
+) -> None:
+    (project / "selfconf.toml").write_text('ontology = "nowhere.ttl"')
+    outcome = run(capsys, "validate", *filter(None, [named]))
+    assert outcome.code == 1
+    assert "selfconf.toml:1:1: error[SC-P05]: There is no file or folder nowhere.ttl." in outcome.out
+    assert run(capsys, "validate", "../home").code == 2
+
+
 def test_the_file_counts_for_the_commands_below_a_command_too(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -44,23 +44,25 @@ def unjoined_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
 
 def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
     """Roles that say by their own type, or by a target alone, of which class their component should be."""
+    for role, said, kind in _told_otherwise(file):
+        name = file.short(kind)
+        message = (
+            f"This says that the role is a component of the type {name}; it asks for none."
+            if said == RDF.type
+            else f"A target asks nothing of a component, so one that is no {name} may play this role."
+        )
+        offset = file.positions.triples[role, said, kind].object
+        yield at(file.positions, offset, "SC-L14", message, hint=f"Write sh:class {name}.")
+
+
+def _told_otherwise(file: LintedFile) -> Iterator[tuple[Node, URIRef, URIRef]]:
+    """Each role with a class of components that it names otherwise than by `sh:class`, and by what."""
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
         asked = (role, SH["class"], None) in file.graph
         for said, ignored in ((RDF.type, False), (SH.targetClass, asked)):
             for kind in () if ignored else file.graph.objects(role, said):
                 if isinstance(kind, URIRef) and (said == SH.targetClass or file.index.serves(str(kind), SC.Component)):
-                    yield _typed_role(file, role, said, kind)
-
-
-def _typed_role(file: LintedFile, role: Node, said: URIRef, kind: URIRef) -> Diagnostic:
-    name = file.short(kind)
-    message = (
-        f"This says that the role is a component of the type {name}; it asks for none."
-        if said == RDF.type
-        else f"A target asks nothing of a component, so one that is no {name} may play this role."
-    )
-    offset = file.positions.triples[role, said, kind].object
-    return at(file.positions, offset, "SC-L14", message, hint=f"Write sh:class {name}.")
+                    yield role, said, kind
 
 
 def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:
@@ -75,9 +77,9 @@ def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:
         for role in graph.objects(interaction, URIRef(end))
     }
     asked = {*graph.subjects(URIRef(SC.sets)), *graph.objects(None, URIRef(SC.of)), *joined}
-    for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - asked:
-        told = set(graph.objects(role, RDF.type)) - {URIRef(SC.Role), SH.NodeShape}  # SC-L14 says what is meant
-        if not told and entails(every, NormalForm(file.source, (role,))):
+    told = {role for role, _, _ in _told_otherwise(file)}  # SC-L14 says what is meant
+    for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - asked - told:
+        if entails(every, NormalForm(file.source, (role,))):
             message = f"Every component meets the shape of the role {file.short(str(role))}, so any may play it."
             hint = "Say of which class its component is, by sh:class."
             yield at(file.positions, file.offset(role), "SC-L27", message, hint=hint)

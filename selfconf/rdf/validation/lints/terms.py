@@ -162,11 +162,16 @@ def _confused(file: LintedFile, iri: str, meant: str, offset: int) -> Diagnostic
 
 
 def ownerless_ports(file: LintedFile) -> Iterator[Diagnostic]:
-    """Ports that no component has: with a signal type, and without anything that has them."""
-    for signal, link in ((_SC.signalType, "sc:hasInput or sc:hasOutput"), (_SC.parameterType, "sc:hasParameter")):
-        for node in sorted(set(file.graph.subjects(URIRef(signal))), key=file.offset):
-            if (None, None, node) not in file.graph:
-                message = "No component has this port." if signal == _SC.signalType else "Nothing has this parameter."
+    """Ports that no component has: with a signal type, and without anything that has them; and components with one."""
+    for kind, link in ((_SC.signalType, "sc:hasInput or sc:hasOutput"), (_SC.parameterType, "sc:hasParameter")):
+        part = "port" if kind == _SC.signalType else "parameter"
+        for node in sorted(set(file.graph.subjects(URIRef(kind))), key=file.offset):
+            if (node, RDF.type, URIRef(_SC.Component)) in file.graph:
+                said = file.positions.triples[next(file.graph.triples((node, URIRef(kind), None)))].predicate
+                message = f"{file.short(kind)} says nothing of a component, so this is passed over."
+                yield at(file.positions, said, "SC-L25", message, hint=f"Say it of a {part} in brackets, by {link}.")
+            elif (None, None, node) not in file.graph:
+                message = "No component has this port." if part == "port" else "Nothing has this parameter."
                 yield at(file.positions, file.offset(node), "SC-L17", message, hint=f"Say whose it is, by {link}.")
 
 
