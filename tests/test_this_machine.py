@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -41,6 +42,12 @@ def test_a_site_that_has_announced_itself_is_found(runtime_folder: Path) -> None
     assert rendezvous.find(None, []) == ("home", [meeting().endpoint, *usual_endpoints("home")])
     path.unlink()
     assert this_machine.local_sites() == []
+
+
+def test_the_file_of_a_site_is_as_the_protocol_shows_it() -> None:
+    page = (Path(__file__).parents[1] / "docs" / "protocol.md").read_text("utf-8")
+    (shown,) = re.findall(r'^(\{"ecology".*?\})$', page, re.DOTALL | re.MULTILINE)
+    assert list(json.loads(shown)) == list(json.loads(this_machine.announce(meeting()).read_text()))
 
 
 def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:

@@ -125,7 +125,7 @@ class Verdict(str, Enum):
 
 @immutable
 class CallAnswer:
-    """The answer to a call: the verdict, the component's life, and the newest epoch it has obeyed."""
+    """The answer to a call: the verdict, the component's life, and the newest epoch obeyed for the task of the call."""
 
     verdict: Verdict
     component: IRI
