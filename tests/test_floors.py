@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import configparser
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +15,14 @@ def test_the_floors_are_kept() -> None:
     lint = Path(sys.executable).parent / "lint-imports"
     outcome = subprocess.run([lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert outcome.returncode == 0, outcome.stdout
+
+
+def test_the_page_of_the_architecture_has_each_package_on_a_floor() -> None:
+    contracts = configparser.ConfigParser()
+    contracts.read(ROOT / ".importlinter")
+    layers = set(re.findall(r"\w+", contracts["importlinter:contract:floors"]["layers"]))
+    rows = re.findall(r"^\| \d+ \| .* \|$", (ROOT / "docs" / "architecture.md").read_text("utf-8"), re.MULTILINE)
+    assert layers - {"__main__"} - set(re.findall(r"`(\w+)(?:/|\.py)`", "\n".join(rows))) == set()
 
 
 def test_no_module_has_a_name_that_says_nothing() -> None:
