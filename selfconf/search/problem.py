@@ -90,6 +90,10 @@ class Problem:
         A parameter that is also set needs a value of the domain, as does one that lists its values.
         """
 
+    def __repr__(self) -> str:
+        """The task and the partition, as a property that fails prints them."""
+        return f"Problem({self.task!r}, {self.partition!r})"
+
     @property
     def unvalued(self) -> tuple[tuple[int, str], ...]:
         """The roles that set something to a parameter that has no value and can get none, with its name.
