@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -98,15 +99,16 @@ def _name(requirement: str) -> str:
 
 def _compile(arguments: Sequence[str], out: Path) -> None:
     """Let uv resolve something for all platforms, by the registry that pip is configured for."""
-    command = ["uv", "pip", "compile", *arguments, "--universal", "--python-version", OLDEST_PYTHON, "--quiet"]
+    uv = shutil.which("uv", path=os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", ""))))
+    if uv is None:
+        raise SystemExit("uv, which resolves for all platforms, is not installed; type: pip install uv")
+    command = [uv, "pip", "compile", *arguments, "--universal", "--python-version", OLDEST_PYTHON, "--quiet"]
     hidden = ["--no-header", "--no-annotate", "--no-emit-index-url", "--no-emit-find-links"]
     asked = [sys.executable, "-m", "pip", "config", "get", "global.index-url"]
     index = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip()
     environment = {**({"UV_DEFAULT_INDEX": index} if index else {}), **os.environ}
     try:
         subprocess.run([*command, *hidden, "--output-file", str(out)], cwd=ROOT, env=environment, check=True, stdout=-3)
-    except FileNotFoundError:
-        raise SystemExit("uv, which resolves for all platforms, is not installed; type: pip install uv") from None
     except subprocess.CalledProcessError as error:
         raise SystemExit(error.returncode) from None
 

@@ -23,7 +23,7 @@ HELD = 0.2
 """Seconds for which a terminal that is held (Ctrl-S) is waited for, so that it holds up nothing else."""
 
 
-class Progress:
+class ProgressLine:
     """One thing after the other that may take long, shown on the terminal that standard error leads to, if it does."""
 
     def __init__(self) -> None:
@@ -31,7 +31,7 @@ class Progress:
         self._terminal = sys.stderr if is_shown else None
         self._showing: tuple[threading.Thread, threading.Event] | None = None
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> ProgressLine:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -70,6 +70,6 @@ class Progress:
 @contextmanager
 def progress(what: str) -> Iterator[None]:
     """Show what is done in a block that may take long."""
-    with Progress() as shown:
+    with ProgressLine() as shown:
         shown.begin(what)
         yield

@@ -25,7 +25,7 @@ from selfconf.cli.options import (
     one_ecology,
     task_of,
 )
-from selfconf.cli.progress import Progress
+from selfconf.cli.progress import ProgressLine
 from selfconf.cli.run_lines import LinePrinter, TextLines, json_lines
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError, NetworkError, reason
@@ -142,7 +142,7 @@ def run(given: argparse.Namespace) -> int:
         lines = TextLines(task)
         report, stream = (json_lines, sys.stdout) if given.format == "json" else (lines, sys.stderr)
         printer = LinePrinter(report, stream, running.stop)
-        with Progress() as shown:
+        with ProgressLine() as shown:
             for event in running.events():
                 shown.end()
                 printer.put(event)

@@ -12,7 +12,7 @@ import pytest
 
 from selfconf.cli import progress as module
 from selfconf.cli.main import main
-from selfconf.cli.progress import Progress, progress
+from selfconf.cli.progress import ProgressLine, progress
 from selfconf.cli.run import MAY_TAKE_LONG
 from selfconf.cli.terminal import Terminal
 from selfconf.model.run_event import EcologyAsked, EcologyDiscovered
@@ -62,7 +62,7 @@ def test_what_takes_long_is_shown_in_a_line_that_is_gone_afterwards(screen: Scre
 
 
 def test_what_comes_next_takes_the_place_of_what_was_before(screen: Screen) -> None:
-    with Progress() as shown:
+    with ProgressLine() as shown:
         shown.begin("asking")
         assert screen.shows("asking, ")
         shown.begin("searching")
@@ -94,12 +94,12 @@ def test_a_file_a_program_and_a_simple_terminal_are_shown_nothing(
     screen: Screen, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TERM", "dumb")
-    with progress("searching") as _, Progress() as shown:
+    with progress("searching") as _, ProgressLine() as shown:
         shown.begin("searching")
         assert shown._showing is None
     monkeypatch.setenv("TERM", "xterm")
     shown_on(screen, monkeypatch)  # of which nothing says that it is a terminal
-    with Progress() as shown:
+    with ProgressLine() as shown:
         shown.begin("searching")
         assert shown._showing is None
     assert screen.getvalue() == ""
@@ -128,7 +128,7 @@ def test_commands_that_may_take_long_say_what_they_do(
 ) -> None:
     said = list[str]()
     monkeypatch.chdir(Path(__file__).parents[2])
-    monkeypatch.setattr(Progress, "begin", lambda _, what: said.append(what))
+    monkeypatch.setattr(ProgressLine, "begin", lambda _, what: said.append(what))
     with nothing_frozen():
         assert main(command) == 0
     assert said == what

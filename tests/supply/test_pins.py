@@ -12,6 +12,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from supply import pins
 from supply.pins import FILE, ROOT, installer, requirements, selected
 
 TEXT = FILE.read_text("utf-8")
@@ -111,3 +112,16 @@ def test_an_installer_that_is_not_pinned_is_a_sentence() -> None:
 def test_an_extra_that_is_not_pinned_is_a_sentence() -> None:
     with pytest.raises(SystemExit, match="nothing is pinned for nonsense"):
         selected(TEXT, ["nonsense"])
+
+
+def test_the_uv_beside_the_python_that_runs_resolves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "python").symlink_to(sys.executable)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(SystemExit, match="type: pip install uv"):
+        pins._compile(["pyproject.toml"], tmp_path / "out")
+    (tmp_path / "uv").write_text("#!/bin/sh\nexit 3\n")
+    (tmp_path / "uv").chmod(0o755)
+    with pytest.raises(SystemExit) as ended:
+        pins._compile(["pyproject.toml"], tmp_path / "out")
+    assert ended.value.code == 3
