@@ -15,6 +15,7 @@ leave no pauses. What still runs of the process is ended first: there is never m
 from __future__ import annotations
 
 import logging
+import math
 import os
 import secrets
 import shlex
@@ -40,9 +41,10 @@ from selfconf.termination import parent_environment
 log = logging.getLogger(__name__)
 
 PROCESS_CHECK = 0.5
-"""How often, in seconds, it is looked whether a started process still runs; its end is mostly heard of at once."""
+"""How often, in seconds, it is looked whether a started process still runs; its end is heard of by its pipes."""
 ENDING_CHECK = 0.02
-"""After how many seconds it is first looked whether a process that is to end has ended with all that it has started.
+"""After how many seconds it is first looked whether a process has ended that is to end, with all that it has started.
+So it is looked at one whose pipes have ended, as they may end a moment before it.
 
 It is looked again when as much time has passed as before, as each look at what has left the session reads about all
 processes of the machine."""
@@ -95,6 +97,8 @@ class ComponentProgram:
         self._launching = threading.RLock()
         """Held while the process is started: `close`, which any thread may call, waits until it is known."""
         self._ending_since: float | None = None
+        self._silent_since = -math.inf
+        """When a pipe of the process has ended; long ago as long as none has."""
         self._again = False
         """Whether it is to be started again once it is gone."""
         self._when_gone: list[Callable[[], None]] = []
@@ -195,6 +199,7 @@ class ComponentProgram:
             raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
         except ValueError as error:
             raise PeerError(f"the command of {first} cannot be read: {error}") from None
+        self._silent_since = -math.inf
         printed, group = self._printed(), self.group
         for stream, pipe in group.pipes():
             printed.follow(pipe, stream, self._source(), lambda: self._bus.wake_up(lambda: self._look(group)))
@@ -227,8 +232,9 @@ class ComponentProgram:
         self._undo_check = self._bus.later(seconds, self._check)
 
     def _look(self, group: ProcessGroup) -> None:
-        """A pipe of a process has ended: mostly the process has too."""
+        """A pipe of a process has ended: mostly the process has too, or does in a moment."""
         if group is self.group:
+            self._silent_since = self._bus.now()
             self._check()
 
     def _check(self) -> None:
@@ -244,7 +250,7 @@ class ComponentProgram:
             return
         trouble = self._trouble(self.group)
         if trouble is None:
-            self._check_in(PROCESS_CHECK)
+            self._check_in(max(ENDING_CHECK, min(self._bus.now() - self._silent_since, PROCESS_CHECK)))
         else:
             self._end_for(*trouble)
 

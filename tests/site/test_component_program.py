@@ -83,6 +83,15 @@ def test_a_command_that_two_components_share_is_started_once(
     assert made.processes.by_component[iri("left")] is made.processes.by_component[iri("right")]
 
 
+def test_the_end_of_a_process_is_heard_of_though_its_pipes_end_before_it(
+    network: Network, monkeypatch: pytest.MonkeyPatch, site: Callable[..., Site]
+) -> None:
+    monkeypatch.setattr(component_program, "PROCESS_CHECK", 1_000.0)
+    heard = fails(network)
+    site(python("import os, time; os.close(1); os.close(2); time.sleep(0.1); os._exit(3)")).start(SLEEPER)
+    assert live(network, lambda: bool(heard))
+
+
 def test_the_same_command_in_another_folder_is_another_program(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:
