@@ -42,6 +42,7 @@ def test_two_hosts_become_an_ecology_with_keys_by_one_page(tmp_path: Path) -> No
     )
     assert followed.returncode == 0, followed.stderr
     assert "site.attic" in followed.stdout
+    assert followed.stdout.count("refused: nothing") == 2
     (running,) = (one for one in map(parsed, followed.stdout.splitlines()) if one.get("act") == "running")
     players = {component for role in running["configuration"]["roles"] for component in role["components"]}
     assert players == {"https://example.org/my-home#clock", "https://example.org/my-home#display"}

@@ -116,12 +116,12 @@ def main() -> None:
         waited(lambda: list(attic.folder.glob("runtime/*@attic.json")), "the site of the attic")
         discover, run, access = on_either
         waited(lambda: ":clock" in kitchen.type(discover), "the clock in the attic")
-        print(kitchen.type(access), flush=True)
         task = kitchen.start(f"{run} --format json")
         sites.insert(0, task)
         for line in task.stdout or ():
             print(line, end="", flush=True)
             if '"act": "running"' in line:
+                print(kitchen.type(access), flush=True)
                 return
         raise SystemExit(f"{run}: {task.stderr.read() if task.stderr else ''}")
     finally:

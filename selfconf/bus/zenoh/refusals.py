@@ -4,7 +4,9 @@ Zenoh logs to the standard output of the process. So that becomes a pipe which a
 prints goes where it went before. Two kinds of lines count:
 
 * "... is unauthorized to Put (ingress) on KEY", with "Msg intercepted!" as the next line of the same thread: a holder
-  of a certificate has tried what its name does not allow. What is kept from reaching a client (egress) is no attempt.
+  of a certificate has tried what its name does not allow. What is kept from reaching a client (egress) is no attempt,
+  nor is an error reply, which has the key of what was asked: so a site of another host says to all that it does not
+  know a component of this one.
 * a warning of the TLS link: a client without a trusted certificate has knocked.
 
 Messages that pass cost Zenoh a line each, as they come in and as they go out, for these lines have the target and the
@@ -106,7 +108,9 @@ class RefusalLog:
             self._denied[thread] = self._note(*denied.groups())
         elif text == "Msg intercepted!" and thread in self._denied:
             peer, attempt, flow, key = self._denied.pop(thread)
-            if flow == "ingress" and not attempt.startswith("Undeclare "):  # it concerns what is one's own, or nothing
+            withdraws = attempt.startswith("Undeclare ")  # it concerns what is one's own, or nothing
+            says_no = attempt == "Reply" and "*" in key
+            if flow == "ingress" and not withdraws and not says_no:
                 self._count(self._names.get(peer, "?"), attempt, key[:LONGEST_KEY], line)
 
     def _note(self, peer: str, link: str | None, attempt: str, flow: str, key: str) -> tuple[str, str, str, str]:

@@ -51,6 +51,11 @@ def test_what_is_kept_from_somebody_or_allowed_in_the_end_is_no_attempt() -> Non
     assert found(log_of(denied("a/b")[0], INTERCEPTED.format(12))) == [], "another thread"
 
 
+def test_an_error_reply_to_what_was_asked_of_many_is_no_attempt() -> None:
+    log = log_of(*denied("site/*/@ctl/introduce", "Reply"), *denied("site/home/@ctl/introduce", "Reply"))
+    assert found(log) == [("comp.x", "Reply", "site/home/@ctl/introduce", 1)]
+
+
 def test_who_knocks_without_a_good_certificate_is_counted() -> None:
     line = "2026Z  WARN acc-0 ThreadId(06) zenoh_link_tls::unicast: {}. Hint: increase the system open file limit."
     log = log_of(line.format("peer sent no certificates"), line.format("invalid peer certificate: UnknownIssuer"))
