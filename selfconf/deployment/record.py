@@ -105,7 +105,7 @@ class DeploymentRecord:
         return to_turtle(deployment_triples(configuration, name, self._request.task, deployment))
 
     def _tell_task(self, request: Request) -> None:
-        """Reply the task as sites keep it, where it is known and not too large."""
+        """Reply the task as sites would be asked to keep it, where it is known and not too large."""
         status, record = self._status(), self._request.record
         told = b""
         if record is not None:
