@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import configparser
 import re
 import subprocess
@@ -29,6 +30,18 @@ def test_no_module_has_a_name_that_says_nothing() -> None:
     nothing = {"utils", "util", "helper", "helpers", "manager", "handler", "data", "info", "misc", "common"}
     found = [path for top in ("selfconf", "sim") for path in (ROOT / top).rglob("*.py") if path.stem in nothing]
     assert found == []
+
+
+def test_every_name_that_a_door_exports_is_explained_there() -> None:
+    unexplained = []
+    for path in (ROOT / "selfconf").rglob("__init__.py"):
+        door = ast.parse(path.read_text("utf-8"))
+        explained = " ".join(re.findall(r"`([^`]*)`", ast.get_docstring(door) or ""))
+        for node in door.body:
+            if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+                names = ast.literal_eval(node.value)
+                unexplained += [(path, name) for name in names if not re.search(rf"\b{name}\b", explained)]
+    assert unexplained == []
 
 
 def test_every_module_says_what_it_is() -> None:

@@ -2,11 +2,12 @@
 
 `open_keys` opens what `--keys` names: a `KeysFolder`, which gives a program what it shows to others, or the folder of
 an `Authority`, which also issues, renews and revokes certificates. A `HostAuthority` issues to the components of a
-host. `Principal` is what a certificate names, `rules_of` what each may do, as `AccessRules` that Zenoh keeps.
-`Doorkeeper` keeps the rules of the `GuardedHub` of a site (`SiteIdentity`), from `first_rules` on; `introduce` shows a
-program's certificate to the sites, and `CertificateWatch` shows it again when it is renewed, and says that it expires;
-`is_in_time` says whether it has.
-`believe` notes which site owns a component that two sites advertise. It needs the extra `keys`.
+host. A `Certificate` is good for `DAYS` unless told otherwise; `Principal` is what it names, of a `PrincipalKind`, and
+`rules_of` what each may do, as `AccessRules` that Zenoh keeps. `Doorkeeper` keeps the rules of the `GuardedHub` of a
+site (`SiteIdentity`), from `first_rules` on; `introduce` shows a program's certificate to the sites, and
+`CertificateWatch` shows it again when it is renewed, and says that it expires; `is_in_time` says whether it has.
+`believe` notes which site owns a component that two sites advertise, and `believed` says which sites were noted. It
+needs the extra `keys`.
 """
 
 from selfconf.access.authority import DAYS, Authority, open_keys

@@ -2,8 +2,8 @@
 
 A bus belongs to one thread: everything that arrives (samples, requests, replies, lives, timers) is delivered by
 callbacks inside `run` or `poll`, one after the other. So a program needs no locks, and it can run unchanged in a
-simulated network with a clock turned by hand. Two exceptions: `Publisher.put` and `wake_up` may be called from any
-thread, and a *direct* subscription is called on the thread that a sample arrives on.
+simulated network with a clock turned by hand. Two exceptions: `Publisher.put`, `wake_up` and `later` may be called from
+any thread, and a *direct* subscription is called on the thread that a sample arrives on.
 
 What arrives stands in one of three classes, each in order of its arrival:
 
@@ -131,7 +131,7 @@ class Bus(Protocol):
         ...
 
     def later(self, seconds: float, action: Callable[[], None]) -> Undo:
-        """Call `action` once, after that time."""
+        """Call `action` once, after that time; may be called from any thread."""
         ...
 
     def wake_up(self, action: Callable[[], None]) -> None:

@@ -1,9 +1,10 @@
 """Act 3 of the paper, composition: from a task and an ecology to a configuration or an explained refusal.
 
 A `Composer` composes one task again and again, by a `Strategy`; `composed` is its best answer within a `TimeLimit`, and
-`explained` a refusal with everything that can be found out about it. `ranked_exclusions` tells of a role what
-keeps each other component out. `configurable` tells which composites can be configured (`Inside`), and of the others
-why not, `insides` what those of a configuration are inside; `why_none` says why there is no configuration.
+`explained` a refusal with everything that can be found out about it. `ranked_exclusions` tells of a role what keeps
+each other component out. `configurable` tells which composites can be configured (`Inside`), and of the others why not,
+by a `DocumentOf`, which reads the document of a composite; `insides` what those of a configuration are inside;
+`why_none` says why there is no configuration.
 """
 
 from selfconf.composition.composer import Composer

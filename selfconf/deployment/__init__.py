@@ -1,11 +1,11 @@
 """The configurator as a program around the machine: it runs effects on a bus and feeds it with events.
 
 A `RunRequest` says which task to run, by which `ComposeFunction` and how, and what is `Outside` of it if it is the
-inside of a composite; a `TaskRunner` runs it; what takes long is done `Aside`, by default `at_once`. Inside,
-`components` is a room that deals with the components of the ecology, and `record` answers questions about what is
-deployed.
-A `Keeper` runs the tasks that live in the sites, which keep their records in a `TaskFolder`. Each is loaded when it is
-first used: a site without tasks, and a command that only looks on, start sooner.
+inside of a composite; a `TaskRunner` runs it, as a `TaskIdentity` by which others know it; what takes long is done
+`Aside`, by default `at_once`. Inside, `components` is a room that deals with the components of the ecology, and
+`record` answers questions about what is deployed. A `Keeper` runs the tasks that live in the sites, which keep their
+records in a `TaskFolder`. `ask_holders` asks all configurators which components they hold, `holders_in` reads their
+answers. Each is loaded when it is first used: a site without tasks, and a command that only looks on, start sooner.
 """
 
 from typing import TYPE_CHECKING

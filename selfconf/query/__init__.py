@@ -3,7 +3,8 @@
 `answer` puts a `Question` to a dataset or an endpoint and gives the answer as text (`Shown`) in one of
 `RESULT_FORMATS`, within `ANSWER_SECONDS` and `MOST_ROWS` unless told otherwise. `read_endpoint` fetches the
 advertisements that a task may want. A `StandingDataset` is a process that holds a dataset, for a server: each
-`StandingQuestion` is answered in a copy of it, in one of the media types of `RESULT_TYPES` or `TRIPLE_TYPES`.
+`StandingQuestion` is answered in a copy of it, in one of the media types of `RESULT_TYPES` or `TRIPLE_TYPES`; `outcome`
+is what has come of it.
 
 Each is loaded when it is first used: the process of a standing dataset needs nothing of what asks endpoints and writes
 answers for people, and starts in half the time without.

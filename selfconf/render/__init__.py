@@ -1,13 +1,14 @@
 """Values for their readers: as text, as JSON, as HTML and as Mermaid. Nothing here decides anything.
 
 Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`, `count`;
-`disobedience_text` names components that are out of control, and `disobedience` says that of one;
-`Names` shortens IRIs by prefixes, `short` without, `ecology_names` makes
-them for an ecology; `duration` is how long something has lasted, `clock_time` when something was. JSON: the functions
-that end in `_body`. Diagrams:
-`mermaid`, and `diagram` for notebooks, whose tables and texts are `html_table`, `html_text`, `html_sections`.
-Two doors of their own are loaded where they are needed: `selfconf.render.run_events` words the events of a run, and
-`selfconf.render.why` what a history says of a moment.
+`disobedience_text` names components that are out of control, and `disobedience` says that of one; `Names` shortens IRIs
+by prefixes, `short` without, `ecology_names` makes them for an ecology, and a `Name` is either; `alternative_text` says
+what speaks for a candidate, `holder_text` who holds a component; `duration` is how long something has lasted,
+`clock_time` when something was. JSON: `configuration_body`, `refusal_body`, `undecided_body`, `consequences_body`,
+`cost_body`, `alternative_body`, `likeness_body`, `holder_body`, and `value_body` of a term. Diagrams: `mermaid`, and
+`diagram` for notebooks, whose tables and texts are `html_table`, `html_text`, `html_sections`. Two doors of their own
+are loaded where they are needed: `selfconf.render.run_events` words the events of a run, and `selfconf.render.why` what
+a history says of a moment.
 """
 
 from selfconf.render.bodies import (

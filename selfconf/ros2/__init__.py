@@ -2,9 +2,12 @@
 
 A `MessageType` is a type by its name and hash. `message` writes fields as CDR, `message_fields` reads them, and
 `check_message` looks whether that can be done; `received` reads a signal whose media type says that it is a message
-(`read_media`). `usual_type` is the type of a name, `service_parts` what a service sends, and `is_known` whether the
-fields are known: of more types once `learn` has read the definitions in folders, such as the `named_folders`. A
-`MessageError` says what cannot be written or read.
+(`read_media`, a `MessageMedia`). `NAME` and `HASH` are how the name and the hash of a type look. `usual_type` is the
+type of a name, `service_parts` what a service is asked and answers (`ServiceParts`), and `is_known` whether the fields
+are known: of more types once `learn` has read the definitions in folders, such as the `named_folders`. A `MessageError`
+says what cannot be written or read. `load` has all that loaded ahead of its first use. The names of parts end in
+`REQUEST` and `RESPONSE` for a service, in `GOAL` and `RESULT` for an action, and in `SEND_GOAL`, `GET_RESULT` and
+`FEEDBACK_MESSAGE` for what an action is made of; `CANCEL_GOAL` is the service that cancels goals.
 """
 
 from selfconf.ros2.definitions import FEEDBACK_MESSAGE, GET_RESULT, GOAL, REQUEST, RESPONSE, RESULT, SEND_GOAL

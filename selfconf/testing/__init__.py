@@ -1,8 +1,9 @@
 """Trying components and tasks without a network: an ecology in memory, with a clock turned by hand.
 
-`MemoryEcology` holds components and runs tasks, in one thread and in simulated time. `ComponentBench` tries one
-component by itself: it feeds its inputs and hears its outputs. `Faults` are what the simulated network does to
-messages. The programs are the real ones: sites, configurators and the runtime of the SDK; the network alone is played.
+`MemoryEcology` holds components and runs tasks, in one thread and in simulated time, each as a `MemoryRun`.
+`ComponentBench` tries one component by itself: it feeds its inputs and hears its outputs. `Faults` are what the
+simulated network does to messages. The programs are the real ones: sites, configurators and the runtime of the SDK; the
+network alone is played.
 
     from selfconf.testing import ComponentBench
 

@@ -1,10 +1,13 @@
 """Which components are eligible for the roles of a task, and what keeps the others out.
 
 `Partitioner` compiles the roles of a task (`CompiledRole`) and partitions an `AdvertisementIndex`. `near_misses` and
-`near_misses_by_type` find the components that one obstacle keeps out, `exclusions` everything that keeps the others
-out (`Exclusion`). `kept_out_by_ports` finds those that only the ports keep out that a shape asks for (`ports_asked`),
-`words_of_role` the words of what a role asks for. `bound_shape` is the shape of a role with its parameters replaced,
-`with_sent_requests` a partition whose operations know all that is sent along with them under a hierarchy.
+`near_misses_by_type` find the components that one obstacle keeps out, `exclusions` everything that keeps the others out
+(`Exclusion`). `kept_out_by_ports` finds those that only the ports keep out that a shape asks for (`ports_asked`),
+`words_of_role` the words of what a role asks for. A `RoleTest` is a `ClassTest`, `SelfTest`, `PropertyTest`,
+`ParameterTest` or a `Count` of others. Of an endpoint `ANY_COMPONENT` asks whether it has a component, and `TYPES` of
+which types they are; `wanted` are those of these that a task may need, `statements` asks for what components of some
+types say, and `prefaced` puts the prefixes before a query. `bound_shape` is the shape of a role with its parameters
+replaced, `with_sent_requests` a partition whose operations know all that is sent along with them under a hierarchy.
 """
 
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex

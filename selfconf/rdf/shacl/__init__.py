@@ -2,11 +2,11 @@
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
 makes tests of the constraints that can be; two `exclude` each other if no value passes both. `misfit`, `unfit`,
-`of_values`, `said_twice`, `LISTS`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE` and `ILL_FORMED` say what may stand as
-a value of SHACL's own properties. `component_parameters` are the predicates by which a document constrains by
+`of_values`, `said_twice`, `LISTS`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `COUNTS` and `ILL_FORMED` say what may
+stand as a value of SHACL's own properties. `component_parameters` are the predicates by which a document constrains by
 components of its own. `pattern` is a regular expression that a text cannot make expensive (`Pattern`); where that
-cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL.
-Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
+cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL. Judging by pySHACL is
+`selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, shacl_pattern
