@@ -22,7 +22,9 @@ def found_by(rule: str) -> dict[str, str]:
 @pytest.mark.parametrize("rule", survey.RULES)
 def test_the_code_keeps_to_the_rule_or_is_excused(rule: str) -> None:
     found, excused = found_by(rule), survey.excuses(rule)
-    assert {subject: why for subject, why in found.items() if subject not in excused} == {}
+    broken = [f"{subject}: {why}" for subject, why in found.items() if subject not in excused]
+    sought = (survey.RULES[rule].__doc__ or "").partition("\n")[0]
+    assert not broken, "\n".join((f"{sought} CONTRIBUTING.md has the rule.", *broken))
 
 
 @pytest.mark.parametrize("rule", survey.RULES)

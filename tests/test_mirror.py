@@ -29,7 +29,9 @@ def file_of_tests(module: Path) -> Path:
 
 @pytest.mark.parametrize("module", MODULES, ids=str)
 def test_a_module_has_a_file_of_tests(module: Path) -> None:
-    assert "\ndef test_" in file_of_tests(module).read_text("utf-8")
+    tests = file_of_tests(module)
+    assert tests.is_file(), f"write {tests.relative_to(ROOT)}, or say in LEFT_OUT why there is none"
+    assert "\ndef test_" in tests.read_text("utf-8")
 
 
 @pytest.mark.parametrize("module", [Path(module) for module in LEFT_OUT], ids=str)
