@@ -24,7 +24,7 @@ _MESSAGES: dict[str, type[Reserve] | type[Apply] | type[Release]] = {
     "apply": Apply,
     "release": Release,
 }
-"""The message that each call carries, apart from `state`, which carries none."""
+"""The message that each call carries, apart from `state`, which may carry a `StateOf`."""
 Reply = Callable[[CallAnswer], None]
 
 

@@ -14,7 +14,14 @@ from selfconf.bus.port import Request, Urgency
 from selfconf.configurator.events import Appeared, Event
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment.components import liveness
-from selfconf.deployment.components.liveness import ASK_SITE_AGAIN, AUDIT, AWAY, MOST_REOPENINGS, SETTLING
+from selfconf.deployment.components.liveness import (
+    ASK_SITE_AGAIN,
+    AUDIT,
+    AWAY,
+    MOST_REOPENINGS,
+    SETTLING,
+    SILENT_AUDITS,
+)
 from selfconf.discovery import ecology_view
 from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.model.refusal import Refusal
@@ -217,6 +224,16 @@ def test_a_component_that_has_failed_unnoticed_is_replaced(lab: Lab) -> None:
     assert lab.active() == TASK | {"odometry"}
     (lost,) = lab.acts("lost")
     assert (lost.component, lost.detail) == (iri("person-tracker"), "it does not act any more")
+
+
+def test_a_component_that_lives_and_answers_no_question_is_replaced(lab: Lab) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    lab.runtimes["tracker"].calls.close()
+    lab.let_pass((SILENT_AUDITS + 1) * AUDIT)
+    assert lab.active() >= TASK | {"odometry"}
+    (lost,) = lab.acts("lost")
+    assert (lost.component, lost.cause) == (iri("person-tracker"), "hung")
 
 
 def test_the_status_says_how_many_signals_a_slow_component_has_passed_over(lab: Lab) -> None:
