@@ -3,8 +3,9 @@
 Which one is the same for all who see the same sites: the site whose name gives the highest hash with the task's
 identity (rendezvous hashing, Thaler and Ravishankar 1998). When it goes, the next one goes on with what runs: no
 component is stopped or started, each only hears whose life to watch from now on. When a site comes that is to have a
-task, the one that has it lets go first, but not in the middle of a deployment: the other would go on with what ran
-before, as it knows of nothing else. Until then the components do not listen to the other.
+task, the one that has it goes on until the other says that it begins to run it, for until then none would watch over
+the components. In the middle of a deployment it does not let go: the other would go on with what ran before, as it
+knows of nothing else. The components do not listen to the other until then, and it tries again.
 
 A site that was frozen, or cut off, finds by a newer record that another one has gone on with its task meanwhile. It
 leaves that as it runs, and goes on with it in turn: what it knows itself is outdated, and the components would come to
@@ -65,6 +66,13 @@ def keeper_of(task: str, sites: Iterable[str]) -> str:
     return max(sites, key=lambda site: (hashlib.blake2s(f"{site} {task}".encode()).digest(), site), default="")
 
 
+def _task_runner() -> type[TaskRunner]:
+    """The class that runs a task: loaded with the first task that is read, as there is no time when one is adopted."""
+    from selfconf.deployment.runner import TaskRunner
+
+    return TaskRunner
+
+
 class Keeper:
     """Keeps the tasks of an ecology at one site, and runs those that it is to run."""
 
@@ -86,6 +94,8 @@ class Keeper:
         self._requests: dict[str, RunRequest | None] = {}
         self._respites: dict[str, float] = {}
         """Until when each task is left alone that has given trouble."""
+        self._beginning: dict[str, str] = {}
+        """The site that has begun each task last, as it has said."""
         self._complaints: set[str] = set()
         self._living: dict[str, set[str]] = {site: {""}}
         self._changed = bus.now()
@@ -116,6 +126,7 @@ class Keeper:
             record = decode(request.payload, TaskRecord)
             self._learn(record)
             request.reply(self.keys.keep(self.site), encode(self.folder.records[record.task]))
+            self.bus.wake_up(self._assign)
         except PeerError as error:
             request.refuse(f"site {self.site} cannot keep the task: {error}")
         except OSError as error:
@@ -126,8 +137,10 @@ class Keeper:
 
     def _answer(self, request: Request) -> None:
         try:
-            for task in self.folder.records:
-                request.reply(self.keys.kept_task(self.site, task), self.folder.encoded(task))
+            for task, record in self.folder.records.items():
+                runs = task in self.runners
+                payload = encode(replace(record, keeper=self.site)) if runs else self.folder.encoded(task)
+                request.reply(self.keys.kept_task(self.site, task), payload)
         finally:
             request.finish()
 
@@ -156,11 +169,16 @@ class Keeper:
         if task in self.folder.records and sample.payload == self.folder.encoded(task):
             return
         try:
-            record = decode(sample.payload, TaskRecord)
+            heard = decode(sample.payload, TaskRecord)
+            record = replace(heard, keeper="")
             self._learn(record)
             newest = self.folder.records[record.task]
             if newest.supersedes(record):
                 self._tell(newest)
+            elif heard.keeper:
+                self._beginning[heard.task] = heard.keeper
+                if heard.task in self.runners:
+                    self._assign()
         except PeerError as error:
             self._complain(f"this site does not keep the task that another one has sent on {sample.key}: {error}")
         except OSError as error:
@@ -184,6 +202,7 @@ class Keeper:
         if record.ended:
             self._requests.pop(record.task, None)
             self._respites.pop(record.task, None)
+            self._beginning.pop(record.task, None)
             return
         if record.task in self._requests or self._has_respite(record.task):
             return
@@ -197,6 +216,7 @@ class Keeper:
             del self._requests[record.task]
             self._respites[record.task] = self.bus.now() + RESPITE
         else:
+            _task_runner()
             self._requests[record.task] = replace(request, report=lambda event: self._report(record.task, event))
 
     # Which site runs what.
@@ -218,6 +238,7 @@ class Keeper:
             lives[site].discard(key)
             if not lives[site]:
                 del lives[site]
+                self._beginning = {task: keeper for task, keeper in self._beginning.items() if keeper != site}
         self._assign()
 
     def _look(self) -> None:
@@ -237,18 +258,18 @@ class Keeper:
             self._unlook = self.bus.later(KEEPER_LOOK, self._look)
 
     def _assign(self) -> None:
-        """Run the tasks that this site is to run, and no others.
+        """Run the tasks that this site is to run; another's only until that begins to run it.
 
         Cut off it begins with none: to it all other sites seem gone, and it would find that nothing is there.
         """
         linked = bool(self.bus.link)
         for task, record in list(self.folder.records.items()):
-            mine = keeper_of(task, self._living) == self.site
-            runner = self.runners.get(task)
+            keeper, runner = keeper_of(task, self._living), self.runners.get(task)
             if runner is not None and record.ended:
                 runner.stop()
-            elif runner is not None and self._is_to_leave(runner, record, mine):
-                runner.hand_over()
+            elif runner is not None:
+                self._leave_what_is_anothers(runner, record, keeper)
+            mine = keeper == self.site
             if task not in self.runners and mine and linked and not record.ended and not self._has_respite(task):
                 if unrest := self._view.unrest():
                     self._assign_later(unrest)
@@ -264,11 +285,19 @@ class Keeper:
             self._is_to_assign = True
             self.bus.later(seconds, assign)
 
-    def _is_to_leave(self, runner: TaskRunner, record: TaskRecord, mine: bool) -> bool:
-        """Whether a task is another site's by now: by a newer record, or as that has come; then once it is settled."""
+    def _leave_what_is_anothers(self, runner: TaskRunner, record: TaskRecord, keeper: str) -> None:
+        """Let go of a task that another site has gone on with, or that the one that is to run it has begun to run.
+
+        To that one it is handed over: it may have found before that the components did not listen to it yet.
+        """
         if record.version != self._versions[record.task]:
-            return True
-        return not mine and runner.state.phase in (Phase.RUNNING, Phase.REFUSED)
+            runner.hand_over()
+        elif keeper != self.site and runner.state.phase in (Phase.RUNNING, Phase.REFUSED):
+            if self._beginning.get(record.task) == keeper:
+                runner.hand_over()
+                self.bus.ask(self.keys.keep(keeper), self.folder.encoded(record.task), OTHERS, lambda _: None)
+            else:
+                self._to_ask[keeper] = None  # it may have said so when this site did not hear it
 
     def _without_configurator(self, known: Set[str]) -> list[Holding]:
         """What each task holds that is to be run, by its record, while it may be without a configurator.
@@ -296,7 +325,6 @@ class Keeper:
         request = self._requests.get(record.task)
         if request is None:
             return
-        from selfconf.deployment.runner import TaskRunner  # what a site without tasks does not need
 
         def ended(_: object) -> None:
             runner = self.runners.pop(record.task, None)
@@ -306,7 +334,7 @@ class Keeper:
                 log.error("%s: %s; trying again in %.0f s", record.task, runner.trouble, RESPITE)
                 self._respites[record.task] = self.bus.now() + RESPITE
 
-        runner = TaskRunner(
+        runner = _task_runner()(
             self.bus,
             self.ecology,
             replace(
@@ -319,6 +347,7 @@ class Keeper:
             beginning=record.beginning,
         )
         self.runners[record.task], self._versions[record.task] = runner, record.version
+        self._tell(replace(record, keeper=self.site))
         if record.configuration:
             try:
                 runner.adopt(recorded_configuration(record.configuration), record.epoch, record.lost)

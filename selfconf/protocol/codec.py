@@ -238,6 +238,7 @@ _READERS: dict[tuple[type, str], Any] = {
     (TaskRecord, "options"): read_sayable,
     (TaskRecord, "configuration"): read_sayable,
     (TaskRecord, "lost"): read_losses,
+    (TaskRecord, "keeper"): read_label,
 }
 
 _FIELDS: dict[type, tuple[tuple[str, Any, bool], ...]] = {

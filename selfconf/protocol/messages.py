@@ -426,6 +426,8 @@ class TaskRecord:
     """What is deployed, as `selfconf configure --format json` prints it; empty if nothing is."""
     lost: tuple[RecordedLoss, ...] = ()
     """What has failed and lives on: a site that goes on with the task does without it, until it lives anew."""
+    keeper: str = ""
+    """The site that begins to run the task, by which the one that runs it may let go; empty: none does now."""
 
     @property
     def version(self) -> tuple[bool, int, int]:

@@ -14,8 +14,10 @@ from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.bus.port import Bus
 from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase
+from selfconf.deployment import RunRequest
 from selfconf.deployment.configuration_record import recorded_configuration
 from selfconf.deployment.keeper import keeper_of
+from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
@@ -269,6 +271,38 @@ def test_a_site_that_comes_and_is_to_run_the_task_gets_it_from_the_one_that_has_
     keepers.begin(first)
     assert keepers.lab.until(lambda: keepers.running() == [first])
     assert {name: list(recorder.said) for name, recorder in keepers.lab.components.items()} == said
+
+
+def test_no_component_is_without_a_configurator_while_a_task_goes_to_the_site_that_comes(keepers: Keepers) -> None:
+    first = keeper_of(RECORD.task, "abc")
+    keepers.end(first)
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    keepers.lab.let_pass(1.0)
+    keepers.begin(first)
+    without = [0.0]
+    while keepers.running() != [first]:
+        keepers.lab.let_pass(0.01)
+        without.append(without[-1] + 0.01 if keepers.lab.runtimes["drive"].supervision.gone else 0.0)
+        assert keepers.lab.network.time < 60.0
+    assert max(without) < 0.15  # of a second after which it comes to rest
+
+
+def test_a_task_stays_where_it_runs_if_the_site_that_is_to_run_it_cannot_read_it(keepers: Keepers) -> None:
+    first = keeper_of(RECORD.task, "abc")
+    keepers.end(first)
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: bool(keepers.running()))
+    running, said = keepers.running(), {name: list(one.said) for name, one in keepers.lab.components.items()}
+
+    def unreadable(record: TaskRecord) -> RunRequest:
+        raise TemplateError("a term that only newer programs know")
+
+    keepers.request_for = unreadable
+    keepers.begin(first)
+    keepers.lab.let_pass(10.0)
+    assert keepers.running() == running
+    assert {name: list(one.said) for name, one in keepers.lab.components.items()} == said
 
 
 def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
