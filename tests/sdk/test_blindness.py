@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.model.profile import Input, Ports
+from selfconf.model.profile import Input, Output, Ports, offered_operation
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.protocol.messages import Cause, Wire
 from selfconf.sdk.blindness import TOLERATES
@@ -37,9 +37,10 @@ class Driving(Recorder):
         self.said.append(("fed", port))
 
 
-def driving(tolerates: float | None = None) -> tuple[Stage, ComponentRuntime]:
-    """An actuator that acts and is fed by a tracker."""
-    stage = Stage(Driving(), replace(DRIVE_PROFILE, tolerates=tolerates))
+def driving(tolerates: float | None = None, outputs: tuple[Output, ...] = ()) -> tuple[Stage, ComponentRuntime]:
+    """An actuator, where it has no outputs, that acts and is fed by a tracker."""
+    ports = DRIVE_PROFILE.ports._replace(outputs=outputs)
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, tolerates=tolerates, ports=ports))
     tracker = stage.neighbour()
     stage.call(reserve())
     stage.call(follow(values={"goal": Literal("x")}))
@@ -208,6 +209,13 @@ def test_an_actuator_rests_when_it_has_been_blind_for_longer_than_it_tolerates(
     assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
     stage.let_pass(100)
     assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
+
+
+def test_a_component_that_offers_an_operation_acts_on_though_it_is_blind() -> None:
+    stage, tracker = driving(outputs=(offered_operation("reset", None, None),))
+    tracker.bus.close()
+    stage.let_pass(10 * TOLERATES)
+    assert stage.recorder.said == [("unfed", "position")]
 
 
 def test_it_is_still_held_and_starts_again_with_its_parameters_when_it_is_fed() -> None:
