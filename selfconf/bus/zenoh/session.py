@@ -1,4 +1,4 @@
-"""How a Zenoh session is set up: as a router or as the client of one. Only this room, `bus`, speaks Zenoh.
+"""How a Zenoh session is set up: as a router or as the client of one. Only this room, `bus.zenoh`, speaks Zenoh.
 
 Multicast is off, endpoints are explicit, and nothing listens anywhere but on loopback unless an endpoint says so. A
 lease of one second: what is stopped or cut off counts as dead after about that time.
