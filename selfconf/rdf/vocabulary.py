@@ -29,6 +29,7 @@ class Namespace:
 
 SC = Namespace("https://w3id.org/selfconf#")
 ROB = Namespace("https://w3id.org/selfconf/robotics#")
+SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
 RDF = Namespace("http://www.w3.org/1999/02/22-rdf-syntax-ns#")
 RDFS = Namespace("http://www.w3.org/2000/01/rdf-schema#")
 OWL = Namespace("http://www.w3.org/2002/07/owl#")

@@ -111,7 +111,7 @@ class ComponentCode:
         self._thread.call(start)
 
     def change(self, values: Mapping[str, Term], done: Done) -> None:
-        """Set the parameters that have others values than before."""
+        """Set the parameters that have other values than before."""
         changed = {name: value for name, value in values.items() if self._values.get(name) != value}
         self._values |= values
         if changed:
