@@ -68,16 +68,17 @@ def run(given: argparse.Namespace) -> int:
 
     one_stdin(Path(given.sparql), *(given.ads or ()), *given.ontology)
     text = _text(given.sparql)
-    if given.endpoint is not None and given.ontology:
+    if given.endpoint is not None and given.ontology and "ontology" not in given.from_project:
         raise AuthorError("an endpoint holds what it holds; --ontology is for files and the living ecology")
     for unknown in unknown_in_query(text):
         complain(unknown)
     question = Question(text, given.format, given.rows, seconds=given.answer_seconds)
-    if given.history is not None and given.endpoint is not None:
+    of_project = bool({"ads", "endpoint"} & given.from_project)
+    if given.history is not None and given.endpoint is not None and not of_project:
         raise AuthorError(
             "an endpoint holds what it holds; --history is for the past of a living ecology, and for files"
         )
-    if given.history is not None and (given.ads is None or "ads" in given.from_project):
+    if given.history is not None and (given.ads is None or of_project):
         dataset = Dataset()
     else:
         with closing(given_ecology(given)) as ecology:

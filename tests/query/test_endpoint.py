@@ -95,6 +95,18 @@ def test_a_query_that_cannot_be_asked_there_is_one_sentence(
     assert run(capsys, "query", text, "--endpoint", server, *arguments).is_one_sentence(words)
 
 
+def test_a_project_file_may_name_an_endpoint_and_what_other_commands_and_questions_are_asked_with(
+    server: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "words.ttl").touch()
+    (tmp_path / "selfconf.toml").write_text(f'endpoint = "{server}?union-default-graph"\nontology = "words.ttl"\n')
+    monkeypatch.chdir(tmp_path)
+    outcome = run(capsys, "query", SENSORS, "--format", "csv")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out.count("\n") > 1
+    assert run(capsys, "query", SENSORS, "--history", "past").is_one_sentence("past holds no history")
+
+
 @pytest.mark.parametrize(
     ("url", "words"),
     [
