@@ -114,11 +114,15 @@ def show(name: str) -> None:
         for path, text in ecology.files.items():
             print(f"# {path}\n{text}")
         print("# options:", *map(repr, ecology.options))
+    known = False
     for part in ("answers", "sentences"):
         for group, recorded in load(part).items():
             for case, value in recorded.items():
                 if case.startswith(name):
+                    known = True
                     print(f"# {part} of {group}: {case}\n{json.dumps(value, indent=1, ensure_ascii=False)}")
+    if not known:
+        raise SystemExit(f"the name of no case begins with {name!r}; a failing test names cases")
 
 
 def count() -> None:
