@@ -95,7 +95,8 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-S05", "A file can be judged.",
-        "Brackets in brackets, a thousand deep, or a list of thousands: no one can have meant that.",
+        "It has at most 64 MiB, 250,000 statements, 16 MiB in a string and a thousand brackets in brackets, and takes"
+        " two minutes at most.",
     ),
     Code(
         "SC-S06", "A list has an end.",
@@ -320,18 +321,6 @@ CODES: tuple[Code, ...] = (
         ("InteractionListed",),
     ),
     Code(
-        "SC-T18", "A port or operation of a template is that of one of its roles, with a name of its own; a port has a "
-        "signal type.",
-        "A composite whose inside is a task of the template has these ports and operations; each is joined to those of "
-        "the players of its role by type.",
-        f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
-        f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :source ] .',
-        (
-            "TemplatePortOf", "TemplatePortRole", "TemplatePortSignal", "TemplatePortListed",
-            "TemplatePortNamesDistinct",
-        ),
-    ),
-    Code(
         "SC-T08", "A parameter of a template has an IRI and is a sc:Parameter.",
         "Its IRI stands in the roles where the value will stand.",
         f"{_PAIR}\n:radio sc:parameter :room .",
@@ -404,6 +393,32 @@ CODES: tuple[Code, ...] = (
         ("PrioritisedTyped", "Priority"),
     ),
     Code(
+        "SC-T17", "A role recruits or does not, or states one shape of its suppliers.",
+        "Recruits are components outside of the roles; they feed what no role feeds.",
+        f'{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits "yes" .',
+        f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits true .",
+        ("Recruits", "RecruitsDescribed"),
+    ),
+    Code(
+        "SC-T18", "A port or operation of a template is that of one of its roles, with a name of its own; a port has a "
+        "signal type.",
+        "A composite whose inside is a task of the template has these ports and operations; each is joined to those of "
+        "the players of its role by type.",
+        f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        f'{_PAIR}\n:radio sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :source ] .',
+        (
+            "TemplatePortOf", "TemplatePortRole", "TemplatePortSignal", "TemplatePortListed",
+            "TemplatePortNamesDistinct",
+        ),
+    ),
+    Code(
+        "SC-T19", "A parameter stands in shapes, for what sc:sets sets, and for the sc:property of a cost.",
+        "How many components play a role, what a port is called and what a cost weighs is the same for all tasks of a "
+        "template.",
+        f"{_BOUND}:sink sc:recruits :room .", f"{_BOUND}:sink sc:recruits true .",
+        ("FixedValue", "TemplatePortFixed"),
+    ),
+    Code(
         "SC-K01", "A task has exactly one template, given by its IRI.",
         "A task is a template with bindings.",
         ":music a sc:Task .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
@@ -438,20 +453,6 @@ CODES: tuple[Code, ...] = (
         ":music a sc:Task ; sc:template :radio .", f"{_PAIR}\n:music a sc:Task ; sc:template :radio .",
         ("TaskTemplateHere", "ConfigurationTemplateGiven"),
         Severity.WARNING,
-    ),
-    Code(
-        "SC-T17", "A role recruits or does not, or states one shape of its suppliers.",
-        "Recruits are components outside of the roles; they feed what no role feeds.",
-        f'{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits "yes" .',
-        f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Speaker ; sc:recruits true .",
-        ("Recruits", "RecruitsDescribed"),
-    ),
-    Code(
-        "SC-T19", "A parameter stands in shapes, for what sc:sets sets, and for the sc:property of a cost.",
-        "How many components play a role, what a port is called and what a cost weighs is the same for all tasks of a "
-        "template.",
-        f"{_BOUND}:sink sc:recruits :room .", f"{_BOUND}:sink sc:recruits true .",
-        ("FixedValue", "TemplatePortFixed"),
     ),
     Code(
         "SC-C01", "A configuration has exactly one template, and at most one task, epoch and time.",
