@@ -9,6 +9,7 @@ from datetime import datetime
 
 import pytest
 
+import selfconf as sc
 from selfconf.api.living.echo import HeardSignal
 from selfconf.cli import echo
 from selfconf.model.term import IRI
@@ -57,6 +58,18 @@ def test_ctrl_c_ends_it_and_a_reader_that_hangs_holds_up_nobody(inhabited: Home)
     assert "Traceback" not in reader.complaints
     assert inhabited.active("drive", "control") == {"drive", "control"}
     assert program.end() == 0
+
+
+def test_of_a_component_that_acts_for_no_task_it_is_said_why_nothing_comes(inhabited: Home) -> None:
+    program = inhabited.run()
+    program.act("running")
+    said: list[str] = []
+    with sc.join(inhabited.ecology, connect=[inhabited.endpoint()]) as living:
+        living.signals(iri("person-tracker"), "pose", said.append)
+        assert said == []
+        assert program.end() == 0
+        living.signals(iri("person-tracker"), "pose", said.append)
+    assert said == ["person-tracker acts for no task now, and says nothing before it does"]
 
 
 @pytest.mark.parametrize(

@@ -215,7 +215,15 @@ class LivingEcology(Ecology):
         state = self.state(profile.component)
         if state != "alive":
             complain(f"{profile.component.short} is {state}: it says nothing before a task has it started")
+        elif self._rests(profile.component):
+            complain(f"{profile.component.short} acts for no task now, and says nothing before it does")
         return echo(self._synchronous, partial(follow_output, self._bus, self._view.keys, profile, output), complain)
+
+    def _rests(self, component: IRI) -> bool:
+        """Whether a component that lives has answered, and acts for no task."""
+        replies = self._synchronous.ask(self._view.keys.call(component, "state"), seconds=STATE_PATIENCE)
+        lives = told_lives(self._view.keys, replies).get(component, ())
+        return bool(lives) and not any(life.active for life in lives)
 
     def restart(self, component: str) -> ComponentState:
         """Have its site end the process of a component, and start it again; returns how it is once it lives again.
