@@ -58,5 +58,8 @@ class LastingLosses:
         self._step(LossLasts(frozenset(filter(self._is_actuator, self._state().held))))
 
     def _is_actuator(self, component: IRI) -> bool:
-        found = self._ecology.discovery.found.get(component)
-        return found is not None and not found.advertisement.profile.outputs
+        """Whether a component is an actuator; one whose operations the task uses acts on, for those that call it."""
+        found, plan = self._ecology.discovery.found.get(component), self._state().plan
+        if found is None or not found.advertisement.profile.is_actuator:
+            return False
+        return plan is None or component not in plan.inputs or component in plan.order.actuators

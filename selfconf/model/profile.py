@@ -336,6 +336,11 @@ class Profile:
         return tuple(port for port in self.ports.outputs if not port.is_operation)
 
     @property
+    def is_actuator(self) -> bool:
+        """Whether it is an actuator: it issues no signal, whatever operations it offers, so that it may move things."""
+        return not self.signal_outputs
+
+    @property
     def required(self) -> tuple[Input, ...]:
         """The inputs that must be fed."""
         return tuple(port for port in self.ports.inputs if not port.optional)

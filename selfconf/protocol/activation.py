@@ -16,7 +16,7 @@ have left while its last call was on its way. A call of a task that cannot hold 
 BUSY, and the task *waits* (`selfconf.protocol.task_queue`).
 
 A component that has failed stays failed for the epoch it failed in: an apply of that epoch, repeated or late, is
-REFUSED, or it would hide the failure. An actuator, a component that has no outputs and offers no operations, is never
+REFUSED, or it would hide the failure. A component that has no outputs and offers no operations is never
 applied to by a task that does not hold it (NOT HELD): a call that comes late, or after the component was believed to be
 orphaned, would let it act on a part of a configuration. Any other component is reserved by the apply itself, if it is
 free.
@@ -153,13 +153,14 @@ def obey(
     call: Reserve | Apply | Release,
     *,
     shareable: bool = False,
-    actuator: bool = False,
+    reserved_first: bool = False,
     gone: frozenset[str] = frozenset(),
     unseen: frozenset[str] = frozenset(),
 ) -> Obedience:
     """Return what a call makes of an activation; `gone` are the supervisors whose life was seen to end.
 
-    `unseen` are those that were not seen to live yet. `shareable` and `actuator` say what kind of component it is.
+    `unseen` are those that were not seen to live yet. `shareable` says whether several tasks may hold the component,
+    `reserved_first` whether only a task that holds it may apply to it.
     """
     own = activation.hold(call.task)
     if call.epoch < activation.epoch_of(call.task):
@@ -175,7 +176,7 @@ def obey(
     served = replace(activation, queue=activation.queue.taken(call.task))
     if isinstance(call, Reserve):
         return _reserve(served, own, call), Verdict.DONE, ActivationStep.NONE
-    if own is None and actuator:
+    if own is None and reserved_first:
         return activation, Verdict.NOT_HELD, ActivationStep.NONE
     if own is not None and _failed_in(served, own, call.epoch):
         return activation, Verdict.REFUSED, ActivationStep.NONE

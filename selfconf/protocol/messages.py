@@ -118,7 +118,7 @@ class Verdict(str, Enum):
     REFUSED = "refused"
     """The component itself refuses, or its code broke; `detail` says why."""
     NOT_HELD = "not held"
-    """The component is an actuator, and the task that applies to it has not reserved it, or not since it was let go."""
+    """The component has no outputs, and the task that applies to it has not reserved it, or not since it was let go."""
     OTHER_LIFE = "another life"
     """The call means another life of the component than the one that answers, or that life is ending."""
 

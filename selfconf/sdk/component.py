@@ -107,7 +107,7 @@ class Component:
     def stopped(self) -> None:
         """The component has been turned off; what actuates must be at rest when this returns.
 
-        An actuator, a component that has no outputs and offers no operations, that raises an exception here counts as
+        An actuator, a component without outputs, whatever operations it offers, that raises an exception here counts as
         not at rest: its site ends its process, and one that no site has started is out of control until it is gone.
         """
 
@@ -127,7 +127,7 @@ class Component:
     def unfed(self, port: str) -> None:
         """An input has lost its last source: what was received on it last is not true any more.
 
-        An actuator, a component that has no outputs and offers no operations, is stopped when this has lasted for as
+        An actuator, a component without outputs, whatever operations it offers, is stopped when this has lasted for as
         long as it tolerates (`sc:tolerates`, 1 second by default), and started again once the input is fed.
         """
 

@@ -51,7 +51,7 @@ class ComponentCode:
         self._bus, self._thread, self._component, self._fail = bus, thread, component, fail
         self._parameters = {parameter.name for parameter in profile.parameters}
         self._name = profile.component.short
-        self._actuates = not profile.outputs
+        self._actuates = profile.is_actuator
         self._deadline = profile.callback_deadline
         self._start_deadline = profile.start_deadline
         self.stopping = False

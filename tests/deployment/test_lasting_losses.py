@@ -11,14 +11,18 @@ from selfconf.configurator.events import Event, LossLasts
 from selfconf.configurator.state import Phase
 from selfconf.deployment.lasting_losses import LASTS_LONG
 from tests.deployment.simulated import slow_code
-from tests.lab import PREFIXES, Lab, iri
+from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, iri
 
 
+@pytest.mark.parametrize("offers", ["", ' ; sc:hasOperation [ sc:name "home" ; sc:response :Reached ]'])
 @pytest.mark.parametrize(("seconds", "rests"), [(0.5, False), (4.0, True)])
 def test_the_drive_rests_for_as_long_as_a_repair_takes_more_than_a_moment(
-    lab: Lab, seconds: float, rests: bool
+    tmp_path: Path, seconds: float, rests: bool, offers: str
 ) -> None:
-    """The controller acts on, and could go on driving without a position."""
+    """The controller acts on, and could go on driving without a position; an operation makes no other drive of it."""
+    drives = ADVERTISEMENTS["drive"]
+    lab = Lab(tmp_path, advertised=ADVERTISEMENTS | {"drive": drives.removesuffix(" .") + offers + " ."})
+    lab.navigation()
     slow_code(lab, "odometry")
     lab.components["odometry"].slow = seconds
     lab.running(agent := lab.agent())

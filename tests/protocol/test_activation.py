@@ -260,12 +260,12 @@ def test_a_supervisor_that_is_gone_stands_in_no_other_tasks_way() -> None:
 
 
 def test_an_actuator_is_applied_to_only_by_a_task_that_holds_it() -> None:
-    assert obey(Activation(), call_of(Apply), actuator=True) == (
+    assert obey(Activation(), call_of(Apply), reserved_first=True) == (
         Activation(),
         Verdict.NOT_HELD,
         ActivationStep.NONE,
     )
-    reserved, _, _ = obey(Activation(), call_of(Reserve), actuator=True)
-    assert obey(reserved, call_of(Apply), actuator=True)[1:] == (Verdict.DONE, ActivationStep.START)
+    reserved, _, _ = obey(Activation(), call_of(Reserve), reserved_first=True)
+    assert obey(reserved, call_of(Apply), reserved_first=True)[1:] == (Verdict.DONE, ActivationStep.START)
     let_go, _ = drop(reserved, [A])
-    assert obey(let_go, call_of(Apply), actuator=True)[1:] == (Verdict.NOT_HELD, ActivationStep.NONE)
+    assert obey(let_go, call_of(Apply), reserved_first=True)[1:] == (Verdict.NOT_HELD, ActivationStep.NONE)

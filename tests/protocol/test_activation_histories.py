@@ -59,7 +59,7 @@ mishaps = st.sampled_from(["fail", "offer", "withdraw", "preempt", *GONE])
 
 @given(st.lists(calls | mishaps, max_size=40), st.booleans(), st.booleans(), st.sets(st.sampled_from(sorted(GONE))))
 def test_the_invariants_hold_in_every_history(
-    history: list[Call | str], shareable: bool, actuator: bool, gone: set[str]
+    history: list[Call | str], shareable: bool, reserved_first: bool, gone: set[str]
 ) -> None:
     activation, running = Activation(), False
     for event in history:
@@ -67,9 +67,9 @@ def test_the_invariants_hold_in_every_history(
         if isinstance(event, str):
             activation, told = _mishap(activation, event)
         else:
-            kind = {"shareable": shareable, "actuator": actuator}
+            kind = {"shareable": shareable, "reserved_first": reserved_first}
             activation, verdict, told = obey(activation, event, **kind, gone=frozenset(gone))
-            _check_call(before, event, activation, verdict, gone, shareable, actuator)
+            _check_call(before, event, activation, verdict, gone, shareable, reserved_first)
         wish = granted(activation)
         assert wish is None or obey(activation, wish, shareable=shareable, gone=frozenset(gone))[1] is Verdict.DONE
         for task in (A, B, C):
@@ -98,14 +98,14 @@ def _check_call(
     verdict: Verdict,
     gone: set[str],
     shareable: bool,
-    actuator: bool,
+    reserved_first: bool,
 ) -> None:
     """What a call may change."""
     own = before.hold(call.task)
     if verdict in (Verdict.STALE, Verdict.NOT_HELD, Verdict.REFUSED):
         assert after == before
     assert (verdict is Verdict.STALE) == (call.epoch < before.epoch_of(call.task))
-    assert verdict is not Verdict.NOT_HELD or (actuator and isinstance(call, Apply))
+    assert verdict is not Verdict.NOT_HELD or (reserved_first and isinstance(call, Apply))
     assert verdict is not Verdict.REFUSED or (isinstance(call, Apply) and before.phase is FAILED)
     if verdict is Verdict.BUSY:
         assert after.phase is before.phase
@@ -122,7 +122,7 @@ def _check_call(
         assert call.task not in waiting_for(after)
         assert (after.hold(call.task) is None) == isinstance(call, Release)
         if isinstance(call, Apply):
-            assert own is not None or not actuator
+            assert own is not None or not reserved_first
             assert after.phase is ACTIVE
             assert after.hold(call.task) == Hold(call, True)
             assert before.phase is not FAILED or own is None or not own.active or call.epoch > own.claim.epoch

@@ -211,11 +211,13 @@ def test_an_actuator_rests_when_it_has_been_blind_for_longer_than_it_tolerates(
     assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
 
 
-def test_a_component_that_offers_an_operation_acts_on_though_it_is_blind() -> None:
-    stage, tracker = driving(outputs=(offered_operation("reset", None, None),))
-    tracker.bus.close()
-    stage.let_pass(10 * TOLERATES)
-    assert stage.recorder.said == [("unfed", "position")]
+def test_an_actuator_rests_though_it_offers_an_operation_and_what_has_an_output_acts_on() -> None:
+    offered = offered_operation("go", IRI("http://x#Goal"), IRI("http://x#Reached"))
+    for outputs, said in (((offered,), [("stopped",)]), ((offered, Output("odometry", ())), [])):
+        stage, tracker = driving(outputs=outputs)
+        tracker.bus.close()
+        stage.let_pass(10 * TOLERATES)
+        assert stage.recorder.said == [("unfed", "position"), *said]
 
 
 def test_it_is_still_held_and_starts_again_with_its_parameters_when_it_is_fed() -> None:

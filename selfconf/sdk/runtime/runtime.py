@@ -224,7 +224,7 @@ class ComponentRuntime:
             before,
             message,
             shareable=self.profile.is_shareable,
-            actuator=not self.profile.outputs,
+            reserved_first=not self.profile.outputs,
             gone=self.supervision.gone,
             unseen=self.supervision.unseen,
         )

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
+from selfconf.model.profile import Output, offered_operation
 from selfconf.model.wording import LONGEST_REMARK
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import encode
@@ -105,8 +107,12 @@ class Jammed(Recorder):
         raise RuntimeError("jammed")
 
 
-def test_an_actuator_that_breaks_when_it_is_released_has_not_obeyed(caplog: pytest.LogCaptureFixture) -> None:
-    stage = Stage(recorder := Jammed(), DRIVE_PROFILE)
+@pytest.mark.parametrize("offered", [(), (offered_operation("home", None, None),)])
+def test_an_actuator_that_breaks_when_it_is_released_has_not_obeyed(
+    offered: tuple[Output, ...], caplog: pytest.LogCaptureFixture
+) -> None:
+    profile = replace(DRIVE_PROFILE, ports=DRIVE_PROFILE.ports._replace(outputs=offered))
+    stage = Stage(recorder := Jammed(), profile)
     stage.call(reserve(1, US))
     stage.call(apply(1, US))
     with caplog.at_level(logging.CRITICAL):
