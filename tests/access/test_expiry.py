@@ -271,6 +271,7 @@ def test_a_run_that_is_revoked_ends_and_says_so(home: Home) -> None:
     task = home.run("--keys", str(alice))
     task.act("running")
     home.authority.revoke(ALICE)
+    assert task.act("stopped")["owed"] == []
     assert task.ended() == 2
     assert "has ended, as the certificate of this program was revoked" in task.complaints
     assert home.until(lambda: not home.active("sonar", "encoder", "tracker", "control", "drive"))

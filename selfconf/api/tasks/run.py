@@ -28,7 +28,7 @@ from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import NetworkError, ProgrammerError
 from selfconf.model.immutable import FrozenMapping, replace
 from selfconf.model.refusal import Refusal, Undecided
-from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
+from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskStopped, TaskWaiting
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, task_name
 from selfconf.rdf.advertisements import Advertisement
@@ -178,6 +178,8 @@ class Run:
             ended = self._ended or self._left  # before the look at the queue: what was reported by then is in it
             event = self._work.next(0.0 if ended else CHECK)
             if event is not None:
+                if self._revoked and isinstance(event, TaskStopped):
+                    event = replace(event, owed=())  # no hub lets it turn off anything: they rest by themselves
                 yield answered_event(self._with_explanation(event), self.task.document)
             elif ended:
                 break
