@@ -3,6 +3,7 @@
 Links have to be made anew with another certificate, and Zenoh does that by itself: the other end closes a link as the
 certificate of this end expires, and the next link is made with what lies in the file by then. But sites let in a
 client that has *shown* a good certificate, so a renewed one is shown as soon as it is there. Nothing is noticed of it.
+One that is not good is withheld from Zenoh, which would try to make links with it all the time.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from selfconf.access.principal import Principal
 from selfconf.access.private_files import check_private
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
+from selfconf.bus.presented_certificate import withhold
 from selfconf.errors import AuthorError, PeerError, SelfconfError, reason
 from selfconf.model.wording import utc_text
 from selfconf.protocol.codec import encode
@@ -82,6 +84,7 @@ class CertificateWatch:
             sentence = self._sentence()
             if not sentence:
                 check_private(self._credentials.key)  # else it cannot be renewed, nor this program begin again
+            withhold(self._credentials.certificate, self._revoked or bool(self._certificate.untimely(self._now())))
         except (OSError, SelfconfError) as error:
             why = reason(error) if isinstance(error, OSError) else str(error)
             sentence = f"{self._whose} cannot be renewed: {why}"

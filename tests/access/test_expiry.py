@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import json
 import signal
-from collections.abc import Iterator
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
@@ -13,10 +17,12 @@ import pytest
 
 from selfconf.access import Authority, CertificateWatch, KeysFolder, Principal, PrincipalKind, is_in_time
 from selfconf.access.certificates import Certificate
+from selfconf.access.expiry import CERTIFICATE_CHECK
 from selfconf.api.sites.joining import REACHED
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
-from selfconf.bus.zenoh import GREETING
+from selfconf.bus.zenoh import GREETING, client, with_port
+from selfconf.bus.zenoh.session import Security, open_session
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
@@ -207,6 +213,50 @@ def test_a_task_goes_on_over_the_expiry_of_every_certificate_in_it(home: Home) -
     assert say("has expired at ", site, task)
     assert "renew it: selfconf keys renew" in site.complaints
     assert task.end(signal.SIGKILL)
+
+
+def attempts_at(listening: socket.socket) -> int:
+    """How many connections have come since the last look, each closed at once."""
+    number = 0
+    with suppress(BlockingIOError):
+        while True:
+            listening.accept()[0].close()
+            number += 1
+    return number
+
+
+@of_keys
+@pytest.mark.process
+def test_a_program_whose_certificate_has_expired_tries_no_link_until_it_is_renewed(tmp_path: Path) -> None:
+    """A hub lets nobody in for a tenth of a second after each link that it refuses."""
+    authority, pause = Authority.init(tmp_path / "keys"), threading.Event()
+    authority.issue(ALICE, tmp_path / "alice", days=5 * SECOND)
+    mine, said = KeysFolder(tmp_path / "alice").credentials((PrincipalKind.CONFIGURATOR,)), list[str]()
+
+    def until(condition: Callable[[], bool]) -> bool:
+        deadline = time.monotonic() + 20.0
+        while not condition() and time.monotonic() < deadline:
+            pause.wait(0.05)
+        return condition()
+
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        other.setblocking(False)
+        endpoint, second = with_port("tls/127.0.0.1:0"), f"tls/127.0.0.1:{other.getsockname()[1]}"
+        hub = open_session("router", listen=[endpoint], security=Security(authority.credentials((PrincipalKind.SITE,))))
+        bus = client([endpoint, second], credentials=mine)
+        try:
+            CertificateWatch(bus, "lab", mine, said.append)
+            bus.run_aside()
+            assert until(lambda: not bus.link and any("has expired at" in one for one in said))
+            pause.wait(CERTIFICATE_CHECK)
+            attempts_at(other)
+            pause.wait(2.0)  # in which it would try some ten times
+            assert attempts_at(other) == 0
+            authority.renew(tmp_path / "alice")
+            assert until(lambda: bool(bus.link))
+        finally:
+            bus.close()
+            hub.close()
 
 
 @of_keys

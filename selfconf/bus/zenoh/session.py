@@ -35,6 +35,7 @@ from typing import Any
 import zenoh
 
 from selfconf.bus.credentials import Credentials
+from selfconf.bus.presented_certificate import presented
 from selfconf.bus.zenoh.descriptors import open_descriptors
 from selfconf.errors import NetworkError, ProgrammerError
 from selfconf.model.immutable import immutable
@@ -273,7 +274,7 @@ def _secured(security: Security) -> dict[str, Any]:
             "enable_mtls": True,
             "listen_certificate": str(own.certificate),
             "listen_private_key": str(own.key),
-            "connect_certificate": str(own.certificate),
+            "connect_certificate": str(presented(own.certificate)),
             "connect_private_key": str(own.key),
             "close_link_on_expiration": True,
         },
