@@ -2,8 +2,8 @@
 
 A bus belongs to one thread: everything that arrives (samples, requests, replies, lives, timers) is delivered by
 callbacks inside `run` or `poll`, one after the other. So a program needs no locks, and it can run unchanged in a
-simulated network with a clock turned by hand. Two exceptions: `Publisher.put`, `wake_up` and `later` may be called from
-any thread, and a *direct* subscription is called on the thread that a sample arrives on.
+simulated network with a clock turned by hand. But `Publisher.put`, `wake_up` and `later` may be called from any thread,
+and a *direct* subscription is called on the thread that a sample arrives on.
 
 What arrives stands in one of three classes, each in order of its arrival:
 

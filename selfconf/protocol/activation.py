@@ -16,10 +16,9 @@ have left while its last call was on its way. A call of a task that cannot hold 
 BUSY, and the task *waits* (`selfconf.protocol.task_queue`).
 
 A component that has failed stays failed for the epoch it failed in: an apply of that epoch, repeated or late, is
-REFUSED, or it would hide the failure. A component that has no outputs and offers no operations is never
-applied to by a task that does not hold it (NOT HELD): a call that comes late, or after the component was believed to be
-orphaned, would let it act on a part of a configuration. Any other component is reserved by the apply itself, if it is
-free.
+REFUSED, or it would hide the failure. A component that has no outputs and offers no operations is never applied to by a
+task that does not hold it (NOT HELD): a call that comes late, or after the component was believed to be orphaned, would
+let it act on a part of a configuration. Any other component is reserved by the apply itself, if it is free.
 
 *Orphaned* means that the configurator which supervises a task has been gone for the grace period. Until then its hold
 lasts, but blocks no other task, and another configurator of the same task goes on with it without a stop.

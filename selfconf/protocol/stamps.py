@@ -8,6 +8,7 @@ language, is read as every message is.
 from __future__ import annotations
 
 import json
+import math
 
 import orjson
 
@@ -75,4 +76,4 @@ def _number_and_time(end: bytes) -> tuple[int, float] | None:
         return None
     number, time = last["sequence"], last.get("time")
     plain = len(last) == 2 and type(number) is int and type(time) is float and 0 <= number < _MOST
-    return (number, time) if plain else None
+    return (number, time) if plain and math.isfinite(time) else None

@@ -68,6 +68,8 @@ def said_of(read: Callable[[], tuple[bool, Stamp]]) -> str:
 @given(st.booleans(), NUMBERS, NUMBERS, st.sampled_from(["}", "", "}}", "} ", ',"further":1}', " }"]))
 @example(False, "1", "1_000.0", "}")
 @example(False, "1", "1.0", "")
+@example(False, "1", "NaN", "}")
+@example(False, "1", "1e999", "}")
 def test_a_stamp_whose_beginning_is_known_says_what_it_says_to_a_reader_of_messages(
     raw: bool, sequence: str, time: str, end: str
 ) -> None:

@@ -299,7 +299,7 @@ LIMITS = (
     f"tasks that share a component, and tasks that wait for it | {activation.MOST_HOLDING} each",
 )
 """What the page on limits says of the constants."""
-WITHOUT_A_CONSTANT = ("about a thousand deep", "the same limits")
+WITHOUT_A_CONSTANT = ("about a thousand deep", "the same limits", "a string or an IRI in it | 16 MiB")
 
 
 def test_the_page_on_limits_names_the_limits_there_are() -> None:
