@@ -1,8 +1,8 @@
 """What a component does while a required input is unfed: its code is called, and an actuator rests until it is fed.
 
-An input is unfed from the loss of its last source to the first signal of the next. An actuator, a component
-without outputs, whatever operations it offers, of which a required input has been unfed for longer than it tolerates is
-stopped, and started again by that signal; calls of its operations are refused meanwhile.
+An input is unfed from the loss of its last source to the first signal of the next. An actuator, a component without
+outputs, whatever operations it offers, is stopped when a required input has been unfed for longer than it tolerates,
+and started again by that signal; calls of its operations are refused meanwhile.
 """
 
 from __future__ import annotations
