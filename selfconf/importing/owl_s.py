@@ -61,7 +61,8 @@ def import_services(sources: Iterable[SourceDocument], ledger: ImportLedger) -> 
             described = tuple(component.described() for component in components)
             yield ImportedDocument(stem(source), source.name, described, {**_PREFIXES, **document.prefixes})
         else:
-            ledger.leave_out("documents without a profile", "there is no service of OWL-S 1.1 or 1.2 in them", source)
+            reason = "what a service of OWL-S 1.1 or 1.2 takes and gives stands in its profile"
+            ledger.leave_out("documents without a profile", reason, source)
 
 
 class _ServiceReader:
@@ -71,24 +72,31 @@ class _ServiceReader:
         self.document, self.source, self.ledger = document, source, ledger
         self.service, self.profile, self.process = (_BASES[version, part] for part in PARTS_OF_OWL_S)
         self._presenting: dict[Term, Node] = {}
-        for subject, statements in document.statements.items():
-            for predicate, value in statements:
-                if predicate == self.service.presents:
-                    self._presenting.setdefault(value, subject)
+        self._describing: dict[Term, list[Term]] = {}
+        for subject, predicate, value in document.triples():
+            if predicate == self.service.presents:
+                self._presenting.setdefault(value, subject)
+            elif predicate == self.service.describes:
+                self._describing.setdefault(value, []).append(subject)
 
     def components(self) -> Iterator[ImportedComponent]:
+        services: dict[Term, None] = dict.fromkeys(self.document.instances(self.service.Service))
         for profile in self._profiles():
             service = self._service(profile)
+            services.pop(service, None)
             if isinstance(service, IRI):
                 yield self._component(service, profile)
             else:
                 self.ledger.leave_out("services without an IRI", "a component has an IRI", self.source)
+        reason = "what they take and give stands in a profile, in the same document"
+        self.ledger.leave_out("services without a profile", reason, self.source, len(services))
 
     def _profiles(self) -> list[Node]:
-        speaks = {self.profile[name] for name in ("hasInput", "hasOutput", "serviceName")}
+        """What is of the class of profiles, is presented, or has what a profile has; often it is of a class below."""
+        speaks = {self.profile[name] for name in ("hasInput", "hasOutput", "serviceName")} | {self.service.presentedBy}
         found = dict.fromkeys(self.document.instances(self.profile.Profile))
         for subject, statements in self.document.statements.items():
-            if any(predicate in speaks for predicate, _ in statements):
+            if subject in self._presenting or any(predicate in speaks for predicate, _ in statements):
                 found[subject] = None
         return list(found)
 
@@ -131,9 +139,16 @@ class _ServiceReader:
     def _parameters(self, service: IRI, profile: Node, link: str) -> list[Term]:
         """The parameters of a profile, or else of the process of its service."""
         found = self.document.values(profile, self.profile[link])
-        for process in self.document.values(service, self.service.describedBy) if not found else ():
-            found += self.document.values(process, self.process[link])
-        return found
+        if found:
+            return found
+        processes = dict.fromkeys(
+            (
+                *self.document.values(service, self.service.describedBy),
+                *self._describing.get(service, ()),
+                *self.document.values(profile, self.profile.has_process),
+            )
+        )
+        return [each for process in processes for each in self.document.values(process, self.process[link])]
 
     def _other_terms(self, subject: Node) -> Iterator[tuple[IRI, Term]]:
         """What is said of something in other vocabularies, as far as it is a literal or an IRI."""
@@ -155,7 +170,9 @@ class _ServiceReader:
         names = NumberedNames()
         for parameter in parameters:
             name = parameter.short.rstrip(CALL_MARK) if isinstance(parameter, IRI) else ""
-            said = self.document.value(parameter, self.process.parameterType)
+            said, *further = self.document.values(parameter, self.process.parameterType) or (None,)
+            reason = "a parameter is of one type, the first"
+            self.ledger.leave_out("further types of parameters", reason, self.source, len(further))
             kind = absolute(said.lexical.strip()) if isinstance(said, Literal) else said
             if said is not None and not isinstance(kind, IRI):
                 self.ledger.leave_out("types that are no IRIs", "the parameter is kept without one", self.source)

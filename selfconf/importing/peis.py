@@ -133,7 +133,8 @@ def _component(name: str, parts: list[Part], source: SourceDocument, ledger: Imp
     kind = absolute(parts[0]) if isinstance(parts[0], str) else None
     if kind is None:
         ledger.leave_out("types that are no IRIs", "the component is of the class of all PEIS components", source)
-    called = name or (parts[1] if isinstance(parts[1], str) else "") or stem(source)
+    title = parts[1] if isinstance(parts[1], str) else ""
+    called = name or title or stem(source)
     for unknown in parts[4:6]:
         if unknown:
             reason = "what they mean could not be established"
@@ -142,7 +143,7 @@ def _component(name: str, parts: list[Part], source: SourceDocument, ledger: Imp
     return ImportedComponent(
         ledger.names.component(ledger.minted(called), source),
         (kind or IRI.unchecked(ledger.namespace + "Component"),),
-        labels=(Literal(called),),
+        labels=(Literal(title or called),),
         properties=(
             *said,
             *_properties(parts[3], source, ledger),

@@ -79,6 +79,20 @@ def test_a_profile_without_parameters_has_those_of_the_process(workshop: Worksho
     assert left_out(report) == {"types that are no IRIs": 1, "services without an IRI": 1}
 
 
+def test_a_profile_is_found_by_its_service_and_a_process_by_either_of_them(workshop: Workshop) -> None:
+    head = TURTLE.partition("<#s>")[0]
+    text = """<#a> process:parameterType <urn:A>, <urn:B> . <#m> process:hasInput <#a> .
+        <#s1> service:presents <#p1> ; service:describedBy <#m> . <#p1> a <urn:Brewing> .
+        <#s2> service:presents <#p2> . <#p2> profile:serviceName "two" ; profile:has_process <#m> .
+        <#s3> service:presents <#p3> . <#m> service:describes <#s3> . <#p3> a profile:Profile .
+        <#s4> a service:Service ; service:describedBy <#m> ."""
+    report = workshop.imported("owl-s", {"x.ttl": head + text})
+    found = workshop.texts()["x.ttl"]
+    assert "<urn:selfconf:owl-s:x#s1> a sc:Component, service:Service, <urn:Brewing> ;" in found
+    assert found.count('sc:hasInput [ sc:name "a" ; sc:signalType <urn:A> ] .') == 3
+    assert left_out(report) == {"further types of parameters": 3, "services without a profile": 1}
+
+
 def test_what_is_said_in_other_vocabularies_is_kept_and_the_rest_is_named(workshop: Workshop) -> None:
     more = """@prefix x: <urn:x:> . @prefix sc: <https://w3id.org/selfconf#> .
         <#s> x:owner x:me . <#p> x:stars 5 , [ x:of 6 ] ; profile:serviceProduct x:b ; profile:hasParameter <#o> ;

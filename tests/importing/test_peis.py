@@ -26,7 +26,7 @@ Semantics=
 '(
 
   \"file:/Components.owl;#wheel_drive\"
-  \"drive\"
+  \"wheels and motors\"
   \"Motion drive of a robot.\"
   ( (\"file:/Objects.owl;#Support\" \"ASTRID\") )
   ( )
@@ -48,7 +48,7 @@ def test_a_description_becomes_an_advertisement(workshop: Workshop) -> None:
         workshop.texts()["Drive.ttl"].partition("\n\n")[2].partition("\n\n")[2]
         == """\
 <urn:selfconf:peis:drive> a sc:Component, components:wheel_drive ;
-    rdfs:label "drive" ;
+    rdfs:label "wheels and motors" ;
     rdfs:comment "Motion drive of a robot." ;
     objects:Support "ASTRID" ;
     sc:hasInput [ sc:name "position.0.mi-setvel" ; sc:signalType data:PlanarVel ] ;
