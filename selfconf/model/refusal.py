@@ -116,6 +116,8 @@ class DerivationStep:
         issues = _issues(self.input, self.wanted)
         none_issues, port = f"no component left in {{}} {issues}", port_in_words(self.input).removeprefix("the ")
         no_role = f"no recruit {issues}" if self.recruits else f"no interaction feeds its {port}"
+        if not self.wanted.signals:
+            no_role = f"its {port} states no type, and no sc:Interaction names both ports"
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
         return f"{self.component.short}{others} cannot play the role {self.role.short}, as {lack}"
 
@@ -190,6 +192,8 @@ class InputUnfed:
         no_role = f"no interaction feeds it in the role {self.role.short}"
         if self.recruits:
             no_role = f"no recruit that can be fed itself {issues}"
+        if not self.wanted.signals:
+            no_role = "it states no type, and no sc:Interaction names both ports"
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
         if self.nearest is not None:
             lack += f"; the nearest is {self.nearest.component.short}, which {self.nearest.obstacle}"

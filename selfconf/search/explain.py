@@ -40,6 +40,7 @@ from selfconf.search.reduction import (
     Fed,
     InterchangeabilityClass,
     LazyReduction,
+    Need,
     Played,
     ReducedProblem,
     Shared,
@@ -142,7 +143,7 @@ class _Wording:
             for name, signals, _, optional, condition in profile.inputs
             if not optional and (signals, condition) == need.wanted and problem.feeding(role, name) == need.sources
         )
-        feeding = [problem.roles[source] for source in dict.fromkeys(source.role for source in need.sources)]
+        feeding = [problem.roles[source] for source in _feeding(need)]
         sources = tuple(feeder.iri for feeder in feeding)
         optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
         if role not in self._alike:
@@ -166,6 +167,11 @@ class _Wording:
             names = {parameter.iri: parameter.name for parameter in problem.task.template.parameters}
             return model.OneValue(names[problem.variables[constraint.variable].parameter])
         return model.OneRoleEach()
+
+
+def _feeding(need: Need) -> Iterable[int]:
+    """Return the roles that may feed a need: a port without a type only by an interaction that names both ports."""
+    return dict.fromkeys(source.role for source in need.sources if source.by_name or need.wanted.signals)
 
 
 LIKE_A_SLIP = 0.7

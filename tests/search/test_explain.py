@@ -198,3 +198,47 @@ def test_a_name_that_was_probably_meant_is_proposed(
 
 def test_no_other_name_is_proposed_where_a_candidate_has_it(tmp_path: Path) -> None:
     assert misnamed(tmp_path, SCREEN, 'sc:output "describe()"') is None
+
+
+PRESS = ':bell a sc:Component, :Button ; {} [ sc:name "{}" ] . :eye a sc:Component, :Camera ; {} [ sc:name "said" ] .'
+
+
+@pytest.mark.parametrize(
+    ("needed", "offered", "cannot"),
+    [
+        ("sc:hasInput", "sc:hasOutput", "the input 'words' (signal without a type) of bell cannot be fed"),
+        ("sc:needsOperation", "sc:hasOperation", "the operation 'words' that bell needs cannot be called"),
+    ],
+)
+@pytest.mark.parametrize("recruits", ["", "; sc:recruits true"])
+def test_of_a_port_without_a_type_it_is_told_that_an_interaction_has_to_name_both(
+    tmp_path: Path, needed: str, offered: str, cannot: str, recruits: str
+) -> None:
+    template = (
+        ":t a sc:Template ; sc:roles ( :from :to ) . :from a sc:Role ; sh:class :Camera ; sc:feeds :to ."
+        f" :to a sc:Role ; sh:class :Button {recruits} ."
+    )
+    (tmp_path / "t.ttl").write_text(PREFIXES + template)
+    home = selfconf.read(PREFIXES + PRESS.format(needed, "words", offered))
+    refused = selfconf.configure(selfconf.template(tmp_path / "t.ttl"), home)
+    assert isinstance(refused, selfconf.Refusal)
+    assert [str(one) for one in refused.reasons] == [
+        f"{cannot}: it states no type, and no sc:Interaction names both ports"
+    ]
+
+
+def test_of_a_further_component_with_a_port_without_a_type_it_is_told_as_well(tmp_path: Path) -> None:
+    template = (
+        ":t a sc:Template ; sc:roles ( :from :to ) . :from a sc:Role ; sh:class :Camera ; sc:feeds :to ."
+        " :to a sc:Role ; sh:class :Button ."
+    )
+    (tmp_path / "t.ttl").write_text(PREFIXES + template)
+    # Of different frames, so that they are two needs.
+    bells = [f':{one} a sc:Component, :Button ; sc:hasInput [ sc:name "{one}" ; sc:frame "{one}" ] .' for one in "ab"]
+    eye = ':eye a sc:Component, :Camera ; sc:hasOutput [ sc:name "seen" ] .'
+    refused = selfconf.configure(selfconf.template(tmp_path / "t.ttl"), selfconf.read(PREFIXES + eye + "".join(bells)))
+    assert isinstance(refused, selfconf.Refusal)
+    _, further = str(refused.reasons[0]).split("; so ")
+    assert (
+        further == "a cannot play the role to, as its input 'a' states no type, and no sc:Interaction names both ports"
+    )
