@@ -81,7 +81,7 @@ def test_a_domain_without_a_router_is_one_sentence(capsys: pytest.CaptureFixture
     assert bridge.ended() == 2
     site, trouble = bridge.complaints.splitlines()
     assert f"ecology {home.ecology} serves" in site
-    assert "127.0.0.1:1" in trouble
+    assert "no router of ROS 2 answers at tcp/127.0.0.1:1;" in trouble
     assert home.left_behind() == []
 
 

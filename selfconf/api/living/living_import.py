@@ -18,7 +18,7 @@ def import_living_nodes(endpoint: str, domain: int, out: Path, namespace: str | 
     from selfconf.bus.zenoh import client
 
     def read(ledger: ImportLedger) -> Iterator[ImportedDocument]:
-        bus = client([endpoint])
+        bus = client([endpoint], wanted="router of ROS 2")
         try:
             yield from living_graph(bus, domain, ledger)
         finally:

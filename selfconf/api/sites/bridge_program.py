@@ -73,4 +73,4 @@ def serve_nodes(
 
     for left_out in ros2.learn(definitions or ros2.named_folders()):
         complain(str(left_out))
-    serve_bridge(RosWorld(lambda: client([endpoint]), domain), site, complain)
+    serve_bridge(RosWorld(lambda: client([endpoint], wanted="router of ROS 2"), domain), site, complain)

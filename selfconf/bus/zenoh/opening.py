@@ -45,25 +45,31 @@ def client(
     seconds: float = 4.0,
     shared_memory: bool = False,
     credentials: Credentials | None = None,
+    wanted: str = "site",
 ) -> ZenohBus:
     """Open the session of anything that is not a site. Raises NetworkError if none of the endpoints answers.
 
     Each endpoint is tried once first: with a time-out, Zenoh would spend all of it on the first one. Where nothing
     listens it is tried again for that long, as a site may be about to; what listens and stays silent is no site. With
-    `shared_memory` large payloads go through that, unless so many clients have it already that the hub refuses.
+    `shared_memory` large payloads go through that, unless so many clients have it already that the hub refuses. What is
+    `wanted` there stands in the sentence of the error.
     """
     began = time.monotonic()
     security = None if credentials is None else Security(credentials)
     for shared in (True, False) if shared_memory else (False,):
         try:
-            return ZenohBus(open_session("client", connect=connect, shared_memory=shared, security=security))
+            return ZenohBus(
+                open_session("client", connect=connect, shared_memory=shared, security=security, wanted=wanted)
+            )
         except NetworkError:
             if credentials is not None:
                 _raise_if_refused(connect, credentials)
             elif time.monotonic() - began > GREETING:
                 where = ", ".join(filter(_listens, connect)) or ", ".join(connect)
-                raise NetworkError(f"what listens at {where} stays silent; is the endpoint that of a site?") from None
-    return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security))
+                raise NetworkError(
+                    f"what listens at {where} stays silent; is the endpoint that of a {wanted}?"
+                ) from None
+    return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security, wanted))
 
 
 def _listens(endpoint: str) -> bool:

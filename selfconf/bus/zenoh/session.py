@@ -115,11 +115,13 @@ def open_session(
     connect_seconds: float = 0.0,
     shared_memory: bool = False,
     security: Security | None = None,
+    wanted: str = "site",
 ) -> Any:
     """Open a session. Raises NetworkError for an endpoint that is none or taken, and where no router answers a client.
 
-    It is raised as well where this program may not open enough files, and ProgrammerError in a process that was forked
-    from one that had opened a session: Zenoh's threads are missing there, and it would wait for them for ever.
+    It names what is `wanted` at the endpoints of a client. It is raised as well where this program may not open enough
+    files, and ProgrammerError in a process that was forked from one that had opened a session: Zenoh's threads are
+    missing there, and it would wait for them for ever.
 
     With `connect_seconds` a client tries for that long, otherwise each endpoint once. A router does not wait for those
     that it connects to. With `shared_memory` large payloads go through that to others on this machine that have it too.
@@ -137,7 +139,7 @@ def open_session(
         where = ", ".join(connect if mode == "client" else listen[:1])
         if "Address already in use" in str(error):
             raise NetworkError(f"cannot listen on {where}: {PORT_TAKEN}") from None
-        what = "no site answers at" if mode == "client" else "cannot listen on"
+        what = f"no {wanted} answers at" if mode == "client" else "cannot listen on"
         raise NetworkError(f"{what} {where}; is the endpoint right? ({_first_sentence(error)})") from None
     except BaseException as error:  # a panic of Zenoh is no Exception
         if type(error).__name__ != PANIC:

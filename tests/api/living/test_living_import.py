@@ -18,7 +18,7 @@ ELSEWHERE = ("--connect", "tcp/127.0.0.1:1")
         (("ros2",), "name at least one SOURCE to import"),
         (("wot", *ELSEWHERE), "it goes with ros2 and no SOURCE"),
         (("ros2", "models", *ELSEWHERE), "it goes with ros2 and no SOURCE"),
-        (("ros2", *ELSEWHERE), "tcp/127.0.0.1:1"),
+        (("ros2", *ELSEWHERE), "no router of ROS 2 answers at tcp/127.0.0.1:1;"),
         (("ros2", *ELSEWHERE, "--namespace", "here"), "cannot be a namespace"),
         (("ros2", *ELSEWHERE, "--domain", "233"), "a number from 0 to 232"),
     ],
