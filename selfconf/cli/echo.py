@@ -17,7 +17,9 @@ EXAMPLE = """  selfconf echo person-tracker pose --count 5"""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    parser.add_argument("component", metavar="COMPONENT", help="a component: its IRI or its local name")
+    parser.add_argument(
+        "component", metavar="COMPONENT", help="a component: its IRI, or its local name with or without a prefix"
+    )
     parser.add_argument("output", metavar="PORT", help="the name of one of its outputs")
     parser.add_argument("--count", metavar="N", type=_count, help="end after so many signals (default: at Ctrl-C)")
     parser.add_argument(

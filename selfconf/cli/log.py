@@ -22,7 +22,11 @@ _COLOURS = {"stderr": "yellow", "site": "cyan"}
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument(
-        "component", metavar="COMPONENT", nargs="?", default="", help="only its lines: its IRI or its local name"
+        "component",
+        metavar="COMPONENT",
+        nargs="?",
+        default="",
+        help="only its lines: its IRI, or its local name with or without a prefix",
     )
     parser.add_argument("--follow", action="store_true", help="go on with the lines to come, until Ctrl-C")
     parser.add_argument(
@@ -49,9 +53,8 @@ def run(given: argparse.Namespace) -> int:
 
     end_as_by_ctrl_c()
     show = _json if given.format == "json" else _text
-    component = given.component.removeprefix("<").removesuffix(">").removeprefix(":")
     try:
-        with log_reader(given.ecology, given.connect, given.keys, given.log, component, complain) as reader:
+        with log_reader(given.ecology, given.connect, given.keys, given.log, given.component, complain) as reader:
             found = reader.latest(given.lines)
             if found:
                 display("\n".join(map(show, found)))

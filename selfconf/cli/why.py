@@ -22,7 +22,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "term",
         metavar="TERM",
-        help="a role, a component, a value that a task is bound to, or a task; an IRI or its local name",
+        help="a role, a component, a value that a task is bound to, or a task; its IRI, or its local name with or"
+        " without a prefix",
     )
     parser.add_argument(
         "--at",

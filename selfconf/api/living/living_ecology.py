@@ -20,6 +20,7 @@ from selfconf.api.arguments import (
 )
 from selfconf.api.ecology import Ecology
 from selfconf.api.living.component_states import ComponentState, component_states, doubled, told_lives, unadvertised
+from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.configurators import Configurators
 from selfconf.api.living.echo import HeardSignal, echo
 from selfconf.api.living.output_sources import follow_output
@@ -183,13 +184,13 @@ class LivingEcology(Ecology):
         return self._view.life(component)
 
     def component(self, term: str) -> FoundAdvertisement:
-        """The advertised component that a term means: an IRI, with or without brackets, or its local name.
+        """The advertised component that a term means: an IRI, with or without brackets, a CURIE, or its local name.
 
         Raises AuthorError where there is none, or where several have that name, and ProgrammerError for a term that is
         no text.
         """
         checked_text(term, "the name of a component")
-        wanted = term.removeprefix("<").removesuffix(">").removeprefix(":")
+        wanted = iri_or_local_name(term)
         known = self.discover().found
         found = [one for component, one in known.items() if wanted in (component, component.short)]
         if len(found) == 1:

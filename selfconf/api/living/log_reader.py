@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.living_ecology import LivingEcology, join
 from selfconf.api.living.site_logs import LogSource, local_log, names_of_log, site_logs
 from selfconf.errors import NetworkError
@@ -36,12 +37,13 @@ class LogReader:
         pause: float = FOLLOW_PAUSE,
         look_up: Callable[[str], object] = lambda component: None,
     ) -> None:
-        """`component` is an IRI or a local name: only the lines of its processes are read; empty: all.
+        """`component` is an IRI, a CURIE or a local name: only the lines of its processes are read; empty: all.
 
         `pause` is for how many seconds one who follows the logs is to wait between two looks. `look_up` raises
         AuthorError for a component that is not there, as far as the ecology lives and can be asked.
         """
-        self._component, self.pause, self._look_up = component, pause, look_up
+        self._named, self.pause, self._look_up = component, pause, look_up
+        self._component = iri_or_local_name(component)
         self._positions = dict.fromkeys(sources, "")
 
     def latest(self, most: int) -> list[LogLine]:
@@ -51,9 +53,9 @@ class LogReader:
 
     def why_nothing(self) -> str:
         """Say that no line is kept. Raises AuthorError where it is known that there is no such component."""
-        if not self._component:
+        if not self._named:
             return "nothing that a component has printed is kept in the log"
-        self._look_up(self._component)
+        self._look_up(self._named)
         return f"nothing that {one_line(self._component)} has printed is kept in the log"
 
     def added(self) -> list[LogLine]:

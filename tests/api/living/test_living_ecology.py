@@ -101,7 +101,7 @@ def test_what_is_no_term_is_refused_in_a_sentence_and_a_local_name_is_one(served
         with pytest.raises(ProgrammerError, match=r"^a moment is a number of seconds"):
             living.why("clock", "x")  # type: ignore[arg-type]  # that is what is tested
         clock = living.component("clock").advertisement.component
-        assert [living.state(name) for name in (clock, "clock", ":clock", f"<{clock}>")] == ["dormant"] * 4
+        assert [living.state(name) for name in (clock, "clock", ":clock", "x:clock", f"<{clock}>")] == ["dormant"] * 5
         with pytest.raises(AuthorError, match="no component lamp is advertised"):
             living.state("lamp")
     for arguments in ({"ecology": 42}, {"keys": 42}):

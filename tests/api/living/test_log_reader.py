@@ -56,6 +56,12 @@ def test_where_nothing_is_kept_that_is_said_or_that_there_is_no_such_component()
         LogReader([], "clock", look_up=look_up).why_nothing()
 
 
+@pytest.mark.parametrize("named", ["clock", ":clock", "x:clock", "<https://example.org/x#clock>"])
+def test_a_component_is_named_as_tables_and_templates_name_it(tmp_path: Path, named: str) -> None:
+    (tmp_path / "a.log").write_text(said(1, "mine") + said(2, "another's").replace("#clock", "#radio"))
+    assert [line.text for line in LogReader([local_log(tmp_path / "a.log")], named).latest(9)] == ["mine"]
+
+
 @pytest.fixture
 def far(tmp_path: Path) -> Iterator[Home]:
     """An ecology on another machine, which is one with another runtime folder: nothing is known but its endpoint."""
