@@ -115,7 +115,7 @@ class DerivationStep:
         others = "" if not self.more else " and one other" if self.more == 1 else f" and {self.more} others"
         issues = _issues(self.input, self.wanted)
         none_issues, port = f"no component left in {{}} {issues}", port_in_words(self.input).removeprefix("the ")
-        no_role = f"no recruit {issues}" if self.recruits else f"no interaction feeds its {port}"
+        no_role = f"no recruit that can be fed itself {issues}" if self.recruits else f"no interaction feeds its {port}"
         if not self.wanted.signals:
             no_role = f"its {port} states no type, and no sc:Interaction names both ports"
         lack = _lack(self.sources, self.optional, none_issues, no_role, self.recruits)
@@ -132,7 +132,7 @@ def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str,
     asked = [source.short for source in sources if source not in optional]
     said = [none_issues.format(listed(asked))] if asked else [] if optional else [no_role]
     said += [f"the role {role.short} asks for no component (sc:minCount 0)" for role in optional]
-    return ", and ".join([*said, *(["no recruit does"] if recruits and sources else [])])
+    return ", and ".join([*said, *(["no recruit that can be fed itself does"] if recruits and sources else [])])
 
 
 @immutable

@@ -131,6 +131,20 @@ def test_what_follows_is_told_with_how_many_leave_for_it(more: int, who: str) ->
     assert str(told).split("; so ") == [str(UNFED), str(step), str(step)]
 
 
+@pytest.mark.parametrize(
+    ("sources", "lack"),
+    [
+        ((), "no recruit that can be fed itself issues a Image"),
+        ((EYE,), "no component left in eye issues a Image, and no recruit that can be fed itself does"),
+    ],
+)
+def test_what_could_be_recruited_if_it_were_fed_itself_is_not_said_to_be_missing(
+    sources: tuple[IRI, ...], lack: str
+) -> None:
+    step = DerivationStep(MIND, CAP, 0, "picture", WantedSignal((IMAGE,)), sources, recruits=True)
+    assert str(step) == f"cap cannot play the role mind, as {lack}"
+
+
 def test_no_answer_is_true() -> None:
     assert not Refusal(EYE, ())
     assert not Undecided()
