@@ -47,9 +47,12 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 def checked_name(name: str, what: str) -> str:
-    """A name that can be a chunk of a key: up to 64 letters, digits, dots, hyphens. Raises AuthorError."""
+    """A name that can be a chunk of a key: up to 64 ASCII letters, digits, '.', '-', '_'. Raises AuthorError."""
     if not _NAME.fullmatch(name):
-        raise AuthorError(f"{name!r} cannot name {what}: use letters, digits, '.', '-' and '_', at most 64")
+        permitted = (
+            "begin with an ASCII letter or a digit; after it '.', '-' and '_' may stand as well, at most 64 in all"
+        )
+        raise AuthorError(f"{name!r} cannot name {what}: {permitted}")
     return name
 
 
