@@ -6,8 +6,8 @@ host. A `Certificate` is good for `DAYS` unless told otherwise; `Principal` is w
 `rules_of` what each may do, as `AccessRules` that Zenoh keeps. `Doorkeeper` keeps the rules of the `GuardedHub` of a
 site (`SiteIdentity`), from `first_rules` on; `introduce` shows a program's certificate to the sites, and
 `CertificateWatch` shows it again when it is renewed, and says that it expires; `is_in_time` says whether it has.
-`believe` notes which site owns a component that two sites advertise, and `believed` says which sites were noted. It
-needs the extra `keys`.
+`believe` notes which site owns a component that two sites advertise, and `believed` says which sites were noted;
+`written_component` is the IRI of a component that a person has written. It needs the extra `keys`.
 """
 
 from selfconf.access.authority import DAYS, Authority, open_keys
@@ -18,7 +18,7 @@ from selfconf.access.expiry import CertificateWatch, is_in_time
 from selfconf.access.host_authority import HostAuthority
 from selfconf.access.introduction import introduce
 from selfconf.access.keys_folder import KeysFolder
-from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.access.principal import Principal, PrincipalKind, written_component
 from selfconf.access.rules import AccessRules, rules_of
 
 __all__ = [
@@ -41,4 +41,5 @@ __all__ = [
     "is_in_time",
     "open_keys",
     "rules_of",
+    "written_component",
 ]

@@ -12,6 +12,7 @@ import re
 from enum import Enum
 
 from selfconf.errors import AuthorError, PeerError
+from selfconf.model.curie import is_local_name
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name, component_chunk
@@ -19,6 +20,8 @@ from selfconf.protocol.keys import checked_name, component_chunk
 LONGEST_NAME = 48
 """Characters of a name at most: with the kind before it, a common name has room for 64 (X.520, ub-common-name)."""
 _CHUNK = re.compile(r"[a-z2-7]{16}")
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*")
+"""The scheme of an IRI (RFC 3987, section 2.2)."""
 
 
 class PrincipalKind(str, Enum):
@@ -75,7 +78,7 @@ class Principal:
     def written(cls, text: str) -> Principal:
         """The principal that a person has written: a common name, or the IRI of a component. Raises AuthorError."""
         if ":" in text:
-            return cls.component(IRI.unchecked(text.strip("<>")))
+            return cls.component(written_component(text))
         try:
             return cls.of(text)
         except PeerError:
@@ -84,3 +87,23 @@ class Principal:
                 f" of a component; a NAME has at most {LONGEST_NAME} letters, digits, '.', '-' and '_', that of"
                 " conf.NAME no hyphen"
             ) from None
+
+
+def written_component(text: str) -> IRI:
+    """The IRI of a component that a person has written in full. Raises AuthorError.
+
+    A CURIE would be taken for the IRI of another component, and so would `comp.` before an IRI: a certificate would
+    speak for no component, and one that is revoked would let its component in as before. So what looks like either
+    counts only in brackets.
+    """
+    bare = text.removeprefix("<").removesuffix(">")
+    scheme, _, rest = bare.partition(":")
+    doubtful = (scheme != "urn" and is_local_name(rest)) or scheme.partition(".")[0] in {
+        kind.value for kind in PrincipalKind
+    }
+    try:
+        if rest and _SCHEME.fullmatch(scheme) and (bare != text or not doubtful):
+            return IRI(bare)
+    except ValueError:  # it has what no IRI has, a space for example
+        pass
+    raise AuthorError(f"{text!r} is no IRI of a component; write it in full, such as <https://example.org/home#clock>")

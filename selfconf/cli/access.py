@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from selfconf.cli.options import add_ecology_arguments, joined
 from selfconf.cli.terminal import complain
 from selfconf.errors import AuthorError
-from selfconf.model.term import IRI
 from selfconf.model.wording import client_text, utc_text
 
 if TYPE_CHECKING:
@@ -57,15 +56,13 @@ def run(given: argparse.Namespace) -> int:
 
 def _believe(given: argparse.Namespace, site: str, component: str) -> int:
     from selfconf import rendezvous
-    from selfconf.access import believe
+    from selfconf.access import believe, written_component
 
     folder = rendezvous.keys_folder(given.keys)
     if folder is None:
         raise AuthorError("whose sites shall believe it? give their folder of keys: --keys DIR")
-    iri = component.strip("<>")
-    if ":" not in iri:  # no ecology is asked, which would know of which component this is the local name
-        raise AuthorError(f"{component!r} is no IRI; name the component in full, as https://example.org/my-home#lamp")
-    believe(folder, IRI.unchecked(iri), site)
+    iri = written_component(component)  # no ecology is asked, which would know of which component it is the local name
+    believe(folder, iri, site)
     print(f"the sites of {folder} believe that {iri} is that of site {site}")
     return 0
 

@@ -118,7 +118,7 @@ def test_whose_a_component_is_is_noted(tmp_path: Path, capsys: pytest.CaptureFix
     assert said.code == 0
     assert believed(tmp_path / "keys") == {"urn:lamp": "attic"}
     said = run(capsys, "access", "--keys", str(tmp_path / "keys"), "--believe", "attic", "lamp")
-    assert said.is_one_sentence("name the component in full")
+    assert said.is_one_sentence("write it in full")
     assert believed(tmp_path / "keys") == {"urn:lamp": "attic"}
 
 
