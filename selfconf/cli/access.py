@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--believe",
         metavar=("SITE", "COMPONENT"),
         nargs=2,
-        help="say whose a component is that several sites advertise; for the sites of the folder --keys",
+        help="say whose a component is that several sites advertise; for programs with the folder --keys",
     )
     parser.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
 
@@ -60,10 +60,10 @@ def _believe(given: argparse.Namespace, site: str, component: str) -> int:
 
     folder = rendezvous.keys_folder(given.keys)
     if folder is None:
-        raise AuthorError("whose sites shall believe it? give their folder of keys: --keys DIR")
+        raise AuthorError("which programs shall believe it? give their folder of keys: --keys DIR")
     iri = written_component(component)  # no ecology is asked, which would know of which component it is the local name
     believe(folder, iri, site)
-    print(f"the sites of {folder} believe that {iri} is that of site {site}")
+    print(f"programs with the folder {folder} believe that {iri} is that of site {site}")
     return 0
 
 

@@ -116,6 +116,7 @@ def test_whose_a_component_is_is_noted(tmp_path: Path, capsys: pytest.CaptureFix
     run(capsys, "keys", "init", str(tmp_path / "keys"))
     said = run(capsys, "access", "--keys", str(tmp_path / "keys"), "--believe", "attic", "urn:lamp")
     assert said.code == 0
+    assert said.out == f"programs with the folder {tmp_path / 'keys'} believe that urn:lamp is that of site attic\n"
     assert believed(tmp_path / "keys") == {"urn:lamp": "attic"}
     said = run(capsys, "access", "--keys", str(tmp_path / "keys"), "--believe", "attic", "lamp")
     assert said.is_one_sentence("write it in full")
