@@ -11,6 +11,8 @@ PROMETHEUS = "text/plain; version=0.0.4; charset=utf-8"
 _ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
 CAUSES = frozenset(cause.value for cause in Cause)
 """The causes of a loss that have a count of their own: what a peer makes up has none."""
+OTHER = "other"
+"""The cause by which all others are counted."""
 
 
 class Metrics:
@@ -33,7 +35,7 @@ class Metrics:
         """Count an event of a run."""
         self._acts[act] += 1
         if act == "lost":
-            self._losses[cause if cause in CAUSES else "other"] += 1
+            self._losses[cause if cause in CAUSES else OTHER] += 1
 
     def text(self, gauges: Mapping[str, Iterable[tuple[Mapping[str, str], float]]]) -> str:
         """All metrics; `gauges` are those that the server reads off the ecology, each with its labels."""
@@ -43,7 +45,8 @@ class Metrics:
         queries = [({"status": status}, float(count)) for status, count in sorted(self._queries.items())]
         lines += _family("selfconf_queries_total", "counter", queries)
         lines += _family("selfconf_query_seconds_total", "counter", [({}, self._query_seconds)])
-        losses = [({"cause": cause}, float(count)) for cause, count in sorted(self._losses.items())]
+        # Every cause is told from the beginning: a growth from nothing is none for Prometheus.
+        losses = [({"cause": cause}, float(self._losses[cause])) for cause in (*sorted(CAUSES), OTHER)]
         lines += _family("selfconf_component_losses_total", "counter", losses)
         lines += _family("selfconf_configurations_total", "counter", [({}, float(self._acts["running"]))])
         lines += _family("selfconf_changes_total", "counter", [({}, float(self.changes))])
@@ -70,5 +73,5 @@ def _family(name: str, kind: str, values: Iterable[tuple[Mapping[str, str], floa
     lines = [f"# HELP {name} {HELP[name]}", f"# TYPE {name} {kind}"]
     for labels, value in values:
         inside = ",".join(f'{label}="{text.translate(_ESCAPES)}"' for label, text in labels.items())
-        lines.append(f"{name}{{{inside}}} {value:g}" if inside else f"{name} {value:g}")
+        lines.append(f"{name}{{{inside}}} {value:.15g}" if inside else f"{name} {value:.15g}")
     return lines

@@ -68,6 +68,14 @@ def test_a_unit_is_made_of_sections_with_settings_and_starts_a_command_that_ther
     assert parser().parse_args(command_of(unit)).run
 
 
+def test_the_site_may_write_into_its_folder_of_keys_which_lies_where_all_else_is_read_only() -> None:
+    (unit,) = (unit for unit in UNITS if unit.stem == "selfconf-site")
+    settings = unit.read_text().splitlines()
+    command = command_of(unit)
+    assert "ProtectSystem=strict" in settings
+    assert f"ReadWritePaths={command[command.index('--keys') + 1]}" in settings
+
+
 @pytest.mark.process
 def test_the_site_of_the_unit_starts_in_a_folder_with_a_project_file(home: Home, tmp_path: Path) -> None:
     (home.folder / "selfconf.toml").write_text(f'ecology = "{home.ecology}"\nads = "ads"\n')
