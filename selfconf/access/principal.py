@@ -84,7 +84,7 @@ class Principal:
         except PeerError:
             raise AuthorError(
                 f"{text!r} names no holder of a certificate; write site.NAME, conf.NAME, read.NAME, or the IRI"
-                f" of a component; a NAME has at most {LONGEST_NAME} letters, digits, '.', '-' and '_', that of"
+                f" of a component; a NAME has at most {LONGEST_NAME} ASCII letters, digits, '.', '-' and '_', that of"
                 " conf.NAME no hyphen"
             ) from None
 

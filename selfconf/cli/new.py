@@ -47,7 +47,7 @@ def scaffold(kind: str, name: str, folder: Path, namespace: str | None = None) -
     """Write the files of one thing; raises AuthorError, and writes nothing, if there is a file of that name."""
     if not _NAME.fullmatch(name):
         raise AuthorError(
-            f"{name!r} cannot be a name; begin with a letter, go on with letters and digits, a - or _ between them"
+            f"{name!r} cannot be a name; begin with an ASCII letter, go on with these and digits, a - or _ between them"
         )
     namespace = namespace or (f"https://example.org/{name}#" if kind == "ontology" else _HOME)
     if not _NAMESPACE.fullmatch(namespace):
