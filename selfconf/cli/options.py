@@ -255,7 +255,7 @@ def read_files(paths: Iterable[Path]) -> Ecology:
     complain_of(ecology)
     for unknown in unknown_in_ecology(ecology.advertisements()):
         complain(unknown)
-    if not len(ecology):
+    if not len(ecology) and not ecology.left_out:
         complain(f"there is no advertisement in {', '.join(map(str, paths))}")
     return ecology
 

@@ -55,4 +55,6 @@ def test_a_name_with_hyphens_and_underscores_is_one_and_the_sentence_says_so(
     assert not check([str(tmp_path)]).diagnostics
     capsys.readouterr()
     outcome = run(capsys, "new", "component", "a__b", "--dir", str(tmp_path))
-    assert outcome.is_one_sentence("'a__b' cannot be a name", "begin with an ASCII letter, go on with these and digits, a - or _")
+    assert outcome.is_one_sentence(
+        "'a__b' cannot be a name", "begin with an ASCII letter, go on with these and digits, a - or _"
+    )

@@ -142,6 +142,16 @@ def test_a_folder_without_advertisements_is_named(template: Path, capsys: pytest
     assert (outcome.code, outcome.err) == (1, f"there is no advertisement in {empty}\n")
 
 
+def test_a_folder_of_which_all_is_left_out_is_not_said_to_have_no_advertisement(
+    template: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bare = template.parent / "bare.ttl"
+    bare.write_text("<urn:lamp> a <https://w3id.org/selfconf#Component> .")
+    outcome = configure(capsys, template, *BOUND, "--ads", bare)
+    assert outcome.code == 1
+    assert [line.partition(":1: ")[2].partition(":")[0] for line in outcome.err.splitlines()] == ["left out urn"]
+
+
 def test_the_strategy_best_without_a_cost_says_what_it_does(template: Path, capsys: pytest.CaptureFixture[str]) -> None:
     given = ("--ads", template.parent / "a", "--ads", template.parent / "b")
     outcome = configure(capsys, template, *given, *BOUND, "--strategy", "best")
