@@ -2,11 +2,22 @@
 
 `Dataset` holds named graphs and answers queries with a `QueryAnswer`; `QUERY_PREFIXES` are lent to every query,
 `declared_prefixes` are those that a query declares itself.
-`only_reads`, `fault`, `says` and `without` tell what a query must not say.
+`only_reads`, `fault`, `says` and `without` tell what a query must not say, `mistake` what is wrong with what is none.
 """
 
 from selfconf.rdf.sparql.dataset import QUERY_PREFIXES, Dataset, QueryAnswer
+from selfconf.rdf.sparql.mistakes import mistake
 from selfconf.rdf.sparql.prologue import declared_prefixes
 from selfconf.rdf.sparql.read_only import fault, only_reads, says, without
 
-__all__ = ["QUERY_PREFIXES", "Dataset", "QueryAnswer", "declared_prefixes", "fault", "only_reads", "says", "without"]
+__all__ = [
+    "QUERY_PREFIXES",
+    "Dataset",
+    "QueryAnswer",
+    "declared_prefixes",
+    "fault",
+    "mistake",
+    "only_reads",
+    "says",
+    "without",
+]

@@ -32,7 +32,7 @@ from selfconf.rdf.positions import Positions
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.shacl import COUNTS, ILL_FORMED, LISTS, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
-from selfconf.rdf.sparql import fault
+from selfconf.rdf.sparql import fault, mistake
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.vocabulary import SC
 
@@ -190,10 +190,12 @@ def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
             if reason is not None:
                 yield at(positions, offset, "SC-T13", reason)
                 continue
+            declared = dict(_declared(graph, constraint))
             try:
-                ox.Store().query(str(query), prefixes=dict(_declared(graph, constraint)))
+                ox.Store().query(str(query), prefixes=declared)
             except SyntaxError as error:
-                yield at(positions, offset, "SC-T13", f"This is not SPARQL: {error.msg.partition(': ')[2]}.")
+                wrong = mistake(str(query), error.msg, declared)
+                yield at(positions, offset, "SC-T13", f"This is not SPARQL: {wrong}.")
 
 
 def _too_deep(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterator[Diagnostic]:

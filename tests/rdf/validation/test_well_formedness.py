@@ -64,7 +64,12 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:property [ sh:path :p ; sh:minCount 1 , 2 ]", 59, "A shape has one sh:minCount at most."),
         ("sh:property [ sh:path :p ; sh:pattern '(' ]", 54, "This is no regular expression"),
         (r"sh:property [ sh:path :p ; sh:pattern '\\p{L}+' ]", 54, r"a letter of any language is [^\W\d_]."),
-        ("sh:sparql [ sh:select 'SELECT' ]", 38, "This is not SPARQL"),
+        ("sh:sparql [ sh:select 'SELECT' ]", 38, "This is not SPARQL: at 1:7 it ends too soon."),
+        (
+            "sh:sparql [ sh:select 'SELECT $this { $this k:x 1 }' ]",
+            38,
+            "the prefix k: is not declared; begin with PREFIX",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_shape_is_told_where_it_stands(shape: str, column: int, sentence: str) -> None:

@@ -82,8 +82,16 @@ def _meant(file: LintedFile, iri: str) -> str | None:
     """The known term for which an unknown one probably stands."""
     home = namespace(iri)
     words = _STANDARD.get(home)
-    known = [str(term) for term in dir(words)] if words else sorted(file.index.terms)
-    return _elsewhere(iri, file) or _closest(iri[len(home) :], [term for term in known if term.startswith(home)])
+    known = [*map(str, dir(words)), *_keywords(words)] if words else sorted(file.index.terms)
+    by_case = next((term for term in known if term.lower() == iri.lower()), None)  # sh:Class is not rdfs:Class
+    return (
+        by_case or _elsewhere(iri, file) or _closest(iri[len(home) :], [one for one in known if one.startswith(home)])
+    )
+
+
+def _keywords(words: type[DefinedNamespace]) -> Iterator[str]:
+    """Yield the terms that are no names in Python, which rdflib does not list: `sh:class`, `sh:in`, `sh:or`."""
+    return (words._NS + name for name in words._extras if name.isidentifier())
 
 
 def _unknown(file: LintedFile, iri: str, offset: int, meant: str | None) -> Diagnostic:

@@ -34,6 +34,9 @@ def only(text: str, head: str = PREAMBLE) -> Diagnostic:
         (TEMPLATE + ":r sh:targetClas rob:Lamp .", "sh:targetClass"),
         (TEMPLATE + ":r sh:nodeKind sh:IR .", "sh:IRI"),
         (TEMPLATE + ":r sc:feedss :r .", "sc:feeds"),
+        (TEMPLATE + ":r sh:clas rob:Lamp .", "sh:class"),
+        (TEMPLATE + ":r sh:Class rob:Lamp .", "sh:class"),
+        (TEMPLATE + ":r sh:orr ( [] ) .", "sh:or"),
     ],
 )
 def test_a_misspelt_term_of_selfconf_or_shacl_is_an_error(text: str, meant: str) -> None:
