@@ -120,6 +120,13 @@ def test_every_label_is_one_of_a_metric_and_every_counter_is_asked_for_its_growt
             assert re.search(rf"(rate|increase)\({counter}\[", expression), expression
 
 
+def test_both_sides_of_a_division_have_the_same_labels_without_which_nothing_is_shown() -> None:
+    divisions = [expression.split(" / ") for expression in expressions() if " / " in expression]
+    assert divisions
+    for sides in divisions:
+        assert all(re.match(r"(clamp_min\()?sum\(", side) for side in sides), sides
+
+
 def test_the_panels_have_a_place_each_and_a_sentence() -> None:
     taken: set[tuple[int, int]] = set()
     for panel in DASHBOARD["panels"]:
