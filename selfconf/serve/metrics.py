@@ -45,7 +45,7 @@ class Metrics:
         queries = [({"status": status}, float(count)) for status, count in sorted(self._queries.items())]
         lines += _family("selfconf_queries_total", "counter", queries)
         lines += _family("selfconf_query_seconds_total", "counter", [({}, self._query_seconds)])
-        # Every cause is told from the beginning: a growth from nothing is none for Prometheus.
+        # Every cause has its count from the beginning: to Prometheus growth from nothing is none.
         losses = [({"cause": cause}, float(self._losses[cause])) for cause in (*sorted(CAUSES), OTHER)]
         lines += _family("selfconf_component_losses_total", "counter", losses)
         lines += _family("selfconf_configurations_total", "counter", [({}, float(self._acts["running"]))])
