@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="navigate",
         help="`composite` is `navigate` with a camera and a tracker inside of one component (default: %(default)s)",
     )
-    parser.add_argument("--seed", metavar="N", type=int, default=1, help="decides all noise (default: %(default)s)")
+    parser.add_argument("--seed", metavar="N", type=_seed, default=1, help="decides all noise (default: %(default)s)")
     parser.add_argument(
         "--out",
         metavar="DIR",
@@ -126,6 +126,12 @@ def _display(name: str) -> bool:
     except (OSError, ValueError):
         return False
     return True
+
+
+def _seed(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is no seed: give a whole number from zero on")
+    return int(text)
 
 
 def _speed(text: str) -> float:

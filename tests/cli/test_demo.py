@@ -26,6 +26,11 @@ def test_what_is_no_speed_is_one_sentence(text: str, capsys: pytest.CaptureFixtu
     assert run(capsys, "demo", f"--speed={text}").is_one_sentence(f"{text!r} is no speed", "or max")
 
 
+@pytest.mark.parametrize("text", ["-4", "1.5", "x", ""])
+def test_what_is_no_seed_is_one_sentence(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "demo", f"--seed={text}").is_one_sentence(f"{text!r} is no seed", "from zero on")
+
+
 @pytest.mark.parametrize(("option", "value"), [("--scene", "opera"), ("--pictures", "oil"), ("--policy", "weep")])
 def test_a_choice_that_there_is_not_is_one_sentence(
     option: str, value: str, capsys: pytest.CaptureFixture[str]
