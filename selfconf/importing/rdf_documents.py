@@ -8,7 +8,7 @@ that is once.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 
 from selfconf.errors import AuthorError, TurtleError
 from selfconf.importing.imported import DescribedValue, Description, ImportedDocument, NestedNode, TermList, grouped
@@ -39,7 +39,7 @@ def import_rdf(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Itera
                 ledger.leave_out("components", "an earlier source advertises them already", source)
                 refused.add(component)
         seen.update(components)
-        descriptions = tuple(each for each in described(document) if each.subject not in refused)
+        descriptions = tuple(each for each in described(document, refused) if each.subject not in refused)
         if any(SC.Component in each.values(TYPE) for each in descriptions):
             yield ImportedDocument(stem(source), source.name, descriptions, document.prefixes)
 
@@ -81,8 +81,11 @@ def _refused(document: Document, source: SourceDocument, ledger: ImportLedger) -
     return refused
 
 
-def described(document: Document) -> Iterator[Description]:
-    """What a document says, subject by subject, in its order."""
+def described(document: Document, left_out: Container[Node] = ()) -> Iterator[Description]:
+    """What a document says, subject by subject, in its order; of a blank node that is left out it says nothing.
+
+    A subject with an IRI, or that several statements lead to, is described all the same.
+    """
     uses = Counter(value for _, _, value in document.triples() if isinstance(value, BlankNode))
     inlined: set[Node] = set()
 
@@ -93,7 +96,8 @@ def described(document: Document) -> Iterator[Description]:
                 inlined.update(cell for cell, _ in members)
                 return TermList(tuple(value(member, depth + 1) for _, member in members))
             inlined.add(term)
-            return NestedNode(grouped((p, value(o, depth + 1)) for p, o in document.about(term)))
+            said = grouped((p, value(o, depth + 1)) for p, o in document.about(term))
+            return NestedNode(() if term in left_out else said)
         return term
 
     named = dict.fromkeys(each for each in document.statements if isinstance(each, IRI) or uses[each] != 1)

@@ -97,6 +97,17 @@ def test_a_component_that_does_not_conform_is_left_out_and_the_others_are_kept(w
     assert sc.validate([workshop.out]).conforms
 
 
+@pytest.mark.parametrize("uses", [1, 2])
+def test_a_component_without_an_iri_is_left_out_where_it_is_used_too(workshop: Workshop, uses: int) -> None:
+    text = """@prefix : <urn:> . @prefix sc: <https://w3id.org/selfconf#> .
+        :lamp a sc:Component , :Lamp ; :near _:it . :shelf :holds {} .
+        _:it a sc:Component , :Dimmer ; sc:hasInput [ sc:name "x" ; sc:signalType :Level ] ."""
+    report = workshop.imported("rdf", {"x.ttl": text.format("_:it" if uses > 1 else "5")})
+    assert left_out(report) == {"components that do not conform": 1}
+    assert not any(word in workshop.texts()["x.ttl"] for word in ("Dimmer", "Level"))
+    assert sc.validate([workshop.out]).conforms
+
+
 def test_a_component_that_an_earlier_source_advertises_is_left_out(workshop: Workshop) -> None:
     report = workshop.imported("rdf", {"a.ttl": HEAD + LAMP, "b.ttl": HEAD + LAMP})
     assert list(workshop.texts()) == ["a.ttl"]

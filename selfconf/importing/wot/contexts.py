@@ -9,14 +9,15 @@ unknown too, unless the document has an `@vocab` of its own.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
 from selfconf.importing.naming import absolute
 from selfconf.model.term import IRI, STRING, Literal
+from selfconf.rdf.turtle import ox_term
 from selfconf.rdf.vocabulary import RDF
 
 W3C_CONTEXTS = frozenset(
@@ -27,7 +28,6 @@ W3C_CONTEXTS = frozenset(
 """The contexts of versions 1.0 and 1.1, which agree about the terms that both have, and their earlier names."""
 _SCHEMES = frozenset(("http", "https", "urn", "did", "tag", "info", "file", "ftp", "coap", "coaps", "uuid", "oid"))
 """What before a colon is taken for the scheme of an IRI, if no context says that it is a prefix."""
-_LANGUAGE = re.compile(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*")
 
 
 class TermMeanings:
@@ -104,10 +104,13 @@ class TermMeanings:
         return f"they may be defined by contexts on the web, which are not fetched: {', '.join(sorted(self.remote))}"
 
 
-def spoken(words: str, language: str | None) -> Literal:
-    """Words in a language, if that is said by a tag that can be one."""
-    if language and _LANGUAGE.fullmatch(language):
-        return Literal(words, RDF.langString, language)
+def spoken(words: str, language: object) -> Literal:
+    """Words in a language, if that is said by a tag that can be one: Turtle has no other."""
+    if language and isinstance(language, str):
+        said = Literal(words, RDF.langString, language)
+        with suppress(ValueError):
+            ox_term(said)
+            return said
     return Literal(words, STRING)
 
 

@@ -62,4 +62,5 @@ def test_a_context_that_makes_no_sense_defines_nothing(context: Any) -> None:
 
 def test_words_have_a_language_where_its_tag_can_be_one() -> None:
     assert spoken("Lampe", "de-CH") == Literal("Lampe", LANGUAGES.langString, "de-CH")
-    assert spoken("Lampe", "not a tag") == Literal("Lampe", STRING)
+    for tag in ("not a tag", "a", "en-a", "en-us-us", "", None, 5, {}, ["en"]):  # Turtle has none of them
+        assert spoken("Lampe", tag) == Literal("Lampe", STRING)
