@@ -23,7 +23,7 @@ from selfconf.api.living.component_states import ComponentState, component_state
 from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.configurators import Configurators
 from selfconf.api.living.echo import HeardSignal, echo
-from selfconf.api.living.output_sources import follow_output
+from selfconf.api.living.output_sources import check_output, follow_output
 from selfconf.api.living.restarting import restarted
 from selfconf.api.living.site_access import SiteAccess, site_accesses
 from selfconf.api.living.site_logs import LogSource, logs_of_other_sites
@@ -40,7 +40,6 @@ from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
-from selfconf.model.wording import listed
 from selfconf.protocol.keys import component_chunk, task_name
 from selfconf.protocol.messages import Status
 from selfconf.rdf.advertisements import Advertisement
@@ -210,9 +209,7 @@ class LivingEcology(Ecology):
             raise NetworkError("readers hear no signals; that takes keys of conf.NAME")
         found = self.component(component)
         profile = found.advertisement.profile
-        if output not in (port.name for port in profile.outputs):
-            names = listed(repr(port.name) for port in profile.outputs) or "none"
-            raise AuthorError(f"{profile.component.short} has no output {output!r}; its outputs: {names}")
+        check_output(profile, output)
         state = self.state(profile.component)
         if state != "alive":
             complain(f"{profile.component.short} is {state}: it says nothing before a task has it started")

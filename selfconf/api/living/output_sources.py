@@ -13,8 +13,9 @@ import contextlib
 from collections.abc import Callable, Collection
 
 from selfconf.bus.port import Bus, Replies, Sample, Undo
-from selfconf.errors import PeerError
+from selfconf.errors import AuthorError, PeerError
 from selfconf.model.profile import Profile
+from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer
@@ -25,6 +26,18 @@ COMPOSITE_PATIENCE = 2.0
 """Seconds that a composite may take to answer."""
 LAST_SIGNAL_PATIENCE = 2.0
 """Seconds that an output may take to say its last signal."""
+
+
+def check_output(profile: Profile, output: str) -> None:
+    """Raises AuthorError for what is no output of a component that issues signals."""
+    outputs = {port.name: port.is_operation for port in profile.outputs}
+    if outputs.get(output, False):
+        raise AuthorError(
+            f"{output} is an operation of {profile.component.short}: it answers calls, and issues nothing"
+        )
+    if output not in outputs:
+        names = listed(repr(name) for name, is_operation in outputs.items() if not is_operation) or "none"
+        raise AuthorError(f"{profile.component.short} has no output {output!r}; its outputs: {names}")
 
 
 def follow_output(bus: Bus, keys: Keys, profile: Profile, output: str, heard: Callable[[Sample], None]) -> Undo:

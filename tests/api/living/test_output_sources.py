@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from selfconf.api.living.output_sources import follow_output
+import re
+
+import pytest
+
+from selfconf.api.living.output_sources import check_output, follow_output
 from selfconf.api.task import template
 from selfconf.bus.port import Sample, Undo
+from selfconf.errors import AuthorError
+from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
 from selfconf.sdk import Component
@@ -23,6 +29,20 @@ def followed(house: House) -> tuple[list[str], Undo]:
         sources.append(names[sample.key])
 
     return sources, follow_output(house.ecology.network.node(), keys, profile, "pose", heard)
+
+
+@pytest.mark.parametrize(
+    ("output", "said"),
+    [
+        ("grind()", "grind() is an operation of mill: it answers calls, and issues nothing"),
+        ("grind", "mill has no output 'grind'; its outputs: 'noise'"),
+    ],
+)
+def test_an_operation_is_no_output_that_issues_signals(output: str, said: str) -> None:
+    profile = Profile(IRI("urn:c:mill"), ports=Ports((), (Output("grind()", ()), Output("noise", ()))))
+    check_output(profile, "noise")
+    with pytest.raises(AuthorError, match=f"^{re.escape(said)}$"):
+        check_output(profile, output)
 
 
 def test_an_output_of_a_composite_is_heard_by_whomever_it_is_issued_inside() -> None:
