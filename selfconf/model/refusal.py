@@ -107,7 +107,7 @@ class DerivationStep:
     wanted: WantedSignal
     sources: tuple[IRI, ...]
     optional: tuple[IRI, ...] = ()
-    """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
+    """The sources that ask for no component (`sc:minCount 0`) though a candidate of theirs would feed the input."""
     recruits: bool = False
     """Whether the role recruits, so that components outside of the roles could have fed it."""
 
@@ -174,7 +174,7 @@ class InputUnfed:
     consequences: tuple[DerivationStep, ...] = ()
     """What follows from it, up to the role that has no candidate left."""
     optional: tuple[IRI, ...] = ()
-    """Those of the sources that ask for no component (`sc:minCount 0`), so that their candidates do not count."""
+    """The sources that ask for no component (`sc:minCount 0`) though a candidate of theirs would feed the input."""
     recruits: bool = False
     """Whether the role recruits, so that components outside of the roles could have fed it."""
     nearest: NearMiss | None = field(default=None, kw_only=True, compare=False)

@@ -12,11 +12,11 @@ was probably meant: the name of an operation is mostly written without its `()`,
 from __future__ import annotations
 
 import difflib
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 
 from selfconf.model import requirement as model
-from selfconf.model.profile import CALL_MARK
+from selfconf.model.profile import CALL_MARK, Input
 from selfconf.model.refusal import (
     Conflict,
     Contradiction,
@@ -33,7 +33,7 @@ from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
 from selfconf.search.cores import FeasibilityOracle, core, smallest_of
 from selfconf.search.engines import hall_set
-from selfconf.search.problem import Problem
+from selfconf.search.problem import Issuing, Problem
 from selfconf.search.reduction import (
     Constraint,
     Distinct,
@@ -139,21 +139,27 @@ class _Wording:
         problem, need = self.problem, self.given.needs[number]
         profile = problem.candidates[role][min(kind.number for kind in kinds)].profile
         unfed = next(
-            name
-            for name, signals, _, optional, condition in profile.inputs
-            if not optional and (signals, condition) == need.wanted and problem.feeding(role, name) == need.sources
+            port
+            for port in profile.inputs
+            if not port.optional and port.wanted == need.wanted and problem.feeding(role, port.name) == need.sources
         )
-        feeding = [problem.roles[source] for source in _feeding(need)]
-        sources = tuple(feeder.iri for feeder in feeding)
-        optional = tuple(feeder.iri for feeder in feeding if feeder.minimum == 0)
+        feeding = _feeding(need)
+        sources = tuple(problem.roles[source].iri for source in feeding)
+        optional = tuple(problem.roles[source].iri for source in feeding if self._could_feed(source, role, unfed))
         if role not in self._alike:
             self._alike[role] = Counter(map(signature, problem.candidates[role]))
         alike = self._alike[role]
         others = sum(alike[one] for one in {one for kind in kinds for one in kind.signatures}) - 1
         asked = problem.roles[role]
         return DerivationStep(
-            asked.iri, profile.component, others, unfed, need.wanted, sources, optional, asked.recruits
+            asked.iri, profile.component, others, unfed.name, need.wanted, sources, optional, asked.recruits
         )
+
+    def _could_feed(self, source: int, role: int, unfed: Input) -> bool:
+        """Return whether a role that asks for no component has a candidate that would feed an input of another role."""
+        candidates = self.problem.candidates[source] if self.problem.roles[source].minimum == 0 else ()
+        alone: Issuing = defaultdict(list, {source: list(candidates)})
+        return next(self.problem.feeders(role, unfed, alone), None) is not None
 
     def _requirement(self, constraint: Constraint) -> model.Requirement:
         """Return a constraint in the words of the template."""

@@ -200,6 +200,21 @@ def test_no_other_name_is_proposed_where_a_candidate_has_it(tmp_path: Path) -> N
     assert misnamed(tmp_path, SCREEN, 'sc:output "describe()"') is None
 
 
+def test_of_a_source_with_a_minimum_of_zero_that_issues_nothing_fitting_that_is_told() -> None:
+    given_ = problem(
+        {
+            "bumper": [component("skirt", outputs="o:Bump")],
+            "sonar": [],
+            "control": [component("cap", "scan:RangeScan", "v:Velocity")],
+        },
+        "bumper>control sonar>control",
+        {"bumper": (0, 1), "sonar": (0, 1)},
+    )
+    (reason,) = first.search(given_).reasons
+    cause = "no candidate of bumper and sonar issues a RangeScan for it"
+    assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"
+
+
 PRESS = ':bell a sc:Component, :Button ; {} [ sc:name "{}" ] . :eye a sc:Component, :Camera ; {} [ sc:name "said" ] .'
 
 
