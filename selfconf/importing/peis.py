@@ -23,6 +23,7 @@ from selfconf.rdf.vocabulary import RDFS
 KEYS = ("name", "id", "exec", "extraarguments", "initstate", "spawndelay", "semantics", "proxy")
 _TOKEN = re.compile(r"""\s*(?:\#[^\n]*|(?P<single>[=,{}\[\]+])|(?P<quote>["'])|(?P<word>[^\s=,{}\[\]"'+]+))""")
 _PART = re.compile(r'\s*(?:(?P<mark>[()])|"(?P<text>[^"]*)"|(?P<word>[^\s()"]+))')
+_SEMANTICS = re.compile(r"^[^#\n]*?\b(?=semantics\s*=)", re.IGNORECASE | re.MULTILINE)
 PARTS_OF_SEMANTICS = 8
 """The parts of a semantics: type, name, description, properties, two unknown ones, inputs, outputs."""
 Part = str | list["Part"]
@@ -119,14 +120,20 @@ def parse_semantics(source: SourceDocument, text: str) -> list[Part] | None:
             stack.append(inner)
         elif found["mark"] == ")":
             if len(stack) < 2:
-                raise AuthorError("its semantics has a closing bracket too many", file=source.shown)
+                raise _mistake(source, "its semantics has a closing bracket too many")
             stack.pop()
         else:
             stack[-1].append(found["text"] if found["text"] is not None else found["word"])
     whole = stack[0][0] if len(stack) == 1 and len(stack[0]) == 1 else None
     if not isinstance(whole, list) or len(whole) != PARTS_OF_SEMANTICS:
-        raise AuthorError(f"its semantics is not one list of {PARTS_OF_SEMANTICS} parts in brackets", file=source.shown)
+        raise _mistake(source, f"its semantics is not one list of {PARTS_OF_SEMANTICS} parts in brackets")
     return None if whole[0] == "NoType" else whole
+
+
+def _mistake(source: SourceDocument, message: str) -> AuthorError:
+    """An error of the semantics of a source, at its key."""
+    key = _SEMANTICS.search(source.text())
+    return source.mistake(message, 0 if key is None else key.end())
 
 
 def _component(name: str, parts: list[Part], source: SourceDocument, ledger: ImportLedger) -> ImportedComponent:

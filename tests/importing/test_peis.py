@@ -97,6 +97,12 @@ def test_a_semantics_whose_brackets_do_not_fit_is_named(text: str, words: str) -
         parse_semantics(source(""), text)
 
 
+def test_a_semantics_that_is_none_is_named_at_its_key(workshop: Workshop) -> None:
+    text = "Name=x\n# semantics= none\nId=+2 Semantics=\n\n'((a)'\n"
+    (error,) = workshop.imported("peis", {"x.cmp": text}).unreadable
+    assert "x.cmp:3:7: its semantics is not one list of 8 parts" in str(error)
+
+
 def test_brackets_may_be_nested_as_deep_as_a_stranger_likes() -> None:
     with pytest.raises(AuthorError, match="not one list of 8 parts"):
         parse_semantics(source(""), "(" * 100_000 + ")" * 100_000)
