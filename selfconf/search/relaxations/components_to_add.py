@@ -6,7 +6,7 @@ Wherever there is no solution, an irreducible set of constraints cannot hold; on
 for a role that may feed one of its inputs, changes that. So breadth-first search over sets of such additions, each
 extended by these roles alone, finds the fewest, beginning with as many for each role as it has too few candidates that
 could be fed at all; then outputs are taken away again one by one, as long as there is a
-solution without them. Where there are players, but none that have recruits, one more component for any role may help.
+solution without them, the last one of a component after those of which it has several. Where there are players, but none that have recruits, one more component for any role may help.
 """
 
 from __future__ import annotations
@@ -235,25 +235,32 @@ def _trimmed(
     problem: Problem, added: Added, playing: list[list[Candidate]], effort: RelaxationEffort, works: Works
 ) -> AddComponents:
     """Return additions with only the outputs that are needed for a solution; `playing` is a solution with all."""
-    for one in sorted(added, key=_in_order):
-        role, left = one
-        for output in one[1]:
-            fewer = tuple(other for other in left if other != output)
-            changed = [*playing[:role], [_without(c, left, fewer) for c in playing[role]], *playing[role + 1 :]]
-            trial: Added = Counter()
-            for (at, outputs), count in added.items():
-                trial[at, fewer if (at, outputs) == (role, left) else outputs] += count
-            if not all(
-                problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]
-            ):
-                found = effort.solution(LazyReduction(relaxed_by(problem, _asked(problem, trial))))
-                if not isinstance(found, list):
-                    continue
-                changed = found
-            if not works(_asked(problem, trial)):
-                continue
-            left, playing, added = fewer, changed, trial
+    # At first each keeps an output: a component for a role that feeds others is hardly one that issues nothing.
+    for least in (1, 0):
+        for role, outputs in sorted(added, key=_in_order):
+            left = outputs
+            for output in outputs:
+                if len(left) == least:
+                    break
+                fewer = tuple(other for other in left if other != output)
+                trial: Added = Counter()
+                for (at, issued), count in added.items():
+                    trial[at, fewer if (at, issued) == (role, left) else issued] += count
+                changed = [*playing[:role], [_without(c, left, fewer) for c in playing[role]], *playing[role + 1 :]]
+                found = _still_playing(problem, role, changed, _asked(problem, trial), effort)
+                if found is not None and works(_asked(problem, trial)):
+                    left, playing, added = fewer, found, trial
     return with_values(problem, _asked(problem, added), playing)
+
+
+def _still_playing(
+    problem: Problem, role: int, changed: list[list[Candidate]], asked: AddComponents, effort: RelaxationEffort
+) -> list[list[Candidate]] | None:
+    """Return players where components of a role have fewer outputs: those that are given if they will do, or others."""
+    if all(problem.compatible(sink, c.profile, changed) for sink in problem.sinks[role] for c in changed[sink]):
+        return changed
+    found = effort.solution(LazyReduction(relaxed_by(problem, asked)))
+    return found if isinstance(found, list) else None
 
 
 def _without(candidate: Candidate, known: tuple[Output, ...], outputs: tuple[Output, ...]) -> Candidate:

@@ -48,8 +48,8 @@ def test_what_one_addition_issues_is_not_asked_of_another() -> None:
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
     words = [str(one) for one in with_relaxations(given_, refused).repairs]
-    both = "one more component for the role a and one more component for the role b that issues Velocity and Pose"
-    assert words[0] == f"add {both}"
+    each = "one more component for the role {} that issues {}"
+    assert words[0] == f"add {each.format('a', 'Pose')} and {each.format('b', 'Velocity')}"
 
 
 def test_an_output_that_is_asked_for_by_name_has_one_signal() -> None:
@@ -81,9 +81,8 @@ def test_what_has_to_leave_by_an_output_says_so() -> None:
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
     added = next(one for one in with_relaxations(given_, refused).repairs if isinstance(one, AddComponents))
-    assert str(added) == (
-        "add one more component for the role a and one more component for the role c that issues X and Y"
-    )
+    each = "one more component for the role {} that issues {}"
+    assert str(added) == f"add {each.format('a', 'X')} by the output 'out' and {each.format('c', 'Y')}"
     given_ = problem({"a": [], "b": [component("b1", "x:X")]}, "a.out>b")
     refused = first.search(given_)
     assert isinstance(refused, Refusal)
