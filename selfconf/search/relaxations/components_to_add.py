@@ -5,8 +5,9 @@ be added for a role; an output that an interaction names has one signal, so that
 Wherever there is no solution, an irreducible set of constraints cannot hold; only a component for one of its roles, or
 for a role that may feed one of its inputs, changes that. So breadth-first search over sets of such additions, each
 extended by these roles alone, finds the fewest, beginning with as many for each role as it has too few candidates that
-could be fed at all; then outputs are taken away again one by one, as long as there is a
-solution without them, the last one of a component after those of which it has several. Where there are players, but none that have recruits, one more component for any role may help.
+could be fed at all; then outputs are taken away again one by one, as long as there is a solution without them, the last
+one of a component after those of which it has several. Where there are players, but none that have recruits, one more
+component for any role may help.
 """
 
 from __future__ import annotations
