@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from selfconf.cli.main import parser
+from selfconf.configurator.losing import GOES_ON
 from selfconf.project import project_problems
 from selfconf.serve.metrics import HELP
 from selfconf.site.log_file import MOST_BYTES, PUT_ASIDE
@@ -114,10 +115,16 @@ def test_every_metric_that_is_asked_for_is_one_that_the_server_has() -> None:
 
 def test_every_label_is_one_of_a_metric_and_every_counter_is_asked_for_its_growth() -> None:
     for expression in expressions():
-        labels = re.findall(r"by \((\w+)\)|\{(\w+)=", expression)
+        labels = re.findall(r"by \((\w+)\)|\{(\w+)(?:=|!~)", expression)
         assert {label for pair in labels for label in pair if label} <= LABELS
         for counter in re.findall(r"selfconf_\w+_total", expression):
-            assert re.search(rf"(rate|increase)\({counter}\[", expression), expression
+            assert re.search(rf"(rate|increase)\({counter}({{[^}}]*}})?\[", expression), expression
+
+
+def test_no_alert_counts_what_is_lost_and_not_broken() -> None:
+    (expression,) = (one for one in expressions() if "losses" in one and ">" in one)
+    (left_out,) = re.findall(r'cause!~"([^"]*)"', expression)
+    assert left_out.split("|") == [cause.value for cause in GOES_ON]
 
 
 def test_both_sides_of_a_division_have_the_same_labels_without_which_nothing_is_shown() -> None:
