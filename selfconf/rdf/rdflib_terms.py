@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import chain
 
 import rdflib
 
@@ -49,6 +50,15 @@ def from_rdflib(node: rdflib.term.Node) -> Term:
             datatype = IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString")
         return Literal(str(node), datatype, node.language)
     return BlankNode(f"_:{node}")
+
+
+def merged(*graphs: rdflib.Graph) -> rdflib.Graph:
+    """The statements of some graphs in one, where a string is equal to the same one with the datatype xsd:string."""
+    whole = rdflib.Graph()
+    for subject, predicate, value in chain.from_iterable(graphs):
+        same = isinstance(value, rdflib.Literal) and value.datatype == rdflib.XSD.string
+        whole.add((subject, predicate, rdflib.Literal(str(value)) if same else value))
+    return whole
 
 
 def to_document(triples: Iterable[tuple[rdflib.term.Node, ...]], source: str) -> Document:

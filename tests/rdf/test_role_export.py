@@ -5,7 +5,7 @@ from __future__ import annotations
 import pyoxigraph as ox
 import pyshacl
 import pytest
-from rdflib import Graph
+from rdflib import SH, Graph, Literal
 
 from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
@@ -91,6 +91,11 @@ def test_the_query_finds_the_candidates_of_the_role(shape: str, components: str)
 
 def test_without_a_hierarchy_only_the_class_itself_is_asked_for() -> None:
     assert answers(role_query(read("sh:class :Light"), NOTHING_ABOVE)) == "b"
+
+
+def test_a_string_in_the_shape_is_to_rdflib_what_it_is_in_advertisements() -> None:
+    shapes = Graph().parse(data=role_shape(read("sh:property [ sh:path :p ; sh:hasValue 'red' ]")), format="turtle")
+    assert list(shapes.objects(predicate=SH.hasValue)) == [Literal("red")]
 
 
 def test_the_shape_has_what_the_role_sets_as_a_constraint() -> None:

@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from itertools import chain
 
-import rdflib
-from rdflib import RDFS, XSD, Graph, URIRef
+from rdflib import RDFS, Graph, URIRef
 
 from selfconf.model.term import IRI, Literal
-from selfconf.rdf.rdflib_terms import to_rdflib
+from selfconf.rdf.rdflib_terms import merged, to_rdflib
 from selfconf.rdf.turtle import Document, Node, Triple, parse
 from selfconf.rdf.validation.term_index import TermIndex
 from selfconf.rdf.vocabulary import SC, TYPE
@@ -55,15 +53,6 @@ def _about(document: Document, wanted: list[IRI]) -> Iterator[Triple]:
         following = [one for one in (*led, *interactions.get(subject, ())) if not isinstance(one, Literal)]
         waiting += [one for one in dict.fromkeys(following) if one not in seen]
         seen.update(following)
-
-
-def merged(*graphs: Graph) -> Graph:
-    """The statements of some graphs in one, where a string is equal to the same one with the datatype xsd:string."""
-    whole = Graph()
-    for subject, predicate, value in chain.from_iterable(graphs):
-        same = isinstance(value, rdflib.Literal) and value.datatype == XSD.string
-        whole.add((subject, predicate, rdflib.Literal(str(value)) if same else value))
-    return whole
 
 
 def with_hierarchy(graph: Graph, index: TermIndex) -> Graph:

@@ -28,8 +28,9 @@ from selfconf.model.immutable import immutable
 from selfconf.rdf.literal_comparison import only_ordered
 from selfconf.rdf.permitted_fields import COMPONENT
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.rdflib_terms import merged
 from selfconf.rdf.read_shapes import ReadShapes
-from selfconf.rdf.validation.described_elsewhere import merged, with_hierarchy
+from selfconf.rdf.validation.described_elsewhere import with_hierarchy
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.term_index import TermIndex
 
