@@ -8,13 +8,15 @@ after a change, and then sends what is declared to the *new* children in each. A
 made again within that time, was a child before and is one after: it receives nothing, while it has itself forgotten
 everything at the loss; and the side that connects does so again at once. A host that was stopped for longer than the
 lease was not seen again by some of the others, for good. So an uplink that has lost a hub and has it back is followed
-by a new one, which no router knows yet; the old one stays for a while, or the new one might be taken for it. Hubs do
-not connect to each other, so each tree consists of hubs and uplinks in turn: every edge has an end that is replaced.
+by a new one, which no router knows yet. The old one stays for a while, and none comes just after one has left: a router
+that computes its trees after both takes the one that came for the one that left, and it receives nothing either. Hubs
+do not connect to each other, so each tree consists of hubs and uplinks in turn: every edge has an end that is replaced.
 """
 
 from __future__ import annotations
 
 import logging
+import math
 import random
 import socket
 import threading
@@ -48,9 +50,14 @@ RETRY_SPREAD = 0.5
 CLOSING = 3.0
 """Seconds for which the end of a session is waited for."""
 LINGER = 3.0
-"""Seconds for which an uplink that was replaced stays, up to twice that by chance."""
+"""Seconds for which an uplink that was replaced stays, up to twice that by chance; one that has the rules, or the
+certificate, of before leaves as soon as the new one is known."""
+NOTED = 0.05
+"""Seconds that the other end of a new link may take to note it."""
+AFTER_END = 0.2
+"""Seconds after the end of an uplink for which none is opened: routers compute their trees in between."""
 MOST_LINGERING = 3
-"""How many replaced uplinks stay at most, however fast the links change."""
+"""How many replaced uplinks stay at most: as long as there are so many no new one is opened."""
 
 
 class Hub:
@@ -138,6 +145,8 @@ class Relay:
         self._others: list[str] = []
         self._uplink: _Uplink | None = None
         self._lingering: list[_Uplink] = []
+        self._left_at = -math.inf
+        """When an uplink was let go last, by the loop's clock."""
         self._undo_replacement: Callable[[], None] = lambda: None
         self.connect(connect)
 
@@ -152,8 +161,6 @@ class Relay:
         self._hub.secure(security)
         if self._uplink is not None:
             self._replace()
-            while self._lingering:  # they have the rules of before
-                self._let_go(self._lingering[0])
 
     def close(self) -> None:
         """Leave the network."""
@@ -167,14 +174,13 @@ class Relay:
 
     def link_changed(self, uplink: _Uplink, other: str, up: bool) -> None:
         """An uplink has gained or lost a link; once there is quiet, replace what others may have lost sight of."""
-        if uplink is not self._uplink:
-            return
         uplink.note(other, up)
-        self._undo_replacement()
-        if uplink.regained:
-            self._replace_soon()
+        if uplink is self._uplink and uplink.regained:
+            self._replace_after(QUIET + random.uniform(0.0, RETRY_SPREAD))
+        for outdated in self._outdated:
+            self._let_go_after(NOTED, outdated)
 
-    def _replace_soon(self) -> None:
+    def _replace_after(self, seconds: float) -> None:
         """Replace the uplink after a while; where no new one can be opened, the old one stays until it can."""
 
         def replace_it() -> None:
@@ -182,24 +188,47 @@ class Relay:
                 self._replace()
             except NetworkError as error:
                 log.warning("no new link to other hubs can be opened yet: %s", error)
-                self._replace_soon()
+                self._replace_after(QUIET + random.uniform(0.0, RETRY_SPREAD))
 
-        self._undo_replacement = self._loop.later(QUIET + random.uniform(0.0, RETRY_SPREAD), replace_it)
+        self._undo_replacement()
+        self._undo_replacement = self._loop.later(seconds, replace_it)
 
     def _replace(self) -> None:
-        old, self._uplink = self._uplink, _Uplink(self)
+        """Replace the uplink: at once, unless another one has just left or has to leave before."""
+        if len(self._lingering) >= MOST_LINGERING:
+            self._let_go(self._lingering[0])
+        now = self._loop.now()
+        if len(self._lingering) >= MOST_LINGERING or now < self._left_at + AFTER_END:
+            self._replace_after(AFTER_END)
+            return
+        old, self._uplink = self._uplink, _Uplink(self, self._hub.security, now)
         self._undo_replacement()
         if old is not None:
             self._lingering.append(old)
-            self._loop.later(LINGER * random.uniform(1.0, 2.0), partial(self._let_go, old))
-        if len(self._lingering) > MOST_LINGERING:
-            self._let_go(self._lingering[0])
+            self._let_go_after(LINGER * random.uniform(1.0, 2.0), old)
+        for outdated in self._outdated:
+            self._let_go_after(QUIET, outdated)
 
-    def _let_go(self, uplink: _Uplink) -> None:
-        """Close an uplink that was replaced; elsewhere, as Zenoh may take its time."""
-        if uplink in self._lingering:
-            self._lingering.remove(uplink)
-            threading.Thread(target=uplink.close, daemon=True).start()
+    @property
+    def _outdated(self) -> list[_Uplink]:
+        """The replaced uplinks that have the rules, or the certificate, of before."""
+        return [old for old in self._lingering if old.security is not self._hub.security]
+
+    def _let_go_after(self, seconds: float, old: _Uplink) -> None:
+        self._loop.later(seconds, partial(self._let_go, old))
+
+    def _let_go(self, old: _Uplink) -> None:
+        """Close an uplink that was replaced, once the new one is known; elsewhere, as Zenoh may take its time."""
+        if old not in self._lingering or self._uplink is None:
+            return
+        now = self._loop.now()
+        known = self._uplink.opened_at + QUIET
+        if now < known and not old.hubs <= self._uplink.hubs:
+            self._let_go_after(known - now, old)
+            return
+        self._left_at = now
+        self._lingering.remove(old)
+        threading.Thread(target=old.close, daemon=True).start()
 
     def open_uplink(self) -> list[Any]:
         """The sessions that connect the hub to the others: one, or with keys one for each of them.
@@ -230,13 +259,17 @@ class Relay:
 class _Uplink:
     """The sessions of a relay's uplink at a time, and which links they have lost and regained."""
 
-    def __init__(self, relay: Relay) -> None:
+    def __init__(self, relay: Relay, security: Security | None, now: float) -> None:
         self._relay, self._lost = relay, set[str]()
+        self.security, self.opened_at = security, now
+        self.hubs = set[str]()
+        """Those that it has a link to."""
         self.regained = False
         """Whether it has lost a hub and has it again: what is declared does not get through to it any more."""
         self._sessions = relay.open_uplink()
         self._listeners = [
-            session.info.declare_transport_events_listener(callback(self._changed)) for session in self._sessions
+            session.info.declare_transport_events_listener(callback(self._changed), history=True)
+            for session in self._sessions
         ]
 
     def _changed(self, event: zenoh.TransportEvent) -> None:
@@ -244,11 +277,13 @@ class _Uplink:
         self._relay.tell(self, str(event.transport.zid), event.kind == zenoh.SampleKind.PUT)
 
     def note(self, other: str, up: bool) -> None:
-        """Remember that a link was lost, or that one is back."""
+        """Remember that a link was lost, or that one has come, perhaps back."""
         if not up:
             self._lost.add(other)
-        elif other in self._lost:
-            self.regained = True
+            self.hubs.discard(other)
+            return
+        self.hubs.add(other)
+        self.regained |= other in self._lost
 
     def close(self) -> None:
         """Leave the network."""

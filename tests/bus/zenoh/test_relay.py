@@ -14,7 +14,7 @@ import pytest
 from selfconf.access import Authority, PrincipalKind
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.loop import Loop
-from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, client, with_port
+from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, ZenohBus, client, router, with_port
 from selfconf.bus.zenoh import relay as relaying
 from selfconf.bus.zenoh.descriptors import sockets_at
 from selfconf.bus.zenoh.door import MOST_AT_DOOR
@@ -49,6 +49,7 @@ def relay(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> Iterator[CountedRelay]:
     """A relay without others, which replaces its uplink without delay where there is need."""
     monkeypatch.setattr(relaying, "QUIET", 0.0)
     monkeypatch.setattr(relaying, "RETRY_SPREAD", 0.0)
+    monkeypatch.setattr(relaying, "AFTER_END", 0.0)
     relay = CountedRelay(hub, Loop(), [])
     yield relay
     relay.close()
@@ -130,6 +131,30 @@ def test_strangers_who_fill_the_door_of_a_hub_keep_out_neither_its_host_nor_othe
         client([hub.endpoint], seconds=30.0, credentials=reader).close()
     finally:
         hub.close()
+
+
+def sees(bus: ZenohBus, life: str) -> bool:
+    """Whether a bus is told of a life now."""
+    told: list[tuple[str, ...]] = []
+    bus.roll_call(life, 0.5, told.append)
+    return until(lambda: bool(told), bus) and life in told[0]
+
+
+def test_a_hub_that_is_opened_anew_sees_the_one_that_it_connects_to_again(tmp_path: Path) -> None:
+    """An uplink that leaves just as its successor comes has that taken for it at the other hub."""
+    authority = Authority.init(tmp_path / "authority")
+    shown = [Security(authority.credentials((PrincipalKind.SITE,), name)) for name in ("kitchen", "attic")]
+    kitchen = router("tls/127.0.0.1:0", security=shown[0])
+    attic = router("tls/127.0.0.1:0", [kitchen.endpoint], security=shown[1])
+    try:
+        kitchen.announce("life")
+        assert until(lambda: sees(attic, "life"), kitchen)
+        for _ in range(6):
+            attic.secure(shown[1])
+            assert until(lambda: sees(attic, "life"), kitchen)
+    finally:
+        attic.close()
+        kitchen.close()
 
 
 @pytest.mark.parametrize("settings", ["#so_rcvbuf=65536", "?prio=1"])
