@@ -7,6 +7,7 @@ from collections.abc import Collection
 INHABITED = "inhabited"
 """The fixture that starts a site and seven components: once is enough."""
 WHOLE = {
+    "tests/access/test_intruder.py",
     "tests/api/test_ecology.py",
     "tests/api/living/test_living_ecology.py",
     "tests/api/tasks/test_run.py",
