@@ -73,7 +73,7 @@ from selfconf.model.run_event import (
     TaskWaiting,
 )
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import safe_name, task_identity
+from selfconf.protocol.keys import safe_name, site_of, task_identity
 from selfconf.protocol.messages import RecordedLoss, Status, Wire
 
 log = logging.getLogger(__name__)
@@ -153,7 +153,9 @@ class TaskRunner:
         self._messages = ComponentMessages(context, task, self._lives, self._ends, self._heed)
         self._subscriptions = [
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
-            bus.subscribe(self.keys.reopens(), lambda _: self._liveness.reopens(), Urgency.EVENT),
+            bus.subscribe(
+                self.keys.reopens(), lambda sample: self._liveness.reopens(site_of(sample.key)), Urgency.EVENT
+            ),
         ]
 
     def start(self) -> None:

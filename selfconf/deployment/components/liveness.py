@@ -42,7 +42,8 @@ AUDITED = 20
 SILENT_AUDITS = 3
 """How many audits in a row a component may leave unanswered; each waits for as long as a call."""
 MOST_REOPENINGS, REOPENINGS_WITHIN = 6, 60.0
-"""How many hubs that are about to be opened anew are believed in how many seconds: they are, as others join."""
+"""How often in how many seconds a site is believed that its hub is about to be opened anew: it is, as others join.
+Those that this node has seen come true, as its own link was lost, do not count."""
 SETTLING = 1.0
 """Seconds that other nodes may take to be connected again after this one.
 
@@ -89,8 +90,8 @@ class Liveness:
         self._withheld: dict[tuple[IRI, str], Failed] = {}
         """The latest failure of each life of a component that was heard of while this node was unsure."""
         self._ask_again: Undo = lambda: None
-        self._reopenings: list[float] = []
-        """When a site has last said that its hub is about to be opened anew."""
+        self._reopenings: dict[str, list[float]] = {}
+        """When each site has last said that its hub is about to be opened anew."""
         self._audited = 0
         self._silences: dict[IRI, int] = {}
         """How often in a row each component has not answered an audit."""
@@ -175,6 +176,8 @@ class Liveness:
 
     def _network_answered(self, asked: Sequence[tuple[str, str]], sites: tuple[str, ...]) -> None:
         self._asking = False
+        if sites and not self._sites.issubset(sites):
+            self._site_ended = self.bus.now()  # which the watch has not shown yet
         away = self._site_ended + AWAY - self.bus.now()
         if not sites:
             self.bus.later(SECOND_LOOK, partial(self._judge, asked))
@@ -295,15 +298,15 @@ class Liveness:
             if owner_of(key) not in map(owner_of, self._sites | self._shown_sites):
                 self._waking.site_ended(owner_of(key))
 
-    def reopens(self) -> None:
-        """A hub is about to be opened anew: lives seem to end, one after the other, and sites among the last.
+    def reopens(self, site: str) -> None:
+        """A site's hub is about to be opened anew: lives seem to end, one after the other, and sites among the last.
 
         A site that says so again and again is not believed: no end would be any more.
         """
         now = self.bus.now()
-        self._reopenings = [at for at in self._reopenings if now - at < REOPENINGS_WITHIN]
-        if len(self._reopenings) < MOST_REOPENINGS and self.ecology.followed:
-            self._reopenings.append(now)
+        lately = [at for at in self._reopenings.get(site, ()) if now - at < REOPENINGS_WITHIN]
+        if len(lately) < MOST_REOPENINGS and self.ecology.followed:
+            self._reopenings[site] = [*lately, now]
             self._await_link()
 
     def heed(self, failed: Failed) -> None:
@@ -338,6 +341,8 @@ class Liveness:
             if not self.bus.link:
                 look()
                 return
+            if self.bus.link != self._link:
+                self._reopenings.clear()
             self._link, self.cut_off, self.unsure = self.bus.link, False, False
             self._reconnected()
             withheld, self._withheld = self._withheld, {}

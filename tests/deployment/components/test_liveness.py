@@ -33,6 +33,21 @@ from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, Recorder, iri
 
 
+def out_of_sight(lab: Lab, *components: str, seconds: float) -> None:
+    """Cut components off from all others for a while."""
+    cut = [
+        (lab.runtimes[component].bus, other)
+        for component in components
+        for other in lab.network.nodes
+        if other is not lab.runtimes[component].bus
+    ]
+    for node, other in cut:
+        lab.network.cut(node, other)
+    lab.let_pass(seconds)
+    for node, other in cut:
+        lab.network.reconnect(node, other)
+
+
 @pytest.fixture(autouse=True, params=["all lives", "selected lives"])
 def followed(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whether a configurator follows all lives, or, as in a large ecology, those that it has selected."""
@@ -285,6 +300,23 @@ def test_a_component_that_loses_its_router_for_a_moment_together_with_its_site_i
         lab.network.reconnect(node, other)
     lab.let_pass(10.0)
     assert lab.active() == TASK | {"tracker"}
+    assert lab.acts("lost") == []
+
+
+def test_a_component_of_a_site_that_does_not_answer_is_given_time_though_the_end_of_the_site_is_not_shown_yet(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    called = MemoryBus.roll_call
+
+    def roll_call(bus: MemoryBus, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        other = lab.keys.site_life("attic", "0")
+        called(bus, key, seconds, (lambda _: done((other,))) if key == lab.keys.any_site_life() else done)
+
+    monkeypatch.setattr(MemoryBus, "roll_call", roll_call)
+    out_of_sight(lab, "tracker", seconds=AWAY / 2)
+    lab.let_pass(10.0)
     assert lab.acts("lost") == []
 
 
@@ -560,24 +592,39 @@ def test_where_a_hub_is_opened_anew_no_end_is_believed_but_not_for_ever(lab: Lab
     agent = lab.agent()
     lab.running(agent)
     node = lab.network.node()
-    warning = node.publisher(lab.keys.reopens("home"), Urgency.EVENT)
-    warning.put(b"")
+
+    def say(site: str, number: int) -> None:
+        warning = node.publisher(lab.keys.reopens(site), Urgency.EVENT)
+        for _ in range(number):
+            warning.put(b"")
+            lab.let_pass(0.5)
+
+    say("attic", 10 * MOST_REOPENINGS)
+    node.publisher(lab.keys.reopens("home"), Urgency.EVENT).put(b"")
     lab.let_pass(0.02)
-    for component in ("tracker", "sonar"):
-        for other in lab.network.nodes:
-            if other is not lab.runtimes[component].bus:
-                lab.network.cut(lab.runtimes[component].bus, other)
-    lab.let_pass(0.5)
-    for component in ("tracker", "sonar"):
-        for other in lab.network.nodes:
-            lab.network.reconnect(lab.runtimes[component].bus, other)
+    out_of_sight(lab, "tracker", "sonar", seconds=0.5)
     lab.let_pass(5.0)
-    assert lab.acts("lost") == []
+    assert lab.acts("lost") == [], "what another site says is no matter"
     assert lab.active() == TASK | {"tracker"}
-    for _ in range(10 * MOST_REOPENINGS):
-        warning.put(b"")
-        lab.let_pass(0.5)
+    say("home", 10 * MOST_REOPENINGS)
     lab.crash("tracker")
     assert lab.until(lambda: iri("person-tracker") in agent.state.lost, 5.0), (
         "whoever says it without an end is not heard"
     )
+
+
+def test_a_hub_that_is_opened_anew_again_and_again_is_believed_as_the_link_is_lost_each_time(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    turns = 0
+    monkeypatch.setattr(MemoryBus, "link", property(lambda _: f"the hub {turns}"))
+    warning = lab.network.node().publisher(lab.keys.reopens("home"), Urgency.EVENT)
+    for _ in range(3 * MOST_REOPENINGS):
+        warning.put(b"")
+        lab.let_pass(0.02)
+        out_of_sight(lab, "tracker", "sonar", seconds=0.2)
+        turns += 1
+        lab.let_pass(2.0)
+    assert lab.acts("lost") == []
