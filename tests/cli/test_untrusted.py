@@ -79,6 +79,9 @@ def home(tmp_path_factory: pytest.TempPathFactory, trap: Trap) -> Iterator[Home]
     nonsense = [(b"", b"no page"), (b"", b"\xff" * 100)]
     strangers = Strangers(home.keys, home.endpoint("peis-home"), said, nonsense, home.authority)
     home.environment["PYTHONPATH"] = os.pathsep.join((str(trap.program), home.environment["PYTHONPATH"]))
+    assert home.until(lambda: discovered_sites(home) == {"peis-home", "strangers"}), (
+        "with keys hubs are opened anew before"
+    )
     yield home
     strangers.close()
     home.close()
@@ -90,6 +93,12 @@ def selfconf(home: Home, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         command, cwd=home.folder, env=home.environment, capture_output=True, text=True, timeout=PATIENCE, check=False
     )
+
+
+def discovered_sites(home: Home) -> set[str]:
+    """The sites whose components `discover` lists."""
+    done = selfconf(home, "discover", "--format", "json")
+    return {row["site"] for row in json.loads(done.stdout)["components"]} if done.returncode == 0 else set()
 
 
 @pytest.mark.parametrize(
