@@ -17,6 +17,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NoReturn
@@ -64,7 +65,8 @@ class ForkedProgram:
     def send_signal(self, number: int) -> None:
         """Send a signal to the process, if it runs."""
         if self.poll() is None:
-            os.kill(self.pid, number)
+            with suppress(ProcessLookupError):  # it has ended, which this process is told later
+                os.kill(self.pid, number)
 
 
 def _run(words: list[str], environment: dict[str, str], folder: str, out: Connection, error: Connection) -> NoReturn:
