@@ -295,18 +295,23 @@ class Liveness:
         elif not alive:
             self._site_ended = self.bus.now()
             self._sites.discard(key)
-            if owner_of(key) not in map(owner_of, self._sites | self._shown_sites):
+            if not self._site_lives(owner_of(key)):
                 self._waking.site_ended(owner_of(key))
+
+    def _site_lives(self, site: str) -> bool:
+        return site in map(owner_of, self._sites | self._shown_sites)
 
     def reopens(self, site: str) -> None:
         """A site's hub is about to be opened anew: lives seem to end, one after the other, and sites among the last.
 
-        A site that says so again and again is not believed: no end would be any more.
+        A site that says so again and again is not believed, nor one that does not live: no end would be any more.
         """
         now = self.bus.now()
-        lately = [at for at in self._reopenings.get(site, ()) if now - at < REOPENINGS_WITHIN]
-        if len(lately) < MOST_REOPENINGS and self.ecology.followed:
-            self._reopenings[site] = [*lately, now]
+        lately = {one: [at for at in said if now - at < REOPENINGS_WITHIN] for one, said in self._reopenings.items()}
+        self._reopenings = {one: said for one, said in lately.items() if said}
+        said = self._reopenings.get(site, [])
+        if len(said) < MOST_REOPENINGS and self.ecology.followed and self._site_lives(site):
+            self._reopenings[site] = [*said, now]
             self._await_link()
 
     def heed(self, failed: Failed) -> None:

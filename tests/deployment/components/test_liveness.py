@@ -599,18 +599,26 @@ def test_where_a_hub_is_opened_anew_no_end_is_believed_but_not_for_ever(lab: Lab
             warning.put(b"")
             lab.let_pass(0.5)
 
-    say("attic", 10 * MOST_REOPENINGS)
-    node.publisher(lab.keys.reopens("home"), Urgency.EVENT).put(b"")
+    say("astrid", 10 * MOST_REOPENINGS)
+    node.publisher(lab.keys.reopens("living-room"), Urgency.EVENT).put(b"")
     lab.let_pass(0.02)
     out_of_sight(lab, "tracker", "sonar", seconds=0.5)
     lab.let_pass(5.0)
     assert lab.acts("lost") == [], "what another site says is no matter"
     assert lab.active() == TASK | {"tracker"}
-    say("home", 10 * MOST_REOPENINGS)
+    say("living-room", 10 * MOST_REOPENINGS)
     lab.crash("tracker")
     assert lab.until(lambda: iri("person-tracker") in agent.state.lost, 5.0), (
         "whoever says it without an end is not heard"
     )
+
+
+@pytest.mark.parametrize(("site", "believed"), [("living-room", True), ("nowhere", False)])
+def test_of_the_hub_of_a_site_that_does_not_live_nothing_is_believed(lab: Lab, site: str, believed: bool) -> None:
+    lab.running(lab.agent())
+    lab.network.node().publisher(lab.keys.reopens(site), Urgency.EVENT).put(b"")
+    lab.let_pass(0.5)
+    assert bool(lab.acts("cut off")) == believed
 
 
 def test_a_hub_that_is_opened_anew_again_and_again_is_believed_as_the_link_is_lost_each_time(
@@ -620,7 +628,7 @@ def test_a_hub_that_is_opened_anew_again_and_again_is_believed_as_the_link_is_lo
     lab.running(agent)
     turns = 0
     monkeypatch.setattr(MemoryBus, "link", property(lambda _: f"the hub {turns}"))
-    warning = lab.network.node().publisher(lab.keys.reopens("home"), Urgency.EVENT)
+    warning = lab.network.node().publisher(lab.keys.reopens("living-room"), Urgency.EVENT)
     for _ in range(3 * MOST_REOPENINGS):
         warning.put(b"")
         lab.let_pass(0.02)
