@@ -39,8 +39,8 @@ HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 NAME = re.compile(r"[a-z][a-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
 _MEDIA = re.compile(rf'{re.escape(MEDIA)}; type="(?P<name>[^"]*)"; hash=(?P<hash>\w+)(?:; topic="(?P<topic>[^"]*)")?')
 _STORES = ("ROS2_JAZZY", "ROS2_KILTED", "ROS2_LYRICAL")
-_NO_FIELDS = frozenset(("__msgtype__", "structure_needs_at_least_one_member"))
-"""What the class of a message has besides its fields; the second stands in messages that have none."""
+_NO_FIELD = "structure_needs_at_least_one_member"
+"""What stands in messages that have no fields."""
 DEFINITIONS = "SELFCONF_ROS_DEFINITIONS"
 """The variable of the environment that names folders with definitions, separated as those of PATH are."""
 _DTYPES = {"octet": "uint8", "byte": "uint8", "char": "uint8"}
@@ -104,7 +104,7 @@ def message_fields(payload: bytes, kind: MessageType) -> dict[str, Any]:
 
     Raises MessageError.
     """
-    found: dict[str, Any] = _plain(_read(payload, kind))
+    found: dict[str, Any] = _plain(_store(kind), _read(payload, kind))
     return found
 
 
@@ -120,7 +120,7 @@ def message(fields: Mapping[str, Any], kind: MessageType) -> bytes:
         return bytes(store.serialize_cdr(_built(store, kind.name, fields), kind.name))
     except MessageError:
         raise
-    except (TypeError, ValueError, OverflowError, AttributeError, struct.error) as error:
+    except (_serde_error(), TypeError, ValueError, LookupError, OverflowError, AttributeError, struct.error) as error:
         raise MessageError(f"is no {kind.name}: {error}") from None
 
 
@@ -255,12 +255,17 @@ def usual_type(name: str) -> MessageType | None:
     return None if store is None else MessageType(name, store.hash_rihs01(name))
 
 
-def _plain(value: Any) -> Any:
-    """A message as an object, with those that it holds."""
+def _plain(store: Any, value: Any) -> Any:
+    """A message as an object, with those that it holds; the constants of its type are no fields."""
     if hasattr(value, "__msgtype__"):
-        names = (name for name in value.__dataclass_fields__ if name not in _NO_FIELDS)
-        return {name[:-1] if keyword.iskeyword(name[:-1]) else name: _plain(getattr(value, name)) for name in names}
-    return [_plain(each) for each in value] if isinstance(value, list) else value
+        names = (name for name, _ in _definitions(store, value.__msgtype__) if name != _NO_FIELD)
+        return {name: _plain(store, getattr(value, _attribute(name))) for name in names}
+    return [_plain(store, each) for each in value] if isinstance(value, list) else value
+
+
+def _attribute(field: str) -> str:
+    """What the class of a message calls a field."""
+    return f"{field}_" if keyword.iskeyword(field) else field
 
 
 def _built(store: Any, name: str, fields: Any) -> Any:
@@ -272,7 +277,7 @@ def _built(store: Any, name: str, fields: Any) -> Any:
     if unknown:
         raise MessageError(f"has {', '.join(unknown[:5])}, which {name} has not")
     values = {field: _value(store, definition, fields.get(field)) for field, definition in definitions.items()}
-    return store.types[name](**{f"{field}_" if keyword.iskeyword(field) else field: values[field] for field in values})
+    return store.types[name](**{_attribute(field): value for field, value in values.items()})
 
 
 def _definitions(store: Any, name: str) -> Iterator[tuple[str, Any]]:
@@ -295,13 +300,15 @@ def _value(store: Any, definition: Any, given: Any) -> Any:
     if element[0] == Nodetype.BASE and element[1][0] not in ("string", "wstring"):
         import numpy
 
-        datatype = _DTYPES.get(element[1][0], element[1][0])
-        return numpy.asarray([0 if one is None else one for one in given], datatype)
+        name = element[1][0]
+        return numpy.asarray([_base(name, one) for one in given], _DTYPES.get(name, name))
     return [_value(store, element, one) for one in given]
 
 
 def _base(datatype: str, given: Any) -> Any:
     if given is not None:
+        if datatype == "bool" and given not in (True, False):  # of a text Python would make true, whatever it says
+            raise MessageError(f"has {given!r}, where a bool is true or false")
         return given
     if datatype in ("string", "wstring"):
         return ""

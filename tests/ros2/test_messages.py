@@ -61,11 +61,22 @@ def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
         ({"header": 3}, "sensor_msgs/msg/LaserScan", "is no object, where std_msgs/msg/Header has fields"),
         ({"ranges": ["far"]}, "sensor_msgs/msg/LaserScan", "is no sensor_msgs/msg/LaserScan"),
         ({"sec": 1 << 40}, "builtin_interfaces/msg/Time", "is no builtin_interfaces/msg/Time"),
+        ({"covariance": [0.1] * 35}, "geometry_msgs/msg/PoseWithCovariance", "Unexpected array length"),
+        ({"data": "false"}, "std_msgs/msg/Bool", "has 'false', where a bool is true or false"),
     ],
 )
 def test_an_object_that_is_no_message_is_said_to_be_none(fields: Any, kind: str, words: str) -> None:
     with pytest.raises(MessageError, match=words):
         messages.message(fields, usual(kind))
+
+
+def test_what_is_read_of_a_message_of_any_type_can_be_written_again() -> None:
+    state = usual("lifecycle_msgs/msg/State")  # constants of a type are no fields
+    assert messages.message_fields(messages.message({}, state), state) == {"id": 0, "label": ""}
+    for name in messages._stores()[0].fielddefs:
+        kind = usual(name)
+        payload = messages.message({}, kind)
+        assert messages.message(messages.message_fields(payload, kind), kind) == payload, name
 
 
 def test_a_type_is_known_by_its_hash() -> None:
