@@ -11,6 +11,7 @@ from collections.abc import Container, Iterable, Mapping
 from itertools import chain
 
 from selfconf.errors import TemplateError
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf.eligibility.compiler import SHAPES_OF_A_LIST, SILENT, TARGETS, ShapeCompiler
@@ -41,21 +42,24 @@ def compile_role(
     role: IRI,
     settings: tuple[IRI, ...],
     free: frozenset[IRI],
+    hierarchy: Hierarchy = NOTHING_ABOVE,
 ) -> CompiledRole:
     """Compile the shape of a role, in which parameters stand that are `free`; `settings` are the types that it sets.
 
+    The tests hold under that hierarchy.
+
     Raises TemplateError for shapes within shapes without end, or nearly so.
     """
-    compiler = ShapeCompiler(document, free)
+    compiler = ShapeCompiler(document, free, hierarchy)
     try:
         tests = (*compiler.shape(role), *map(ParameterTest, settings))
-        settled = _settled(document, role, free) if compiler.rest and free else frozenset[Term]()
+        settled = _settled(document, role, free, hierarchy) if compiler.rest and free else frozenset[Term]()
         return CompiledRole(role, tests, not compiler.rest, local(document, role), settled)
     except RecursionError:
         raise TemplateError(f"the shape of the role {role!r} nests too deeply", file=document.source) from None
 
 
-def _settled(document: Document, role: IRI, free: frozenset[IRI]) -> frozenset[Term]:
+def _settled(document: Document, role: IRI, free: frozenset[IRI], hierarchy: Hierarchy) -> frozenset[Term]:
     """The property shapes of a role that tests say all of, with free parameters that stand nowhere else in its shape.
 
     None of shapes that are disjoint, which look at the other property shapes of the role.
@@ -65,7 +69,7 @@ def _settled(document: Document, role: IRI, free: frozenset[IRI]) -> frozenset[T
         for shape in document.values(role, SH.property)
         if (parameters := mentions(document, shape, free))
         and document.value(shape, SH.qualifiedValueShape) is None
-        and _compiled_in_full(document, shape, free)
+        and _compiled_in_full(document, shape, free, hierarchy)
     }
     while settled:
         elsewhere = mentions(_without(document, role, settled), role, free)
@@ -77,9 +81,9 @@ def _settled(document: Document, role: IRI, free: frozenset[IRI]) -> frozenset[T
     return frozenset(settled)
 
 
-def _compiled_in_full(document: Document, shape: Term, free: frozenset[IRI]) -> bool:
+def _compiled_in_full(document: Document, shape: Term, free: frozenset[IRI], hierarchy: Hierarchy) -> bool:
     """Whether tests say all that a shape says."""
-    compiler = ShapeCompiler(document, free)
+    compiler = ShapeCompiler(document, free, hierarchy)
     for _ in compiler.shape(shape):
         pass
     return not compiler.rest
@@ -161,12 +165,12 @@ def with_named_suppliers(document: Document) -> Document:
     return replace(document, statements=statements)
 
 
-def suppliers_of(document: Document, role: IRI) -> CompiledRole:
-    """The tests that a supplier has to pass; none where a role recruits any component.
+def suppliers_of(document: Document, role: IRI, hierarchy: Hierarchy) -> CompiledRole:
+    """The tests that a supplier has to pass under a hierarchy; none where a role recruits any component.
 
     The parameters in its shape have values, by which they are replaced. Raises TemplateError where it is no shape.
     """
     shape = document.value(role, SC.recruits)
     if shape is None or isinstance(shape, Literal) or not isinstance(shape, IRI):
         return CompiledRole(role, (), complete=True)
-    return compile_role(document, shape, (), frozenset())
+    return compile_role(document, shape, (), frozenset(), hierarchy)

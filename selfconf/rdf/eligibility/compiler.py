@@ -19,6 +19,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeGuard
 
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
@@ -72,8 +73,10 @@ class _PropertyParts:
 class ShapeCompiler:
     """Compiles one shape; `rest` is raised as soon as something is met that only pySHACL can judge."""
 
-    def __init__(self, document: Document, free: frozenset[IRI]) -> None:
+    def __init__(self, document: Document, free: frozenset[IRI], hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
         self.document, self.free = document, free
+        self._structure = STRUCTURE.union(*map(hierarchy.superproperties, STRUCTURE))
+        """What leads to more than the statements that a profile keeps as properties."""
         self.own = component_parameters(document)
         """The predicates by which shapes use constraint components of the document."""
         self.rest = False
@@ -219,7 +222,7 @@ class ShapeCompiler:
 
     def _plain(self, path: Term) -> TypeGuard[IRI]:
         """Whether a path is one property that a profile keeps as statements."""
-        return isinstance(path, IRI) and path not in self.free and path not in STRUCTURE and path not in SC
+        return isinstance(path, IRI) and path not in self.free and path not in self._structure and path not in SC
 
     def _among(self, head: Term, parts: _PropertyParts) -> None:
         """A list of values: all known, or all but one free parameter, which may be any other value."""

@@ -100,11 +100,7 @@ class Partitioner:
         self.free = free_parameters(given.task.template, given.task.bindings)
         self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
         self.roles = tuple(map(self._compiled, given.task.template.roles))
-        self.suppliers = {
-            number: suppliers_of(self.document, role.iri)
-            for number, role in enumerate(given.task.template.roles)
-            if role.recruits
-        }
+        self.suppliers = self._compiled_suppliers()
         """For each role that recruits, by number, the tests of what may supply its players."""
         self._above = ClassClosure(hierarchy)
         self.not_judged: dict[IRI, NotJudged] = {}
@@ -116,12 +112,19 @@ class Partitioner:
     def _compiled(self, role: Role) -> CompiledRole:
         """The tests of a role, by its shape as it stands in the document."""
         settings = tuple(setting.type for setting in role.settings)
-        return compile_role(self.document, role.iri, settings, self.free)
+        return compile_role(self.document, role.iri, settings, self.free, self.hierarchy)
+
+    def _compiled_suppliers(self) -> Mapping[int, CompiledRole]:
+        """The tests of what may supply the players of each role that recruits, by number."""
+        roles = enumerate(self.task.template.roles)
+        return {n: suppliers_of(self.document, role.iri, self.hierarchy) for n, role in roles if role.recruits}
 
     def under(self, hierarchy: Hierarchy) -> Partitioner:
         """A partitioner of this task for roles that see another hierarchy."""
         other = copy(self)
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
+        other.roles = tuple(map(other._compiled, self.task.template.roles))
+        other.suppliers = other._compiled_suppliers()
         other.judge = ShapeJudge(self.document, hierarchy)
         other.not_judged, other._acceptance = {}, Acceptance(hierarchy)
         return other

@@ -20,6 +20,7 @@ from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.literal_comparison import only_ordered
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
+from selfconf.rdf.vocabulary import RDF, SC
 from tests.harness.effort import examples
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
@@ -139,6 +140,21 @@ def test_a_hierarchy_counts_for_types_and_for_properties() -> None:
     for rest in (".", '; sh:sparql [ sh:select "SELECT $this WHERE { FILTER (1 = 2) }" ] .'):
         assert names(partitioner(text + rest).partition(ads)) == [[]]
         assert names(partitioner(text + rest, above).partition(ads)) == [["a"]]
+
+
+def test_a_property_above_those_of_ports_settings_and_types_has_their_values() -> None:
+    lamp = ":a a sc:Component, :Lamp ; sc:preference 5 ; sc:hasOutput [ sc:name 'o' ; sc:signalType rob:Text ] ."
+    ads = read([lamp, ":b a sc:Component, :Lamp ; :rank 5 ; :port :x ; :kind :Lamp .", ":c a sc:Component, :Lamp ."])
+    above = [(SC.hasOutput, iri("port")), (SC.preference, iri("rank")), (RDF.type, iri("kind"))]
+    text = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Lamp ; sh:property [ sh:path "
+    for asked, found in (
+        (":port ; sh:minCount 1", ["a", "b"]),
+        (":rank ; sh:minInclusive 3 ; sh:minCount 1", ["a", "b"]),
+        (":kind ; sh:hasValue :Lamp", ["a", "b", "c"]),
+    ):
+        task = partitioner(f"{text}{asked} ] .")
+        assert names(task.under(Hierarchy([], above)).partition(ads)) == [found]
+        assert names(task.partition(ads)) == [["b"]]
 
 
 def test_sparql_in_a_role_is_judged() -> None:
