@@ -91,7 +91,7 @@ class ThingForms:
     def _form(self, form: Mapping[str, Any], operation: str) -> ThingForm:
         """The request that a form stands for. Raises UnusableFormError."""
         url, method = self._url(form.get("href")), form.get("htv:methodName", USUAL_METHODS[operation])
-        if method not in _KNOWN_METHODS:
+        if not isinstance(method, str) or method not in _KNOWN_METHODS:
             raise UnusableFormError(f"a form has the HTTP method {str(method)[:20]!r}")
         where, told = origin(url), self._credentials.for_url(url)
         names = one_or_several(form.get("security", self._security))

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import aiohttp
 from yarl import URL
 
+from selfconf.bridging.wot.credentials import origin
 from selfconf.bridging.wot.forms import JSON, ThingForm
 from selfconf.importing import LARGEST_SOURCE
 from selfconf.model.immutable import immutable
@@ -138,12 +139,12 @@ class ThingClient:
 
     async def reach(self, form: ThingForm) -> None:
         """See whether something listens where a form leads. Raises ThingError."""
-        url = URL(form.url)
         try:
+            url = URL(form.url)
             _, writer = await asyncio.wait_for(asyncio.open_connection(url.host, url.port), self._limits.answer)
             writer.close()
-        except (OSError, asyncio.TimeoutError) as error:
-            raise ThingError(f"{url.origin()} does not answer: {_reason(error)}") from None
+        except (OSError, ValueError, asyncio.TimeoutError) as error:  # ValueError for a host that no name can be
+            raise ThingError(f"{origin(form.url)} does not answer: {_reason(error)}") from None
 
     @asynccontextmanager
     async def _sent(

@@ -83,7 +83,10 @@ class AffordanceReader:
             self._note_schema(affordance)
             reads, writes = _operations(affordance)
             if reads:
-                yield "output", replace(port, properties=(*stated_rate(affordance, self.meanings), *others))
+                rate = stated_rate(affordance, self.meanings)
+                if not rate and any(self.meanings.expanded(member) == SC.rate for member in affordance):
+                    self._leave_out("rates that promise nothing", "a rate is a number above zero, of unit:HZ")
+                yield "output", replace(port, properties=(*rate, *others))
             if writes:
                 yield "input", replace(port, optional=True)
             if not reads and not writes:

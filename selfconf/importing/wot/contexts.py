@@ -29,6 +29,9 @@ W3C_CONTEXTS = frozenset(
 _SCHEMES = frozenset(("http", "https", "urn", "did", "tag", "info", "file", "ftp", "coap", "coaps", "uuid", "oid"))
 """What before a colon is taken for the scheme of an IRI, if no context says that it is a prefix."""
 
+DEEPEST_TERM = 50
+"""How many definitions may lead from a term to its IRI; more are a circle, or as good as one."""
+
 
 class TermMeanings:
     """The terms that the contexts of one document define."""
@@ -77,13 +80,15 @@ class TermMeanings:
 
     def expanded(self, term: str, depth: int = 0) -> IRI | None:
         """The IRI that a term stands for, or None if that is not known here."""
-        if term in self._defined and depth < len(self._defined) + 2:
+        if depth > DEEPEST_TERM:
+            return None
+        if term in self._defined:
             return self.expanded(self._defined[term], depth + 1) if self._defined[term] != term else absolute(term)
         prefix, colon, local = term.partition(":")
         if not colon:
             return absolute(self._vocabulary + term) if self._vocabulary else None
         if prefix in self._defined and not local.startswith("//"):
-            base = self.expanded(prefix, depth + 1) if depth < len(self._defined) + 2 else None
+            base = self.expanded(prefix, depth + 1)
             return None if base is None else absolute(base + local)
         return absolute(term) if prefix.lower() in _SCHEMES else None
 

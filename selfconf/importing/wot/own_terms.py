@@ -13,7 +13,8 @@ from selfconf.importing.wot.contexts import TermMeanings
 from selfconf.importing.wot.json_text import one_or_several
 from selfconf.importing.wot.json_values import terms_of
 from selfconf.model.profile import is_port_name
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, Term
+from selfconf.rdf.permitted_fields import RATE
 from selfconf.rdf.vocabulary import SC
 
 _SAID = {
@@ -77,14 +78,13 @@ class OwnTerms:
 
 
 def stated_rate(affordance: Mapping[str, Any], meanings: TermMeanings) -> tuple[tuple[IRI, DescribedValue], ...]:
-    """The rate (`sc:rate`) of a property, as a statement about its output; nothing if none is stated."""
+    """The rate (`sc:rate`) of a property, as a statement about its output; nothing if none is stated that is one."""
     (said, *_) = one_or_several(_by_meaning(affordance, meanings).get(SC.rate)) or (None,)
     members = _by_meaning(said, meanings) if isinstance(said, dict) else {}
-    value = [one for one in _terms(members, SC.value, meanings) if isinstance(one, Literal)]
-    unit = [one for one in _terms(members, SC.unit, meanings) if isinstance(one, IRI)]
-    if not value or not unit:
+    found = [(part.predicate, tuple(_terms(members, part.predicate, meanings)[:1])) for part in RATE.fields]
+    if not all(part.kind.allows(one) for part, (_, some) in zip(RATE.fields, found, strict=True) for one in some):
         return ()
-    return ((SC.rate, NestedNode(((SC.value, (value[0],)), (SC.unit, (unit[0],))))),)
+    return ((SC.rate, NestedNode(tuple(found))),) if all(some for _, some in found) else ()
 
 
 def _by_meaning(node: Mapping[str, Any], meanings: TermMeanings) -> dict[IRI, Any]:

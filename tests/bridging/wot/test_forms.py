@@ -63,6 +63,7 @@ def test_a_form_counts_from_the_base_else_from_where_the_description_comes_from(
         ({"href": "http://192.0.2.7:x/"}, "no http or https URL"),
         ({"href": "http://elsewhere.example/on"}, "allow it with host='elsewhere.example'"),
         ({"href": "on", "htv:methodName": "BREW"}, "'BREW'"),
+        ({"href": "on", "htv:methodName": ["GET"]}, "['GET']"),
         ({"href": "on\r\nX: y"}, "no http or https URL"),
         ({"href": "http://192.0.2.7/o n"}, "no http or https URL"),
     ],

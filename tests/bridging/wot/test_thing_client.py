@@ -204,6 +204,15 @@ def test_nobody_there_is_said_in_few_words(thing_server: Start) -> None:
         asked(lambda client: client.reach(ThingForm(server.url + "/on", "POST")))
 
 
+@pytest.mark.parametrize("host", ["a..b", "\u00e4..b", 64 * "a"])
+def test_a_host_that_no_name_can_be_does_not_answer(host: str) -> None:
+    form = ThingForm(f"http://{host}/on", "POST")
+    with pytest.raises(ThingError, match=rf"http://{host} does not answer: "):
+        asked(lambda client: client.reach(form))
+    with pytest.raises(ThingError, match="does not answer: "):
+        asked(lambda client: client.send(form, True))
+
+
 def test_something_that_listens_can_be_reached(thing_server: Start) -> None:
     server = thing_server()
     asked(lambda client: client.reach(ThingForm(server.url + "/on", "POST")))

@@ -165,3 +165,8 @@ def test_what_an_affordance_says_in_other_vocabularies_is_said_of_its_port_or_op
         "values of other vocabularies at requests and responses": 1,
         "data schemas": 1,
     }
+
+
+def test_a_rate_that_is_none_is_left_out_with_its_number() -> None:
+    said = {"https://w3id.org/selfconf#rate": {"https://w3id.org/selfconf#value": 0}}
+    assert Reading(properties={"a": said}).left_out == {"rates that promise nothing": 1}

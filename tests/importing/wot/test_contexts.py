@@ -52,8 +52,12 @@ def test_a_prefix_of_a_context_on_the_web_is_unknown_and_both_are_named() -> Non
 
 
 @pytest.mark.parametrize(
-    "context", [None, 5, [[]], {"a": "a"}, {"a": "b:x", "b": "a:y"}, {"a": {"@id": 5}}, {"a": "a:a"}]
-)
+    "context",
+    [
+        None, 5, [[]], {"a": "a"}, {"a": "b:x", "b": "a:y"}, {"a": {"@id": 5}}, {"a": "a:a"},
+        {"a": "a1:x"} | {f"a{number}": f"a{number + 1}:x" for number in range(1, 2000)},
+    ],
+)  # fmt: skip
 def test_a_context_that_makes_no_sense_defines_nothing(context: Any) -> None:
     meanings = TermMeanings(context)
     assert meanings.expanded("a:b") is None

@@ -52,3 +52,5 @@ def test_a_rate_is_a_number_with_its_unit() -> None:
     assert stated_rate(said, MEANINGS) == ((SC.rate, rate),)
     for nothing in ({}, {"sc:rate": 5}, {"sc:rate": {"sc:value": 5}}, {"sc:rate": []}):
         assert stated_rate(nothing, MEANINGS) == ()
+    for value, unit in ((0, "HZ"), (-1, "HZ"), ("5", "HZ"), (5, "SEC")):  # no advertisement could hold these
+        assert stated_rate({"sc:rate": {"sc:value": value, "sc:unit": {"@id": f"unit:{unit}"}}}, MEANINGS) == ()
