@@ -22,6 +22,8 @@ from selfconf.protocol.messages import Cause, RecordedLoss, SignalEncoding, Verd
 
 MOST_WIRES = 4096
 """How many outputs the inputs of a component can be set to follow in one call."""
+MOST_DIMENSIONS = 64
+"""How many dimensions an array has at most, as in Python and NumPy; to multiply very many sizes takes seconds."""
 _WHOLE = 1 << 63
 """Whole numbers lie between this and its negative, so that other languages can hold them too."""
 _QUOTED = 80
@@ -146,7 +148,10 @@ def read_moment(value: object) -> float:
 def read_encoding(value: object) -> SignalEncoding:
     """How a signal is encoded."""
     body = _read_object(value)
-    shape = tuple(map(read_whole, _read_list(body.get("shape", []))))
+    sizes = _read_list(body.get("shape", []))
+    if len(sizes) > MOST_DIMENSIONS:
+        raise PeerError(f"an array has {MOST_DIMENSIONS} dimensions at most")
+    shape = tuple(map(read_whole, sizes))
     if any(size < 0 for size in shape):
         raise PeerError("no dimension of an array is below zero")
     return SignalEncoding(read_text(body.get("media", "")), read_text(body.get("datatype", "")), shape)

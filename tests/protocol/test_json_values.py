@@ -12,7 +12,7 @@ from selfconf.model.configuration import Wants
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import one_line
 from selfconf.protocol.codec import KINDS, decode, encode
-from selfconf.protocol.json_values import decode_term, encode_term
+from selfconf.protocol.json_values import MOST_DIMENSIONS, decode_term, encode_term
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import (
     Apply,
@@ -41,7 +41,10 @@ def test_a_number_that_no_float_holds_is_refused() -> None:
         decode(json.dumps({**body, "time": 10**400}).encode(), Stamp)
 
 
-@pytest.mark.parametrize("encoding", [[], {"shape": [-1]}, {"shape": 3}, {"shape": [1.5]}, {"media": 1}])
+@pytest.mark.parametrize(
+    "encoding",
+    [[], {"shape": [-1]}, {"shape": 3}, {"shape": [1.5]}, {"shape": [1] * (MOST_DIMENSIONS + 1)}, {"media": 1}],
+)
 def test_what_is_no_encoding_is_refused(encoding: object) -> None:
     body = json.loads(encode(Stamp(IRI("urn:a"), "l", 1, 0.0)))
     with pytest.raises(PeerError):
