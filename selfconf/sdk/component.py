@@ -168,9 +168,9 @@ class Component:
         """Call an operation that this component needs: the component that is connected to it is asked, once.
 
         `request` is what is sent along, of what signals can carry, and of 1 MiB at most; `media` is the media type of
-        bytes. `answered` is called with what
-        has come of it within that many seconds, unless the component was stopped meanwhile. Nothing happens while not
-        active. Raises ProgrammerError for an operation that is not advertised, and for what no request can carry.
+        bytes. `answered` is called with what has come of it within that many seconds, above zero, unless the component
+        was stopped meanwhile. Nothing happens while not active. Raises ProgrammerError for an operation that is not
+        advertised, for what no request can carry, and for a time that is not above zero.
         """
         self._attached().operations.call(operation, request, seconds, answered, media)
 

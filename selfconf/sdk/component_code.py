@@ -113,9 +113,17 @@ class ComponentCode:
     def change(self, values: Mapping[str, Term], done: Done) -> None:
         """Set the parameters that have other values than before."""
         changed = {name: value for name, value in values.items() if self._values.get(name) != value}
+
+        def set_changed() -> None:
+            trouble = self._set(changed)
+            if trouble is not None:  # a call that is made again is to hear the same, and not that all is done
+                for name in changed:
+                    self._values.pop(name, None)
+            self._report(done, trouble)
+
         self._values |= values
         if changed:
-            self._thread.call(lambda: self._report(done, self._set(changed)))
+            self._thread.call(set_changed)
         else:
             done(None)
 

@@ -206,13 +206,16 @@ class Operations:
     def _kept(self, request: Request, name: str, promise: Future[Any]) -> None:
         """Answer a request with what a future has come to; on whatever thread it does."""
         self._promised.pop(promise, None)
-        self._answer(request, name, partial(self._code.outcome, name, promise))
+        self._answer(request, name, partial(self._code.outcome, name, promise), kept=True)
 
-    def _answer(self, request: Request, name: str, answered: Callable[[], Any]) -> None:
-        """Answer a request with a value, or refuse it as `answered` does; nothing yet if the value is a future."""
+    def _answer(self, request: Request, name: str, answered: Callable[[], Any], kept: bool = False) -> None:
+        """Answer a request with a value, or refuse it as `answered` does; nothing yet if the value is a future.
+
+        What a future has come to (`kept`) is the answer, and another future is none.
+        """
         try:
             value = answered()
-            if isinstance(value, Future):
+            if isinstance(value, Future) and not kept:
                 return
             answer = self._packed(name, value)
         except Refused as refused:
@@ -253,11 +256,14 @@ class Operations:
     ) -> None:
         """Ask for an operation; may be called from any thread. The answer is heard on the thread of the code.
 
-        Raises ProgrammerError for an operation that is not advertised, and for what no request can carry.
+        Raises ProgrammerError for an operation that is not advertised, for what no request can carry, and for a time in
+        which no answer can come.
         """
         who = self._profile.component.short
         if name not in self._needed:
             raise ProgrammerError(f"{who} advertises no need of an operation {name!r}")
+        if not seconds > 0.0:
+            raise ProgrammerError(f"`call` waits for more than zero seconds, not {seconds!r}")
         if not self._code.active:
             return
         try:
@@ -268,7 +274,7 @@ class Operations:
         except UnsayableError as error:
             raise ProgrammerError(f"{who} cannot send that along with {name!r}: it {error}") from None
         hear = partial(self._heard, self._code.turn, answered)
-        self._then(self._ask, name, stamp + _END_OF_STAMP + payload, seconds, hear)
+        self._then(self._ask, name, stamp + _END_OF_STAMP + payload, min(seconds, LONGEST_PATIENCE), hear)
 
     def _ask(self, name: str, request: bytes, seconds: float, hear: Callable[[Response], None]) -> None:
         wire = next(iter(self._wires.get(name, ())), None)
@@ -285,7 +291,7 @@ class Operations:
             hear(_answer(wire.component, replies, seconds))
 
         key = self._keys.operation(wire.component, wire.output.removesuffix(CALL_MARK), self._profile.component)
-        self._bus.ask(key, request, seconds, done, f"{min(seconds, LONGEST_PATIENCE):g}".encode())
+        self._bus.ask(key, request, seconds, done, f"{seconds:g}".encode())
 
     def _heard(self, turn: int, answered: Callable[[Response], None], answer: Response) -> None:
         self._thread.signal(partial(self._code.answered, turn, partial(answered, answer)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import threading
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -55,8 +56,10 @@ class Outputs:
         }
         self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.signal_outputs}
         self._sequence = itertools.count(1)
-        self.newest = 0
-        """The number of the last signal that was issued in this life; 0 if none was."""
+        self._newest = 0
+        # Held while a signal is issued: inputs pass over one that comes after another with a higher number. Reentrant:
+        # on a bus in memory it may arrive at once, at code that emits in turn.
+        self._issuing = threading.RLock()
         self.issued = {port.name: 0 for port in profile.outputs}
         """How many signals each output has issued in this life."""
         self._last: dict[str, tuple[bytes, bytes]] = {}
@@ -87,12 +90,21 @@ class Outputs:
         except UnsayableError as error:
             self._malformed(f"what it emits on {port!r} {error}")
             return
-        self.newest = number = next(self._sequence)
-        moment = time.time() if moment is None else moment
-        stamp = self._stamps[port].write(number, moment, packed, encoding)
-        self._last[port] = payload, stamp
-        self.issued[port] += 1  # a count for people: where two threads emit on one output, one may be missed
-        output.put(payload, stamp)
+        with self._issuing:
+            if not self._active():  # it has failed meanwhile, on another thread, and has said which signal was its last
+                return
+            self._newest = number = next(self._sequence)
+            moment = time.time() if moment is None else moment
+            stamp = self._stamps[port].write(number, moment, packed, encoding)
+            self._last[port] = payload, stamp
+            self.issued[port] += 1
+            output.put(payload, stamp)
+
+    @property
+    def newest(self) -> int:
+        """The number of the last signal that was issued in this life; 0 if none was."""
+        with self._issuing:
+            return self._newest
 
     def problem(self, port: str, value: Any) -> str | None:
         """What keeps a value from being a signal of an output, without its subject; None if nothing does."""

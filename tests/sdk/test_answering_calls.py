@@ -90,6 +90,17 @@ def test_an_answer_that_was_promised_is_cancelled_when_the_component_is_stopped(
     assert replies[0].errors == ("camera ended the call before it answered",)
 
 
+def test_a_promise_that_comes_to_another_one_is_no_answer() -> None:
+    """A request would wait for ever, and after 64 of them no other one would be served."""
+    promise: Future[Any] = Future()
+    promise.set_result(Future())
+    served = Served(Camera(reply=lambda request: promise))
+    (said,) = served.ask(request_of(ALBUM)).errors
+    assert said == "its answer is nothing that JSON can say: an object of type Future is nothing of JSON"
+    served.stage.let_pass(0.1)
+    assert [fail.cause for fail in served.stage.fails] == [Cause.MALFORMED]
+
+
 @pytest.mark.parametrize("ended", ["the caller is connected no more", "the caller waits no longer"])
 def test_an_answer_that_nobody_waits_for_is_cancelled(ended: str) -> None:
     promises: list[Future[Any]] = [Future(), Future()]

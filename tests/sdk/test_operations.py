@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from concurrent.futures import Future
 from typing import Any
@@ -174,6 +175,9 @@ def test_what_cannot_be_called_or_sent_is_a_mistake_of_the_program() -> None:
         room.album.ask(float("nan"))
     with pytest.raises(ProgrammerError, match=f"it has {MOST_PAYLOAD + 1} bytes, and {MOST_PAYLOAD} are allowed"):
         room.album.ask(bytes(MOST_PAYLOAD + 1))
+    for seconds in (-0.01, 0.0, math.nan):  # such as the rest of a time that is over
+        with pytest.raises(ProgrammerError, match="`call` waits for more than zero seconds, not "):
+            room.album.ask(seconds=seconds)
     assert room.photo("all is well")
 
 

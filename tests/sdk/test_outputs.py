@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import threading
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -14,6 +16,7 @@ from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause
+from selfconf.sdk import outputs
 from selfconf.sdk.component import Signal
 from selfconf.sdk.payloads import LARGEST_JSON
 from selfconf.sdk.runtime import ComponentRuntime
@@ -116,6 +119,52 @@ def test_nothing_is_emitted_while_a_component_is_not_active() -> None:
     stage.component.emit("velocity", 3)
     stage.let_pass(0.1)
     assert [sample.payload for sample in heard] == [b"2"]
+
+
+def test_what_two_threads_emit_leaves_in_the_order_of_its_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An input would take the one that comes later, with the lower number, for one that it has had."""
+    listener = Listener()
+    stage = Stage(listener)
+    tracker = stage.neighbour()
+    stage.call(follow())
+    first = threading.Thread(target=lambda: tracker.component.emit("pose", "first"))
+    is_numbered, other_is_out = threading.Event(), threading.Event()
+
+    def clock() -> float:
+        """What is looked at between the number and the network; there the first waits whether it is overtaken."""
+        if threading.current_thread() is first:
+            is_numbered.set()
+            other_is_out.wait(0.2)
+        return 12.0
+
+    monkeypatch.setattr(outputs, "time", SimpleNamespace(time=clock))
+    first.start()
+    assert is_numbered.wait(5.0)
+    tracker.component.emit("pose", "second")
+    other_is_out.set()
+    first.join()
+    stage.let_pass(0.1)
+    assert [(signal.value, signal.sequence) for signal in listener.arrived] == [("first", 1), ("second", 2)]
+
+
+def test_nothing_is_emitted_after_a_fail_that_comes_while_the_value_is_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To an input it would be newer than what the FAIL says was the last, and feed it."""
+    listener = Listener()
+    stage = Stage(listener)
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", "before")
+    written = outputs.as_json
+
+    def fail_meanwhile(value: Any) -> bytes:
+        tracker.fail("as another thread has found")
+        return written(value)
+
+    monkeypatch.setattr(outputs, "as_json", fail_meanwhile)
+    tracker.component.emit("pose", "after")
+    stage.let_pass(0.1)
+    assert [signal.value for signal in listener.arrived] == ["before"]
+    assert stage.fails[0].sequence == tracker.outputs.newest == 1
 
 
 def test_an_output_that_is_not_advertised_is_the_programmers_error() -> None:

@@ -86,6 +86,22 @@ def test_a_parameter_that_is_not_declared_or_no_number_is_refused_with_a_reason(
     assert "goal" in answer.detail
 
 
+def test_a_change_that_is_refused_is_refused_again_when_it_is_asked_for_again() -> None:
+    class Stubborn(Recorder):
+        def parameter_set(self, name: str, value: Any) -> None:
+            super().parameter_set(name, value)
+            if value == "y":
+                raise Refused("not that one")
+
+    stage = Stage(Stubborn())
+    stage.call(apply(1, US, values={"goal": Literal("x")}))
+    for epoch in (2, 2, 3):
+        answer = stage.call(apply(epoch, US, values={"goal": Literal("y")}))
+        assert (answer.verdict, answer.detail) == (Verdict.REFUSED, "not that one")
+    assert stage.call(apply(4, US, values={"goal": Literal("z")})).verdict is Verdict.DONE
+    assert stage.recorder.said[-2:] == [("goal", "y"), ("goal", "z")]
+
+
 def test_a_component_that_fails_as_a_parameter_is_set_says_so_and_is_not_started() -> None:
     class Unable(Recorder):
         def parameter_set(self, name: str, value: Any) -> None:
