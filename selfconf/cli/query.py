@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,6 +33,8 @@ EXAMPLE = """  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --ad
 ANSWER_FORMATS = ("table", "json", "csv", "tsv", "turtle")
 SECONDS, ROWS = 60.0, 100_000
 # All three are the library's (`selfconf.query`), which is not loaded to parse arguments; a test compares them.
+LONGEST_PATH = 255
+"""How many bytes what names a file has at most where it does not end in `.rq`: more are too long for one name."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -114,7 +117,9 @@ def _text(given: str) -> str:
             return files.standard_input().decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise AuthorError(f"cannot read stdin: {error}") from None
-    if given.endswith(".rq") or (len(given) < 255 and "\n" not in given and Path(given).is_file()):
+    if given.endswith(".rq") or (
+        len(os.fsencode(given)) <= LONGEST_PATH and "\n" not in given and Path(given).is_file()
+    ):
         if not Path(given).exists():
             raise AuthorError(f"there is no file or folder {given}")
         try:

@@ -67,6 +67,12 @@ def test_a_query_may_lie_in_a_file_or_come_from_stdin(desk: Desk, monkeypatch: p
     assert desk.query("-").out == expected
 
 
+def test_a_query_may_have_more_bytes_than_the_name_of_a_file(desk: Desk) -> None:
+    text = f"SELECT ?c WHERE {{ ?c rdfs:label ?label FILTER(CONTAINS(?label, '{80 * chr(0x706F)}')) }}"
+    outcome = desk.query(text, "--format", "csv")
+    assert (outcome.code, outcome.out.strip()) == (0, "c")
+
+
 def test_an_ontology_can_be_asked_along(desk: Desk) -> None:
     own = desk.folder / "own.ttl"
     own.write_text(PREFIXES + "rob:MotorDrive rdfs:subClassOf :Actuator .")
