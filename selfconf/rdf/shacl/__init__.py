@@ -2,15 +2,16 @@
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
 makes tests of the constraints that can be; two `exclude` each other if no value passes both. `misfit`, `unfit`,
-`of_values`, `said_twice`, `LISTS`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `COUNTS` and `ILL_FORMED` say what may
-stand as a value of SHACL's own properties. `component_parameters` are the predicates by which a document constrains by
-components of its own. `pattern` is a regular expression that a text cannot make expensive (`Pattern`); where that
-cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL. Judging by pySHACL is
-`selfconf.rdf.conformance`, which loads it.
+`of_values`, `said_twice`, `said_alone`, `LISTS`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
+`ILL_FORMED` say what may stand as a value of SHACL's own properties. `component_parameters` are the predicates by which
+a document constrains by components of its own. `pattern` is a regular expression that a text cannot make expensive
+(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL. Judging by
+pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, shacl_pattern
 from selfconf.rdf.shacl.shape_syntax import (
+    BESIDES,
     COUNTS,
     ILL_FORMED,
     LISTS,
@@ -20,12 +21,14 @@ from selfconf.rdf.shacl.shape_syntax import (
     component_parameters,
     misfit,
     of_values,
+    said_alone,
     said_twice,
     unfit,
 )
 from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude
 
 __all__ = [
+    "BESIDES",
     "COUNTS",
     "ILL_FORMED",
     "LISTS",
@@ -43,6 +46,7 @@ __all__ = [
     "misfit",
     "of_values",
     "pattern",
+    "said_alone",
     "said_twice",
     "shacl_pattern",
     "unfit",

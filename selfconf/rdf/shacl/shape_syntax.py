@@ -114,13 +114,18 @@ def said_twice(predicate: IRI) -> str:
     return f"A shape has one sh:{predicate.short} at most"
 
 
+def said_alone(predicate: IRI) -> str:
+    """A sentence, without its full stop, about a property of SHACL that says nothing without another."""
+    return f"Beside sh:{predicate.short} stands {' or '.join(f'sh:{one.short}' for one in BESIDES[predicate])}"
+
+
 def _lacking(document: Document, shape: Node, predicate: IRI) -> str | None:
     """What a shape does not say that it has to say beside one of SHACL's properties."""
     if predicate in ONLY_WITH_A_PATH and not document.values(shape, SH.path):
         return of_values(predicate)
     beside = BESIDES.get(predicate, ())
     if beside and not any(document.values(shape, one) for one in beside):
-        return f"Beside sh:{predicate.short} stands {' or '.join(f'sh:{one.short}' for one in beside)}"
+        return said_alone(predicate)
     return None
 
 

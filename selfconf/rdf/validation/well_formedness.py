@@ -31,7 +31,18 @@ from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.read_shapes import ReadShapes
-from selfconf.rdf.shacl import COUNTS, ILL_FORMED, LISTS, ONLY_WITH_A_PATH, STATED_ONCE, of_values, said_twice, unfit
+from selfconf.rdf.shacl import (
+    BESIDES,
+    COUNTS,
+    ILL_FORMED,
+    LISTS,
+    ONLY_WITH_A_PATH,
+    STATED_ONCE,
+    of_values,
+    said_alone,
+    said_twice,
+    unfit,
+)
 from selfconf.rdf.sparql import fault, mistake
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.vocabulary import SC
@@ -72,7 +83,7 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     for role in roles:
         shapes.add((URIRef(role), RDF.type, SH.NodeShape))
     faults = [fault for look in (_faults, _literals) for fault in look(shapes, positions)]
-    faults += [fault for look in (_patterns, _queries) for fault in look(graph, positions)]
+    faults += [fault for look in (_alone, _patterns, _queries) for fault in look(graph, positions)]
     faults += _too_deep(shapes, roles, positions)
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
@@ -168,6 +179,15 @@ def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
             offsets = positions.triples.get((shape, predicate, value))
             if isinstance(value, Literal) and offsets is not None:
                 yield at(positions, offsets.object, "SC-T13", unfit(IRI.unchecked(predicate)))
+
+
+def _alone(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """What says nothing without another property, which is not there; a trial tells it of shapes for no values only."""
+    for predicate, besides in BESIDES.items():
+        for shape, value in graph.subject_objects(URIRef(predicate)):
+            if not any((shape, URIRef(one), None) in graph for one in besides):
+                offset = positions.triples[shape, URIRef(predicate), value].predicate
+                yield at(positions, offset, "SC-T13", f"{said_alone(predicate)}.")
 
 
 def _patterns(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:

@@ -63,6 +63,12 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:property [ sh:path :p ; sh:qualifiedValueShape [ ] ; sh:qualifiedMaxCount -1 ]", 93, "a whole number"),
         ("sh:property [ sh:path :p ; sh:minCount 1 , 2 ]", 59, "A shape has one sh:minCount at most."),
         ("sh:property [ sh:path :p ; sh:pattern '(' ]", 54, "This is no regular expression"),
+        ("sh:qualifiedMaxCount 1", 16, "Beside sh:qualifiedMaxCount stands sh:qualifiedValueShape."),
+        (
+            "sh:property [ sh:path :p ; sh:node [ sh:ignoredProperties ( :p ) ] ]",
+            53,
+            "Beside sh:ignoredProperties stands sh:closed.",
+        ),
         (r"sh:property [ sh:path :p ; sh:pattern '\\p{L}+' ]", 54, r"a letter of any language is [^\W\d_]."),
         ("sh:sparql [ sh:select 'SELECT' ]", 38, "This is not SPARQL: at 1:7 it ends too soon."),
         (
