@@ -12,7 +12,8 @@ which; on its own host a site goes on with its own.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple, TypeGuard
 
@@ -53,6 +54,8 @@ WARNED = 0.05
 """Seconds between the word that a hub is about to be opened anew and that."""
 SITES_ANSWER = 3.0
 """Seconds that other sites may take to say what they advertise."""
+ASK_SITES_AGAIN = 5.0
+"""Seconds after which they are asked again where one of them has not answered in full."""
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 """Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
 INTRODUCE_AGAIN = 5.0
@@ -80,6 +83,13 @@ def _processes(components: Iterable[tuple[IRI, IRI]]) -> list[Process]:
     for component, program in sorted(components):
         found.setdefault(program, []).append(component)
     return [tuple(map(Principal.component, dict.fromkeys((program, *mine)))) for program, mine in found.items()]
+
+
+def _is_whole(pages: Sequence[Page]) -> bool:
+    """Whether what a site has replied is all that it advertises; of two sites of one name, what both have."""
+    totals = {page.life: page.total for page in pages}
+    replied = {(page.life, page.index) for page in pages if page.component is not None}
+    return len(replied) == sum(totals.values())
 
 
 class _Advertised(NamedTuple):
@@ -150,6 +160,7 @@ class Doorkeeper:
         self._undo_retry: Callable[[], None] = lambda: None
         self._asks_soon = self._renews_soon = False
         """Whether others are about to be asked what they advertise, and whether the rules are about to be made anew."""
+        self._undo_asking_again: Callable[[], None] = lambda: None
         self._admitted = set[Certificate]()
         """The good certificates that were shown in these moments, and since when that is noted."""
         self._admitted_at = bus.now()
@@ -254,27 +265,34 @@ class Doorkeeper:
         self._bus.ask(self._keys.advertisements(), known, SITES_ANSWER, self._others_answered)
 
     def _others_answered(self, replies: Replies) -> None:
-        found: dict[str, set[IRI]] = {}
+        """Note what sites advertise that have answered in full, n of n: else what they advertised before counts."""
+        in_part = False
+        for site, pages in self._news(replies).items():
+            self._revisions = {known: at for known, at in self._revisions.items() if known.partition("/")[0] != site}
+            if not _is_whole([page for page, _ in pages]):
+                in_part = True
+                continue
+            self._revisions |= {f"{site}/{page.life}": page.revision for page, _ in pages}
+            vouched = (page.component for page, key in pages if self._is_advertised(page.component, site, key))
+            self._others[site] = frozenset(islice(vouched, MOST_ADVERTISED))
+        self._undo_asking_again()
+        if in_part or not replies.complete:
+            self._undo_asking_again = self._bus.later(ASK_SITES_AGAIN, self._others_changed)
+        if self._advertised() != self._ruled:
+            self._renew_rules()
+
+    def _news(self, replies: Replies) -> dict[str, list[tuple[Page, str]]]:
+        """The pages of each other site that does not advertise the same as before, with their keys."""
+        news: dict[str, list[tuple[Page, str]]] = {}
         for sample in replies.samples:
             try:
                 page, site = decode(sample.attachment, Page), site_of(sample.key)
             except PeerError:
                 continue
-            if site == self._name:
-                continue
-            revision = f"{site}/{page.life}"
-            if page.component is None and self._revisions.get(revision) == page.revision:
-                continue  # as before
-            self._revisions = {known: at for known, at in self._revisions.items() if known.partition("/")[0] != site}
-            vouched = found.setdefault(site, set())
-            if self._is_advertised(page.component, site, sample.key) and len(vouched) < MOST_ADVERTISED:
-                vouched.add(page.component)
-            if replies.complete:
-                self._revisions[revision] = page.revision
-        for site, vouched in found.items():
-            self._others[site] = frozenset(vouched)
-        if self._advertised() != self._ruled:
-            self._renew_rules()
+            is_as_before = page.component is None and self._revisions.get(f"{site}/{page.life}") == page.revision
+            if site != self._name and not is_as_before:
+                news.setdefault(site, []).append((page, sample.key))
+        return news
 
     def _is_advertised(self, component: IRI | None, site: str, key: str) -> TypeGuard[IRI]:
         return component is not None and key == self._keys.advertisement(site, component)

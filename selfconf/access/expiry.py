@@ -113,8 +113,8 @@ class CertificateWatch:
         path = self._credentials.folder / REVOKED
         changed = max(path.stat().st_mtime_ns if path.is_file() else 0, self._changed_at)
         if changed != self._list_changed_at:
-            self._list_changed_at = changed
             self._revoked = self._certificate.serial in open_keys(self._credentials.folder).revoked()
+            self._list_changed_at = changed  # after it: a list that cannot be read now is looked at again
 
     def _show(self) -> None:
         shown = Introduction(self._certificate.pem.decode())

@@ -40,7 +40,7 @@ class HostAuthority:
 
     def _pair(self) -> tuple[Certificate, Key]:
         """The certificate of this authority and its key, made now where there are none."""
-        if not self._pair_path.with_suffix(".key").is_file():
+        if not all(self._pair_path.with_suffix(ending).is_file() for ending in (".key", ".pem")):
             write_pair(self._pair_path, *new_authority("the components of a host"))
         return read_pair(self._pair_path)
 

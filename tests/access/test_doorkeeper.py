@@ -21,7 +21,14 @@ from selfconf.access import (
     certificates,
     first_rules,
 )
-from selfconf.access.doorkeeper import INTRODUCE_AGAIN, KNOWN_FOR, LOOK_AT_ALL, RAREST_RETRY
+from selfconf.access.doorkeeper import (
+    ASK_SITES_AGAIN,
+    INTRODUCE_AGAIN,
+    KNOWN_FOR,
+    LOOK_AT_ALL,
+    RAREST_RETRY,
+    SITES_ANSWER,
+)
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
@@ -233,6 +240,39 @@ def vouched(door: Door, site: str) -> set[str]:
 def test_another_site_speaks_for_what_it_advertises(door: Door) -> None:
     advertise(door, "attic", BELL)
     assert vouched(door, "attic") == {Principal.component(BELL).name}
+
+
+def test_a_site_that_answers_in_part_speaks_for_what_it_did_before_and_is_asked_again(door: Door) -> None:
+    horn = IRI("urn:horn")
+    components, revision, is_cut = [BELL], [1], [False]
+    shown = door.folder.credentials((PrincipalKind.SITE,), "attic").certificate
+    bus = door.network.node()
+
+    def answer(request: Request) -> None:
+        for index, component in enumerate(components):
+            page = Page(index, len(components), revision[0], component, life="1")
+            request.reply(KEYS.advertisement("attic", component), b"", encode(page))
+            if is_cut[0]:
+                return  # what would follow is lost, and the end of the answer
+        request.finish()
+
+    def changed() -> None:
+        revision[0] += 1
+        bus.publisher(KEYS.changed("attic"), Urgency.EVENT).put(b"")
+        door.pass_time(SITES_ANSWER + 0.5)
+
+    bus.serve(KEYS.advertisements("attic"), answer)
+    bus.announce(KEYS.site_life("attic", "1"))
+    assert door.introduce(shown.read_text()).samples
+    changed()
+    assert vouched(door, "attic") == {Principal.component(BELL).name}
+    components.insert(0, horn)
+    is_cut[0] = True
+    changed()
+    assert vouched(door, "attic") == {Principal.component(BELL).name}
+    is_cut[0] = False
+    door.pass_time(ASK_SITES_AGAIN)
+    assert vouched(door, "attic") == {Principal.component(one).name for one in components}
 
 
 def test_another_site_of_the_host_hears_what_third_sites_say(door: Door) -> None:

@@ -98,6 +98,21 @@ def test_a_certificate_that_is_revoked_is_told_of_once(tmp_path: Path) -> None:
     assert said.startswith("the certificate of conf.alice was revoked: it is not trusted any more")
 
 
+def test_a_revocation_is_heard_of_once_the_folder_of_keys_can_be_read_again(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "keys")
+    authority.issue(ALICE, tmp_path / "alice")
+    watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
+    key = tmp_path / "alice" / "certificate.key"
+    key.chmod(0o644)
+    authority.revoke(ALICE)
+    watched.pass_days(0.0)
+    assert "others may read" in watched.said[0]
+    key.chmod(0o600)
+    watched.pass_days(0.0)
+    assert not watched.is_trusted
+    assert watched.said[1].startswith("the certificate of conf.alice was revoked")
+
+
 def test_a_certificate_is_in_time_from_its_beginning_to_its_end(tmp_path: Path) -> None:
     authority = Authority.init(tmp_path / "keys")
     authority.issue(ALICE, tmp_path / "alice", days=1.0)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.access import Authority, HostAuthority, KeysFolder, Principal, PrincipalKind, host_authority
-from selfconf.access.certificate_files import read_pair
+from selfconf.access.certificate_files import HOST_AUTHORITY, read_pair
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 
@@ -73,6 +73,17 @@ def test_a_common_authority_that_is_spoilt_is_made_anew(authority: Authority, tm
         HostAuthority(authority).share(shared)
         assert key.read_bytes() == (authority.path / "components.key").read_bytes()
         assert not stat.S_IMODE(key.stat().st_mode) & 0o077
+
+
+def test_an_authority_of_a_host_that_was_written_in_part_is_made_anew(authority: Authority, tmp_path: Path) -> None:
+    """The program that made it was ended between its key and its certificate."""
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
+    host = HostAuthority(KeysFolder(tmp_path / "attic"))
+    host.hub_authorities()
+    (tmp_path / "attic" / f"{HOST_AUTHORITY}.pem").unlink()
+    host.hub_authorities()
+    component = KeysFolder(host.component(Principal.component(IRI("urn:a"))))
+    assert not component.own().fault(component.believed_authorities())
 
 
 def test_the_authorities_of_two_ecologies_share_nothing(tmp_path: Path) -> None:
