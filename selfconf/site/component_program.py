@@ -137,14 +137,17 @@ class ComponentProgram:
                 self._launch()
 
     def end(self, gone: Callable[[], None], again: bool = False) -> None:
-        """End the process: TERM, after `TERMINATION` seconds KILL; then call `gone`. It can be started again."""
+        """End the process: TERM, after `TERMINATION` seconds KILL; then call `gone`. It can be started again.
+
+        Where it is being ended already, what has been asked to follow stays: a start, after which it is waited for.
+        """
         self._end_pause()
         if self.group is None:
             gone()
             return
         self._when_gone.append(gone)
-        self._again = again
         if self._ending_since is None:
+            self._again = again
             self._ending_since = self._bus.now()
             if self.group.frozen():
                 self.group.kill()  # it would have to go on, and might act, before it could end by itself

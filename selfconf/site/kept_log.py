@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from selfconf.errors import PeerError
-from selfconf.model.log_line import LONGEST_LINE, LogLine
+from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.site.log_file import PUT_ASIDE
@@ -34,6 +34,8 @@ class _LogFileText(NamedTuple):
     start: int
     """The place in the file from which on it was read."""
     text: bytes
+    is_cut: bool
+    """Whether it holds more than was read."""
 
     @property
     def end(self) -> str:
@@ -81,7 +83,7 @@ def _added(path: Path, question: LogQuestion, most_bytes: int) -> LogPart:
             break
         found += (line for line, _ in _lines(iter(file.text.split(b"\n")), question.component))
         position, start, room = file.end, 0, room - len(file.text)
-        if room < LONGEST_LINE * 2:
+        if file.is_cut or room <= 0:
             return LogPart(tuple(found), position, more=True)
     return LogPart(tuple(found), position)
 
@@ -98,16 +100,19 @@ def _inode(path: Path) -> int:
 
 
 def _read(path: Path, start: int = 0, most: int = sys.maxsize) -> _LogFileText | None:
-    """The whole lines of a file, from a place on, and of these as many as fit; None if there is no such file."""
+    """The whole lines of a file from a place on, as many as fit, and one at least; None if there is no such file."""
     try:
         with path.open("rb") as file:
             inode, size = os.fstat(file.fileno()).st_ino, file.seek(0, os.SEEK_END)
             start = start if start <= size else 0
             file.seek(start)
             text = file.read(min(most, size - start))
+            is_cut = len(text) < size - start
+            if is_cut and b"\n" not in text:
+                text += file.readline()
     except OSError:
         return None
-    return _LogFileText(inode, start, text[: text.rfind(b"\n") + 1])
+    return _LogFileText(inode, start, text[: text.rfind(b"\n") + 1], is_cut)
 
 
 def _lines(lines: Iterator[bytes], component: str) -> Iterator[tuple[LogLine, int]]:

@@ -90,6 +90,21 @@ def test_an_answer_is_bounded_and_says_that_there_is_more(tmp_path: Path) -> Non
     assert found == list(map(str, range(100)))
 
 
+def test_lines_of_any_length_come_though_the_file_is_put_aside_before_they_were_asked_for(tmp_path: Path) -> None:
+    """Bytes that are no text are spelt out in the log, so a line there may be longer than was printed."""
+    path = tmp_path / "a.log"
+    log, printed = LogFile(path, most_bytes=2000), [f"{'x' * 350} {number}" for number in range(9)]
+    part, found = log_part(path, LogQuestion(lines=0)), []
+    for text in (*printed[:8], "y" * 700, printed[8]):
+        log.write(said(1, text).encode())
+    for _ in range(20):
+        part = log_part(path, LogQuestion(position=part.position), most_bytes=600)
+        found += texts(part)
+        if not part.more:
+            break
+    assert found == [*printed[:8], "y" * 700, printed[8]]
+
+
 @pytest.mark.parametrize("position", ["x", "1", "-1:2", "1:2:3", "1:" + "9" * 99])
 def test_what_is_no_position_is_refused(position: str, tmp_path: Path) -> None:
     with pytest.raises(PeerError, match="is no position in a log"):
