@@ -22,6 +22,8 @@ from selfconf.this_machine import LocalSite
 
 SITE_STARTS = 20.0
 """How long, in seconds, a site may take to listen."""
+OWN_SITE_ENDS = 15.0
+"""How long, in seconds, a site may take to end with all that it has started; one that hangs is killed then."""
 MISUSE = 2
 """The exit code of a program that has said in one sentence why it cannot run."""
 
@@ -108,7 +110,11 @@ class SiteProcess:
         if self._process is not None:
             self.running()
             self._process.terminate()
-            self._process.wait()
+            try:
+                self._process.wait(OWN_SITE_ENDS)
+            except subprocess.TimeoutExpired:  # its components see that it is gone, and end
+                self._process.kill()
+                self._process.wait()
 
     def _listening(self, process: subprocess.Popen[bytes]) -> str:
         deadline = time.monotonic() + SITE_STARTS

@@ -91,6 +91,15 @@ def test_a_site_that_is_killed_is_known_to_have_ended_with_its_code(tmp_path: Pa
 
 
 @pytest.mark.process
+def test_a_site_that_hangs_holds_up_no_program_at_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("selfconf.api.sites.local_site.OWN_SITE_ENDS", 0.2)
+    with SiteProcess([tmp_path]) as site:
+        (found,) = sites(site.ecology)
+        os.kill(found.process, signal.SIGSTOP)
+    assert not alive(found.process)
+
+
+@pytest.mark.process
 def test_a_site_of_a_named_ecology_connects_to_the_others(tmp_path: Path) -> None:
     with SiteProcess([tmp_path], "home") as first, SiteProcess([tmp_path], "home", [first.endpoint]) as second:
         assert {site.site for site in sites("home")} == {first.name, second.name}
