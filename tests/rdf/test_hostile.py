@@ -292,6 +292,7 @@ LIMITS = (
     f"lives of one component that are followed | {ecology_view.MOST_LIVES}, the least ones",
     f"a message of the control plane | {codec.LARGEST >> 20} MiB",
     f"outputs that a call lets a component follow | {json_values.MOST_WIRES:,} |",
+    f"dimensions of an array in a signal | {json_values.MOST_DIMENSIONS} |",
     f"calls that wait for the code of a component | {runtime.MOST_PENDING} |",
     f"a signal of JSON | {payloads.LARGEST_JSON >> 20} MiB",
     f"a signal whose number is {signal_order.LATE:,} below",
