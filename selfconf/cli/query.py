@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import os
+import stat
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,8 +33,6 @@ EXAMPLE = """  selfconf query 'SELECT ?c WHERE { ?c a rob:PositionSensor }' --ad
 ANSWER_FORMATS = ("table", "json", "csv", "tsv", "turtle")
 SECONDS, ROWS = 60.0, 100_000
 # All three are the library's (`selfconf.query`), which is not loaded to parse arguments; a test compares them.
-LONGEST_PATH = 255
-"""How many bytes what names a file has at most where it does not end in `.rq`: more are too long for one name."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -117,9 +115,7 @@ def _text(given: str) -> str:
             return files.standard_input().decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise AuthorError(f"cannot read stdin: {error}") from None
-    if given.endswith(".rq") or (
-        len(os.fsencode(given)) <= LONGEST_PATH and "\n" not in given and Path(given).is_file()
-    ):
+    if given.endswith(".rq") or ("\n" not in given and _can_be_read(Path(given))):
         if not Path(given).exists():
             raise AuthorError(f"there is no file or folder {given}")
         try:
@@ -127,3 +123,11 @@ def _text(given: str) -> str:
         except UnicodeDecodeError as error:
             raise AuthorError(f"cannot read {given}: {error}") from None
     return given
+
+
+def _can_be_read(path: Path) -> bool:
+    """Return whether a file or a pipe is there; what is too long or too odd to be a path is none."""
+    try:
+        return not stat.S_ISDIR(path.stat().st_mode)
+    except (OSError, ValueError):
+        return False

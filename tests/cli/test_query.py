@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 from pathlib import Path
 
 import pytest
@@ -65,6 +66,16 @@ def test_a_query_may_lie_in_a_file_or_come_from_stdin(desk: Desk, monkeypatch: p
     assert desk.query(str(path)).out == expected
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(SENSORS.encode())))
     assert desk.query("-").out == expected
+
+
+def test_a_query_may_come_from_a_pipe_that_has_a_name(desk: Desk) -> None:
+    reading, writing = os.pipe()
+    try:
+        os.write(writing, SENSORS.encode())
+        os.close(writing)
+        assert desk.query(f"/dev/fd/{reading}").out == desk.query(SENSORS).out
+    finally:
+        os.close(reading)
 
 
 def test_a_query_may_have_more_bytes_than_the_name_of_a_file(desk: Desk) -> None:
