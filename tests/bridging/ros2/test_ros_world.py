@@ -129,15 +129,18 @@ def test_humble_and_what_is_no_token_are_named_and_hinder_nothing(living: Living
 @pytest.mark.slow
 def test_a_router_that_goes_and_comes_is_named_though_no_task_holds_a_node(living: LivingStage, tmp_path: Path) -> None:
     lost = "the router of ROS 2 cannot be reached any more; its nodes are gone until it is there again"
+    back = "the router of ROS 2 is reached again"
     complaints: list[str] = []
     bridge, hub = Bridge(tmp_path, complaints.append), router()
     world = RosWorld(lambda: client([hub.endpoint]), DOMAIN)
     with bridge.living(world, living.ecology, living.node):
         hub.close()
-        assert until(lambda: complaints == [lost])
+        assert until(lambda: complaints and complaints[-1] == lost)
         again = router(hub.endpoint)
-        assert until(lambda: complaints == [lost, "the router of ROS 2 is reached again"])
+        assert until(lambda: complaints[-1] == back)
     again.close()
+    # A router that closes may let its clients in once more, and one that opens may have to be greeted twice.
+    assert all(words == (lost, back)[number % 2] for number, words in enumerate(complaints))
 
 
 @pytest.mark.slow
