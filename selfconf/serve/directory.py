@@ -47,7 +47,7 @@ class Directory:
         if form not in ("array", "collection"):
             return problem(400, f"the format is array or collection, not {form!r}")
         components = sorted(self._board.advertised)
-        end = len(components) if limit is None else offset + limit
+        end = len(components) if limit is None else min(offset + limit, len(components))
         more = {"limit": limit, "format": None if form == "array" else form}
         here, after = _page(offset=offset or None, **more), _page(offset=end, **more)
         follows = end < len(components)

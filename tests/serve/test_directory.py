@@ -49,6 +49,12 @@ def test_a_collection_says_how_many_there_are_and_what_is_next(app: ASGIApp) -> 
     assert (following["@type"], following["@id"]) == ("ThingCollection", answer["next"])
 
 
+def test_a_page_far_beyond_the_end_is_empty(app: ASGIApp) -> None:
+    number = 4300 * "9"  # of as many digits as Python reads and writes; the sum of two has one more
+    answer = ask(app, f"/things?offset={number}&limit={number}")
+    assert (answer.status, answer.json) == (200, [])
+
+
 def test_a_collection_of_all_things_names_no_limit(app: ASGIApp) -> None:
     answer = ask(app, "/things?format=collection").json
     assert (answer["@id"], len(answer["members"])) == ("/things?format=collection", len(ADVERTISEMENTS))
