@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Sequence
+from fractions import Fraction
 from typing import Any
 
 from selfconf.model.alternative import Alternative
@@ -57,9 +59,9 @@ def consequences_body(consequences: Sequence[Consequence]) -> list[dict[str, Any
 def alternative_body(one: Alternative) -> dict[str, Any]:
     """A candidate of a role with what would come of it; costs only where the template states some."""
     costs = {
-        "cost": [float(amount) for amount in one.cost],
+        "cost": [double(amount) for amount in one.cost],
         "unknown_terms": one.unknown,
-        **({"total": [float(amount) for amount in one.total], "total_proved": one.proved} if one.total else {}),
+        **({"total": [double(amount) for amount in one.total], "total_proved": one.proved} if one.total else {}),
     }
     return {
         "component": one.component,
@@ -70,11 +72,22 @@ def alternative_body(one: Alternative) -> dict[str, Any]:
     }
 
 
+def double(amount: Fraction) -> float:
+    """An amount as a number that JSON can write: of what is larger than any double, the largest or the least one.
+
+    What strangers advertise is no larger, but what is made of it by weights, units and sums may be.
+    """
+    try:
+        return float(amount)
+    except OverflowError:
+        return sys.float_info.max if amount > 0 else -sys.float_info.max
+
+
 def cost_body(optimum: Optimum, unknown: Iterable[IRI]) -> dict[str, Any]:
     """What a configuration costs; `unknown` are properties of the cost that no component of the ecology has."""
     return {
-        "levels": [float(amount) for amount in optimum.cost],
-        "bound": [float(amount) for amount in optimum.bound],
+        "levels": [double(amount) for amount in optimum.cost],
+        "bound": [double(amount) for amount in optimum.bound],
         "proved": optimum.proved,
         "unknown": optimum.unknown,
         "missing": [{"component": component, "property": wanted} for component, wanted in optimum.missing],

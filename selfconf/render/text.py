@@ -18,6 +18,7 @@ from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import one_line
+from selfconf.render.bodies import double
 from selfconf.render.tables import clock_time
 
 Name = Callable[[Term], str]
@@ -124,7 +125,7 @@ def _amounts(levels: Iterable[Fraction]) -> str:
 
 
 def _decimal(amount: Fraction) -> str:
-    return f"{float(amount):g}"
+    return f"{double(amount):.10g}"
 
 
 def undecided_text(undecided: Undecided, template: IRI, name: Name) -> str:

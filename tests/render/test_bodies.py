@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import sys
+from dataclasses import replace
+from fractions import Fraction
 from typing import Any, get_args
 
 import pytest
@@ -88,6 +91,13 @@ def test_a_cost_has_its_levels_its_bound_and_what_is_not_known() -> None:
         ],
         "nobody_has": [term("error"), term("power")],
     }
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_cost_that_is_larger_than_any_double_is_written_as_the_largest(sign: int) -> None:
+    amount = (Fraction(sign * 10**310),)
+    levels = cost_body(replace(OPTIMUM, cost=amount, bound=amount), ())["levels"]
+    assert json.loads(json.dumps(levels)) == [sign * sys.float_info.max]
 
 
 # Refusals.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from decimal import Decimal
+from fractions import Fraction
 
 import pytest
 
@@ -105,6 +106,16 @@ def test_a_cost_says_its_levels_its_bound_and_what_has_no_number() -> None:
 def test_a_cost_that_is_proved_has_no_bound() -> None:
     proved = replace(OPTIMUM, cost=OPTIMUM.cost[:1], bound=OPTIMUM.cost[:1], missing=(), proved=True)
     assert cost_text(proved, (), NAMES).splitlines() == ["cost", "  level 1  0.5", "  proved: nothing costs less"]
+
+
+def test_costs_that_differ_by_little_are_told_apart() -> None:
+    near = replace(
+        OPTIMUM, cost=(Fraction("1234568.25"), Fraction(10**310)), bound=(Fraction("1234567.5"), Fraction(0))
+    )
+    assert cost_text(near, (), NAMES).splitlines()[1:3] == [
+        "  level 1  1234568.25  (bound 1234567.5)",
+        "  level 2  1.797693135e+308  (bound 0)",
+    ]
 
 
 def test_a_refusal_has_every_reason_near_miss_and_repair_with_its_place() -> None:
