@@ -71,14 +71,18 @@ class Condition(NamedTuple):
 
 CALL_MARK = "()"
 """What the name of a port ends in that is an operation, and that of no other port."""
+LONGEST_PORT_NAME = 1000
+"""How many characters the name of a port has at most: Zenoh breaks at a key of more than 65,000 bytes, in all programs
+that are to listen to it."""
 
 
 def is_port_name(text: str) -> bool:
     """Whether an author may give a port, an operation or an operational parameter this name.
 
-    It stands in keys and in lines for people, so it has no control characters, as messages hold no such names.
+    It stands in keys and in lines for people, so it is of bounded length and has no control characters, as messages
+    hold no such names.
     """
-    return text != "" and not text.endswith(CALL_MARK) and is_one_line(text)
+    return 0 < len(text) <= LONGEST_PORT_NAME and not text.endswith(CALL_MARK) and is_one_line(text)
 
 
 class Operation(IRI):

@@ -15,6 +15,7 @@ from typing import Any
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Wants
 from selfconf.model.log_line import LONGEST_LINE, LogLine
+from selfconf.model.profile import CALL_MARK, LONGEST_PORT_NAME
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.model.wording import is_one_line, one_line
 from selfconf.protocol.keys import is_task_identity
@@ -26,6 +27,7 @@ MOST_DIMENSIONS = 64
 """How many dimensions an array has at most, as in Python and NumPy; to multiply very many sizes takes seconds."""
 _WHOLE = 1 << 63
 """Whole numbers lie between this and its negative, so that other languages can hold them too."""
+_LONGEST_NAME = LONGEST_PORT_NAME + len(CALL_MARK)
 _QUOTED = 80
 """How many characters of what a stranger has said an error quotes."""
 
@@ -95,10 +97,10 @@ def read_remark(value: object) -> str:
 
 
 def read_name(value: object) -> str:
-    """A text that names something, and is not empty."""
+    """A text that names something, and is neither empty nor longer than the name of an operation."""
     name = read_label(value)
-    if not name:
-        raise PeerError("a name that is not empty was expected")
+    if not 0 < len(name) <= _LONGEST_NAME:
+        raise PeerError(f"a name of 1 to {_LONGEST_NAME} characters was expected")
     return name
 
 

@@ -16,7 +16,7 @@ from decimal import Decimal
 
 from selfconf.model.immutable import immutable
 from selfconf.model.literal_values import BOOLEAN, TRUTH, number_of
-from selfconf.model.profile import is_port_name
+from selfconf.model.profile import LONGEST_PORT_NAME, is_port_name
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.model.wording import STEERING_OR_BREAKING
 from selfconf.rdf.turtle import SKOLEM
@@ -64,8 +64,8 @@ class ValueKind:
 # A literal with a language has the datatype rdf:langString, so a test for xsd:string refuses it.
 RESOURCE = ValueKind("an IRI", rf"<((?!{SKOLEM})[^<>]*)>", iri=_always)
 NAME_TEXT = ValueKind(
-    "a string that is not empty, has no control characters and does not end in ()",
-    rf'"([^"\\{STEERING_OR_BREAKING}]*[^"\\{STEERING_OR_BREAKING})])"',
+    f"a string of 1 to {LONGEST_PORT_NAME} characters that has no control characters and does not end in ()",
+    rf'"([^"\\{STEERING_OR_BREAKING}]{{0,{LONGEST_PORT_NAME - 1}}}[^"\\{STEERING_OR_BREAKING})])"',
     literal=lambda lexical, datatype: datatype == STRING and is_port_name(lexical),
 )
 COMMAND_LINE = ValueKind(

@@ -7,6 +7,7 @@ import pickle
 import pytest
 
 from selfconf.model.profile import (
+    LONGEST_PORT_NAME,
     Input,
     Operation,
     OperationalParameter,
@@ -40,6 +41,7 @@ def test_ports_are_found_by_name_and_inputs_are_no_outputs() -> None:
 @pytest.mark.parametrize(
     ("name", "may_be"),
     [("pose", True), ("set.velocity", True), (" /ö *😀", True), ("a()b", True), ("", False), ("f()", False)]
+    + [("ö" * LONGEST_PORT_NAME, True), ("ö" * (LONGEST_PORT_NAME + 1), False)]
     + [(f"a{control}b", False) for control in "\n\t\x00\x9f\u2028\u202e"],
 )
 def test_a_port_has_a_name_that_messages_can_hold(name: str, may_be: bool) -> None:

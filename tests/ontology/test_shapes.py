@@ -27,6 +27,7 @@ COMPONENTS = {
     SH["class"]: SH.ClassConstraintComponent,
     SH.nodeKind: SH.NodeKindConstraintComponent,
     SH.minLength: SH.MinLengthConstraintComponent,
+    SH.maxLength: SH.MaxLengthConstraintComponent,
     SH.pattern: SH.PatternConstraintComponent,
     SH.minInclusive: SH.MinInclusiveConstraintComponent,
     SH.minExclusive: SH.MinExclusiveConstraintComponent,

@@ -9,6 +9,7 @@ from hypothesis import given
 
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Wants
+from selfconf.model.profile import LONGEST_PORT_NAME
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import one_line
 from selfconf.protocol.codec import KINDS, decode, encode
@@ -58,9 +59,10 @@ def test_half_a_surrogate_pair_is_no_text(lonely: str) -> None:
         decode(json.dumps({**body, "supervisor": lonely}).encode(), Release)
 
 
-def test_a_port_without_a_name_is_refused_for_there_is_no_key_for_it() -> None:
+@pytest.mark.parametrize("name", ["", "x" * (LONGEST_PORT_NAME + 3)])
+def test_a_port_without_a_name_or_with_a_very_long_one_is_refused_for_there_is_no_key_for_it(name: str) -> None:
     supervisor = Keys("home").configurator_life("c", "1")
-    for inputs in ({"": (Wire(IRI("urn:a"), "pose"),)}, {"position": (Wire(IRI("urn:a"), ""),)}):
+    for inputs in ({name: (Wire(IRI("urn:a"), "pose"),)}, {"position": (Wire(IRI("urn:a"), name),)}):
         for kind in (Reserve, Apply):
             with pytest.raises(PeerError, match="name"):
                 decode(encode(kind(1, supervisor, inputs=inputs)), kind)

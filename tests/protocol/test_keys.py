@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from selfconf.bus.key_expressions import intersects
 from selfconf.errors import AuthorError, PeerError
+from selfconf.model.profile import LONGEST_PORT_NAME
 from selfconf.model.term import IRI
 from selfconf.protocol import keys
 from selfconf.protocol.keys import Keys
@@ -69,6 +70,13 @@ def test_a_port_of_any_name_is_one_chunk_and_comes_back(component: IRI, port: st
 def test_zenoh_takes_every_key(component: IRI, port: str) -> None:
     for key in every_key(component, port):
         assert str(zenoh.KeyExpr(key)) == key
+
+
+def test_no_key_is_longer_than_zenoh_bears() -> None:
+    """From 65,535 bytes on it panics, in the program that declares the key and in each that it is declared to."""
+    component, port = IRI("urn:c"), "😀" * LONGEST_PORT_NAME
+    keys = Keys("e" * 64)
+    assert max(len(key) for key in (keys.output(component, port), keys.operation(component, port, component))) < 20_000
 
 
 @given(iris, ports)

@@ -19,6 +19,7 @@ from selfconf.discovery import ecology_view, inquiry
 from selfconf.errors import AuthorError, QueryError
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Report
+from selfconf.model.profile import LONGEST_PORT_NAME
 from selfconf.model.wording import LONGEST_REMARK
 from selfconf.protocol import activation, codec, json_values, task_queue
 from selfconf.query import process as asking
@@ -294,6 +295,7 @@ LIMITS = (
     f"outputs that a call lets a component follow | {json_values.MOST_WIRES:,} |",
     f"dimensions of an array in a signal | {json_values.MOST_DIMENSIONS} |",
     f"calls that wait for the code of a component | {runtime.MOST_PENDING} |",
+    f"the name of a port, an operation or an operational parameter | {LONGEST_PORT_NAME:,} characters |",
     f"a signal of JSON | {payloads.LARGEST_JSON >> 20} MiB",
     f"a signal whose number is {signal_order.LATE:,} below",
     f"tasks that a site keeps | {task_folder.MOST_RECORDS:,} |",

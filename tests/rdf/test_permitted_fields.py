@@ -16,7 +16,7 @@ from rdflib.term import Node
 from selfconf import library
 from selfconf.model import literal_values as numbers
 from selfconf.model import term as model
-from selfconf.model.profile import Profile
+from selfconf.model.profile import LONGEST_PORT_NAME, Profile
 from selfconf.model.wording import STEERING_OR_BREAKING
 from selfconf.rdf.advertisements import read_advertisements, reader
 from selfconf.rdf.permitted_fields import (
@@ -78,6 +78,7 @@ ASKED: dict[int, set[tuple[str, object]]] = {
     id(NAME_TEXT): {
         ("datatype", XSD.string),
         ("minLength", 1),
+        ("maxLength", LONGEST_PORT_NAME),
         ("pattern", "([^)]|(^|[^(])[)])$"),
         ("not", frozenset((("pattern", f"[{STEERING_OR_BREAKING}]"),))),
     },

@@ -153,7 +153,7 @@ def test_a_document_may_hold_several_components_in_the_order_of_the_text() -> No
         (":x a sc:Component, :Lamp ; sc:preference 1, 2 .", "sc:preference is one number"),
         (':x a sc:Component, :Lamp ; sc:preference "INF"^^xsd:double .', "sc:preference is one number"),
         (":x a sc:Component, :Lamp ; sc:hasInput [ sc:signalType :S ] .", "exactly one sc:name"),
-        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "" ; sc:signalType :S ] .', "not empty"),
+        (':x a sc:Component, :Lamp ; sc:hasInput [ sc:name "" ; sc:signalType :S ] .', "of 1 to 1000 characters"),
         (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:unit 5 ] .", "sc:unit of 'a' is an IRI"),
         (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:frame 5 ] .", "a string that is not empty"),
         (f":x a sc:Component, :L ; sc:hasInput {PORT} ; sc:optional 5 ] .", "true or false"),
