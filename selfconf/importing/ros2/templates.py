@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from selfconf.importing.imported import DescribedStatement, Description, NestedNode, TermList
-from selfconf.importing.naming import slug
+from selfconf.importing.naming import NumberedNames, slug
 from selfconf.importing.ros2.interfaces import ROS2, TOPICS, node_class
 from selfconf.importing.ros2.wiring import NodeInstance, WiredPair
 from selfconf.model.profile import CALL_MARK
@@ -17,17 +17,22 @@ from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE, XSD
 
 
-def role_of(template: IRI, instance: NodeInstance, system: str) -> IRI:
-    """The role of a node in a template; a node of a subsystem is named after that too."""
-    path = [] if instance.system == system else [slug(instance.system)]
-    return IRI("/".join([f"{template}/role", *path, slug(instance.node.name)]))
+def roles_of(template: IRI, system: str, members: Iterable[NodeInstance]) -> dict[tuple[str, str], IRI]:
+    """The roles of nodes in a template, by what tells the nodes apart; one of a subsystem is named after that too."""
+    names = NumberedNames()
+    found = {}
+    for instance in members:
+        path = [] if instance.system == system else [slug(instance.system)]
+        found[instance.key] = IRI(names.free("/".join([f"{template}/role", *path, slug(instance.node.name)])))
+    return found
 
 
 def system_template(
     template: IRI, system: str, members: Iterable[NodeInstance], pairs: Iterable[WiredPair]
 ) -> list[Description]:
     """The template of a system, its roles, and its interactions."""
-    roles = {instance.key: role_of(template, instance, system) for instance in members}
+    members = tuple(members)
+    roles = roles_of(template, system, members)
     found = [template_head(template, system, roles.values())]
     for instance in members:
         facts = (fact(ROS2.nodeName, instance.node.name), fact(ROS2.system, instance.system))
