@@ -18,7 +18,7 @@ from selfconf.importing.imported import DescribedStatement, Description, Importe
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.ros2.interfaces import ROS2, TOPICS, InterfaceKind, NodeInterface
 from selfconf.importing.ros2.system_models import SystemModel
-from selfconf.importing.ros2.templates import fact, interaction, roles_of, system_template, template_head
+from selfconf.importing.ros2.templates import fact, interaction, roles_by_node, system_template, template_head
 from selfconf.importing.ros2.wiring import NodeInstance, SystemWiring
 from selfconf.model.immutable import replace
 from selfconf.model.profile import CALL_MARK
@@ -78,7 +78,7 @@ class SystemComposites:
             .described()
             .with_statement(SC.grounding, NestedNode(((SC.template, (template,)),)))
         )
-        roles = roles_of(template, system.name, members)
+        roles = roles_by_node(template, system.name, members)
         named: list[DescribedStatement] = []
         for link, is_output in ((SC.hasInput, False), (SC.hasOutput, True)):
             nodes = tuple(
@@ -103,7 +103,7 @@ class SystemComposites:
         if not parts:
             return []
         template, own = self._ledger.minted(system.name, "parts"), self._wiring.own(system)
-        roles = roles_of(template, system.name, own)
+        roles = roles_by_node(template, system.name, own)
         of_parts = {name: self._ledger.minted(system.name, "parts", "part", name) for name in parts}
         inside = {port.key: (of_parts[name], exposed) for name in parts for exposed, port in self._ports[name].items()}
         interactions = []

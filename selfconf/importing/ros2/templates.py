@@ -17,7 +17,7 @@ from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import LABEL, SC, SH, TYPE, XSD
 
 
-def roles_of(template: IRI, system: str, members: Iterable[NodeInstance]) -> dict[tuple[str, str], IRI]:
+def roles_by_node(template: IRI, system: str, members: Iterable[NodeInstance]) -> dict[tuple[str, str], IRI]:
     """The roles of nodes in a template, by what tells the nodes apart; one of a subsystem is named after that too."""
     names = NumberedNames()
     found = {}
@@ -32,7 +32,7 @@ def system_template(
 ) -> list[Description]:
     """The template of a system, its roles, and its interactions."""
     members = tuple(members)
-    roles = roles_of(template, system, members)
+    roles = roles_by_node(template, system, members)
     found = [template_head(template, system, roles.values())]
     for instance in members:
         facts = (fact(ROS2.nodeName, instance.node.name), fact(ROS2.system, instance.system))

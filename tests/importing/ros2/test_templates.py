@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from selfconf.importing.ros2.interfaces import InterfaceKind, NodeInterface
 from selfconf.importing.ros2.system_models import SystemNode
-from selfconf.importing.ros2.templates import roles_of, system_template
+from selfconf.importing.ros2.templates import roles_by_node, system_template
 from selfconf.importing.ros2.wiring import NodeInstance, WiredPair
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import SC, SH, TYPE
@@ -16,12 +16,12 @@ B = NodeInstance("part", SystemNode("b", "", "", ()), None, (IN,))
 
 
 def test_a_node_of_a_part_has_a_role_below_that_of_the_part() -> None:
-    assert roles_of(TEMPLATE, "s", [A, B]) == {A.key: "urn:x:s/role/a", B.key: "urn:x:s/role/part/b"}
+    assert roles_by_node(TEMPLATE, "s", [A, B]) == {A.key: "urn:x:s/role/a", B.key: "urn:x:s/role/part/b"}
 
 
 def test_nodes_whose_names_look_alike_in_an_iri_have_roles_of_their_own() -> None:
     alike = [NodeInstance("s", SystemNode(name, "p.k", "", ()), None, ()) for name in ("front/a", "front-a", "front a")]
-    roles = roles_of(TEMPLATE, "s", alike)
+    roles = roles_by_node(TEMPLATE, "s", alike)
     assert list(roles.values()) == [f"urn:x:s/role/front-a{number}" for number in ("", "-2", "-3")]
 
 
