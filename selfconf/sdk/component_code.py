@@ -203,12 +203,13 @@ class ComponentCode:
         code = partial(self._component.called, operation, request)
         return self._judged(operation, lambda: self._thread.limited(self, "called", self._deadline, code))
 
-    def outcome(self, operation: str, answer: Future[Any]) -> Any:
+    def outcome(self, operation: str, answer: Future[Any], turn: int) -> Any:
         """Return what a future has come to that was the answer to a call; raises Refused like `serve`. On any thread.
 
-        A future that was cancelled is a refusal.
+        A future that was cancelled is a refusal, and so is one of another `turn`: one that was under way as the code was
+        stopped cannot be cancelled, and what breaks there is no failure of what the component does now.
         """
-        if answer.cancelled():
+        if answer.cancelled() or turn != self.turn:
             raise Refused(f"{self._name} ended the call before it answered")
         return self._judged(operation, answer.result)
 

@@ -182,10 +182,11 @@ class Operations:
                 value = self._read_value(signal.value, signal.media)
             except ValueError as error:
                 raise Refused(f"what is sent along {error}") from None
+            turn = self._code.turn
             answer = self._code.serve(name, replace(signal, value=value))
             if isinstance(answer, Future):
                 self._promised[answer] = name, signal.source
-                answer.add_done_callback(partial(self._kept, request, name))
+                answer.add_done_callback(partial(self._kept, request, name, turn))
                 if patience < math.inf:
                     self._then(self._limit, answer, max(0.0, waits_until - self._bus.now()))
                 if not self._code.active:  # it was stopped while it returned the future
@@ -203,10 +204,10 @@ class Operations:
         undo = self._bus.later(seconds, cancel)
         promise.add_done_callback(lambda _: self._then(undo))
 
-    def _kept(self, request: Request, name: str, promise: Future[Any]) -> None:
+    def _kept(self, request: Request, name: str, turn: int, promise: Future[Any]) -> None:
         """Answer a request with what a future has come to; on whatever thread it does."""
         self._promised.pop(promise, None)
-        self._answer(request, name, partial(self._code.outcome, name, promise), kept=True)
+        self._answer(request, name, partial(self._code.outcome, name, promise, turn), kept=True)
 
     def _answer(self, request: Request, name: str, answered: Callable[[], Any], kept: bool = False) -> None:
         """Answer a request with a value, or refuse it as `answered` does; nothing yet if the value is a future.

@@ -90,6 +90,22 @@ def test_an_answer_that_was_promised_is_cancelled_when_the_component_is_stopped(
     assert replies[0].errors == ("camera ended the call before it answered",)
 
 
+def test_what_breaks_that_was_promised_before_a_stop_is_no_failure_of_what_was_started_since() -> None:
+    promise: Future[Any] = Future()
+    promise.set_running_or_notify_cancel()  # as an executor does that has begun with it: it cannot be cancelled
+    served = Served(Camera(reply=lambda request: promise))
+    replies: list[Replies] = []
+    served.stage.caller.ask(KEYS.operation(CAMERA, "takePhoto", ALBUM), request_of(ALBUM), 5.0, replies.append)
+    served.stage.let_pass(0.1)
+    served.stage.call(release(2))
+    assert served.stage.call(apply(3)).active
+    promise.set_exception(OSError("the lens was closed as it was stopped"))
+    served.stage.let_pass(0.1)
+    assert replies[0].errors == ("camera ended the call before it answered",)
+    assert served.runtime.active
+    assert served.stage.fails == []
+
+
 def test_a_promise_that_comes_to_another_one_is_no_answer() -> None:
     """A request would wait for ever, and after 64 of them no other one would be served."""
     promise: Future[Any] = Future()
