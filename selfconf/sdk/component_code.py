@@ -206,8 +206,8 @@ class ComponentCode:
     def outcome(self, operation: str, answer: Future[Any], turn: int) -> Any:
         """Return what a future has come to that was the answer to a call; raises Refused like `serve`. On any thread.
 
-        A future that was cancelled is a refusal, and so is one of another `turn`: one that was under way as the code was
-        stopped cannot be cancelled, and what breaks there is no failure of what the component does now.
+        A future that was cancelled is a refusal, and so is one of another `turn`: one that was under way as the code
+        was stopped cannot be cancelled, and what breaks there is no failure of what the component does now.
         """
         if answer.cancelled() or turn != self.turn:
             raise Refused(f"{self._name} ended the call before it answered")
