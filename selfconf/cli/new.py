@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from keyword import iskeyword
 from pathlib import Path
 
 from selfconf.cli.scaffolds import SCAFFOLDS
@@ -16,6 +17,8 @@ EXAMPLE = """  selfconf new component kitchen-thermometer
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:[-_][A-Za-z0-9]+)*")
 _NAMESPACE = re.compile(r"[a-z][a-z0-9+.-]*:[^\x00-\x20<>\"{}|^`\\]*[#/:]", re.IGNORECASE)
+_MODULES = sys.stdlib_module_names | {"selfconf", "zenoh"}
+"""Modules that a component needs, or may: beside a file of that name none would be found."""
 _HOME = "https://example.org/my-home#"
 
 
@@ -53,9 +56,12 @@ def scaffold(kind: str, name: str, folder: Path, namespace: str | None = None) -
     if not _NAMESPACE.fullmatch(namespace):
         raise NamespaceError(namespace)
     words = " ".join(re.split("[-_]", name))
+    class_ = "".join(part[:1].upper() + part[1:] for part in re.split("[-_]", name))
+    if kind == "component" and (name in _MODULES or iskeyword(class_)):
+        raise AuthorError(f"{name!r} is something else in Python already; choose another name, such as my-{name}")
     fillings = {
         "name": name,
-        "class_": "".join(part[:1].upper() + part[1:] for part in re.split("[-_]", name)),
+        "class_": class_,
         "namespace": namespace,
         "document": namespace.rstrip("#"),
         "label": words[:1].upper() + words[1:],

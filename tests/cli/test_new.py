@@ -35,6 +35,16 @@ def test_a_name_that_could_not_be_a_file_and_a_term_is_refused(name: str, tmp_pa
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("name", ["queue", "selfconf", "none"])
+def test_a_component_whose_file_would_hide_a_module_or_be_no_python_is_refused(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    outcome = run(capsys, "new", "component", name, "--dir", str(tmp_path))
+    assert outcome.is_one_sentence(repr(name), f"choose another name, such as my-{name}")
+    assert not list(tmp_path.iterdir())
+    assert main(["new", "template", name, "--dir", str(tmp_path)]) == 0
+
+
 @pytest.mark.parametrize("namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#"])
 def test_a_namespace_that_is_no_iri_is_refused(
     namespace: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
