@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from selfconf.bus.port import Bus
-from selfconf.bus.zenoh import RefusalLog
+from selfconf.bus.zenoh import LONGEST_KEY, RefusalLog
 from selfconf.model.wording import client_text
 from selfconf.protocol.messages import RefusedAttempt
 
@@ -41,7 +41,7 @@ class RefusalReports:
         """Report an attempt, unless it was a site's announcement of a life that is there.
 
         Zenoh answers a question for lives with those that it has heard of from others, whatever the rules of its end
-        say.
+        say. A key that is kept in part is none that could be asked for.
         """
 
         def judge(living: tuple[str, ...] = ()) -> None:
@@ -50,7 +50,7 @@ class RefusalReports:
             else:
                 self.tell(refused.principal, refused.attempt, refused.key)
 
-        if refused.attempt == LIFE and "*" not in refused.key:
+        if refused.attempt == LIFE and "*" not in refused.key and len(refused.key) < LONGEST_KEY:
             self._bus.roll_call(refused.key, LIFE_ANSWER, judge)
         else:
             judge()

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import pytest
+import zenoh
+
 from selfconf.access.refusal_reports import LOOKS, MOST_TOLD, RefusalReports
-from selfconf.bus.memory import Network
-from selfconf.bus.zenoh import RefusalLog
+from selfconf.bus.memory import MemoryBus, Network
+from selfconf.bus.zenoh import LONGEST_KEY, RefusalLog
 from selfconf.protocol.keys import Keys
 
 KEYS = Keys("lab")
@@ -60,6 +65,21 @@ def test_a_site_that_passes_on_who_lives_is_not_complained_of() -> None:
     assert [one.key for one in site.log.refused] == [KEYS.site_life("attic", "0bad")]
     assert [said for said in site.said if KEYS.site_life("attic", "0bad") in said]
     assert not [said for said in site.said if KEYS.site_life("attic", "1") in said]
+
+
+def test_a_life_whose_key_was_too_long_to_be_kept_hides_no_attempt(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its first characters may be no key: Zenoh would refuse the question for it."""
+    site, call = Reports(), MemoryBus.roll_call
+
+    def call_as_zenoh(bus: MemoryBus, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
+        zenoh.KeyExpr(key)
+        call(bus, key, seconds, done)
+
+    monkeypatch.setattr(MemoryBus, "roll_call", call_as_zenoh)
+    site.refuse("comp.bell", "Liveliness Token", f"selfconf/{'x' * (LONGEST_KEY - 10)}/live/1")
+    site.refuse("comp.lamp", "Put", "selfconf/lab/task/a")
+    site.look(LOOKS)
+    assert [said.split(": ")[1] for said in site.said] == ["comp.bell", "comp.lamp"]
 
 
 def test_of_many_attempts_only_some_are_told_of_in_a_minute() -> None:

@@ -4,18 +4,20 @@
   certificate of a `Security`. `cut_connections` ends what is left of the connections to an endpoint.
 * `open_session` opens a bare session; `ANYWHERE_ON_LOOPBACK` is the endpoint of a hub that takes any free port, and
   `with_port` puts a free port in place of port 0; `GREETING` is how long a silent end is waited for.
-* `hear_refusals` reads in Zenoh's log what the hub of this process refuses, and keeps it as a `RefusalLog`.
+* `hear_refusals` reads in Zenoh's log what the hub of this process refuses, and keeps it as a `RefusalLog`, of each key
+  `LONGEST_KEY` characters.
 """
 
 from selfconf.bus.zenoh.bus import ZenohBus
 from selfconf.bus.zenoh.opening import client, router
-from selfconf.bus.zenoh.refusals import RefusalLog, hear_refusals
+from selfconf.bus.zenoh.refusals import LONGEST_KEY, RefusalLog, hear_refusals
 from selfconf.bus.zenoh.relay import Hub, cut_connections
 from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, GREETING, Security, open_session, with_port
 
 __all__ = [
     "ANYWHERE_ON_LOOPBACK",
     "GREETING",
+    "LONGEST_KEY",
     "Hub",
     "RefusalLog",
     "Security",
