@@ -40,8 +40,9 @@ def within(
 ) -> list[Path]:
     """The files that a path stands for, sorted: all below a folder that end so, or else itself.
 
-    Links to files are among them, also those that lead nowhere, but for the locks of editors (`.#name`). A folder
-    that cannot be read raises AuthorError, unless `left_out` is given, which receives the error instead.
+    Links to files are among them, also those that lead nowhere, but for the locks of editors (`.#name`). Hidden folders
+    below it are passed over: `.venv`, `.git` and `.ipynb_checkpoints` hold what others wrote, or copies. A folder that
+    cannot be read raises AuthorError, unless `left_out` is given, which receives the error instead.
     """
     return sorted(map(Path, stamps(path, left_out, endings))) if _is_folder(_status(path)) else [path]
 
@@ -72,7 +73,8 @@ def stamps(
             with os.scandir(folder) as entries:
                 for entry in entries:
                     if entry.is_dir(follow_symlinks=False):
-                        waiting.append(entry.path)
+                        if not entry.name.startswith("."):
+                            waiting.append(entry.path)
                     elif entry.name.endswith(endings) and (entry.name not in endings or entry.name[0] != "."):
                         stamp = _stamp(entry)
                         if stamp is not None:

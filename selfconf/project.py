@@ -110,7 +110,12 @@ PROJECT_KEYS: Mapping[str, ProjectKey] = {
         "where its sites listen, such as tcp/10.0.0.2:7447; one or a list", _is_endpoints, several=True
     ),
     "keys": ProjectKey("a folder of keys, as `selfconf keys` makes them", _is_text, paths=True),
-    "ads": ProjectKey("advertisements in files and folders; one or a list", _is_texts, paths=True, several=True),
+    "ads": ProjectKey(
+        "advertisements in files, and in folders but for hidden ones; one or a list",
+        _is_texts,
+        paths=True,
+        several=True,
+    ),
     "endpoint": ProjectKey("a SPARQL endpoint that holds the advertisements, in place of ads", _is_url),
     "ontology": ProjectKey(
         "ontologies besides those of selfconf, files and folders; one or a list", _is_texts, paths=True, several=True

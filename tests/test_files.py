@@ -55,6 +55,15 @@ def test_a_folder_stands_for_the_turtle_files_below_it(ads: Path) -> None:
     assert files.within(ads / "z.ttl") == [ads / "z.ttl"]
 
 
+def test_hidden_folders_are_passed_over_unless_they_are_what_is_named(tmp_path: Path) -> None:
+    hidden = tmp_path / ".venv" / "deeper"
+    hidden.mkdir(parents=True)
+    (hidden / "shapes.ttl").touch()
+    (tmp_path / ".lamp.ttl").touch()
+    assert files.within(tmp_path) == [tmp_path / ".lamp.ttl"]
+    assert files.within(tmp_path / ".venv") == [hidden / "shapes.ttl"]
+
+
 def test_a_folder_that_cannot_be_read_is_not_passed_over_in_silence(ads: Path) -> None:
     with pytest.raises(AuthorError, match=r"cannot read the folder .*closed: Permission denied"):
         files.within(ads)

@@ -50,7 +50,7 @@ def read(*sources: Source | Iterable[Source]) -> Ecology:
 
     A string that is the URL of an endpoint is asked when a task needs its advertisements; a string with a line break,
     or that begins as only Turtle does (`@prefix`, `<`, `[`), is Turtle; any other string is a path. A folder stands for
-    all *.ttl below it. `left_out` of the ecology names the advertisements that do not count.
+    all *.ttl below it, but for hidden folders. `left_out` of the ecology names the advertisements that do not count.
 
     Raises AuthorError for what is not there, cannot be read or is not Turtle; ProgrammerError for what is no source.
 
