@@ -81,10 +81,14 @@ class SignalFields:
     signal: IRI
     fields: tuple[SignalField, ...]
     _checks: tuple[_Check, ...] = field(init=False, repr=False, compare=False)
+    _holds_bulk: bool = field(init=False, repr=False, compare=False)
+    """Whether it has a field of bytes or of many values, or no field at all."""
 
     def __post_init__(self) -> None:
         checks = [_Check(one, one.name, one.required, one.repeated, *_kind(one.datatype)) for one in self.fields]
         object.__setattr__(self, "_checks", tuple(checks))
+        holds_bulk = not self.fields or any(one.repeated or one.datatype in _BINARY for one in self.fields)
+        object.__setattr__(self, "_holds_bulk", holds_bulk)
 
     # complexity: this runs for every signal; a call for each field would double what most signals cost
     def problem(self, value: object) -> str | None:
@@ -108,8 +112,7 @@ class SignalFields:
 
     def problem_of_bytes(self) -> str | None:
         """What keeps bytes from being such a signal; None for a kind with a field of bytes or of many values."""
-        holds_bulk = not self.fields or any(one.repeated or one.datatype in _BINARY for one in self.fields)
-        return None if holds_bulk else self._no_object("is bytes")
+        return None if self._holds_bulk else self._no_object("is bytes")
 
     def _carefully(self, check: _Check, found: Any, value: dict[Any, Any]) -> str | None:
         """What is wrong with the value of a field that is not plainly right."""

@@ -181,7 +181,7 @@ class ZenohBus(Loop):
     ) -> Callable[[], None]:
         """Receive every sample put on a key from now on."""
         if direct:
-            return self._subscribe_directly(key, DirectReceiver(receive))
+            return self._subscribe_directly(key, DirectReceiver(key, receive))
         receiver, urgent = Receiver(self, receive), urgency is Urgency.EVENT
 
         def arrived(sample: zenoh.Sample) -> None:

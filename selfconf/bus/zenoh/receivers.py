@@ -22,11 +22,11 @@ from selfconf.bus.port import Sample, Undo
 log = logging.getLogger(__name__)
 
 
-def sample_of(sample: zenoh.Sample) -> Sample:
-    """What Zenoh has received, as a value of our own."""
+def sample_of(sample: zenoh.Sample, key: str = "") -> Sample:
+    """What Zenoh has received, as a value of our own; `key` is its key where that is known, which saves asking."""
     attachment = sample.attachment
     beside = b"" if attachment is None else attachment.to_bytes()
-    return Sample(str(sample.key_expr), sample.payload.to_bytes(), beside)
+    return Sample(key or str(sample.key_expr), sample.payload.to_bytes(), beside)
 
 
 _THREAD = threading.local()
@@ -99,7 +99,9 @@ class Receiver:
 class DirectReceiver:
     """Calls back on Zenoh's thread for what a subscription receives, until the subscription is taken back."""
 
-    def __init__(self, receive: Callable[[Sample], None]) -> None:
+    def __init__(self, key: str, receive: Callable[[Sample], None]) -> None:
+        self._key = "" if "*" in key else key
+        """The key of every sample; empty where these are of several keys."""
         self._receive = receive
         self._listening = True
         # Held during each call, so that `close` waits for one that is under way. Reentrant: `receive` may put on the
@@ -112,7 +114,7 @@ class DirectReceiver:
             if not self._listening:
                 return
             try:
-                self._receive(sample_of(sample))
+                self._receive(sample_of(sample, self._key))
             except Exception:  # an outermost loop, like that of the bus: Zenoh would print it and go on
                 log.exception("a direct callback broke; going on")
 

@@ -79,8 +79,15 @@ def test_a_direct_callback_that_breaks_does_not_end_what_calls_it(caplog: pytest
     def breaks(sample: Sample) -> None:
         raise ValueError(sample.key)
 
-    DirectReceiver(breaks).received(from_zenoh())
+    DirectReceiver("a/b", breaks).received(from_zenoh())
     assert "a direct callback broke" in caplog.text
+
+
+@pytest.mark.parametrize("declared", ["a/b", "a/*"])
+def test_a_direct_callback_is_told_the_key_of_what_comes(declared: str) -> None:
+    heard = list[Sample]()
+    DirectReceiver(declared, heard.append).received(from_zenoh())
+    assert [sample.key for sample in heard] == ["a/b"]
 
 
 def test_closing_waits_for_a_direct_callback_that_is_under_way() -> None:
@@ -91,7 +98,7 @@ def test_closing_waits_for_a_direct_callback_that_is_under_way() -> None:
         assert go_on.wait(10)
         heard.append(sample.payload)
 
-    receiver = DirectReceiver(receive)
+    receiver = DirectReceiver("a/b", receive)
     receiving = threading.Thread(target=receiver.received, args=(from_zenoh(),))
     receiving.start()
     assert begun.wait(10)
