@@ -128,10 +128,11 @@ class Outputs:
         self._last.clear()
 
     def close(self) -> None:
-        """Take the declarations back."""
+        """Take the declarations back; the component does not act any more."""
         self._served()
-        for output in self._publishers.values():
-            output.undeclare()
+        with self._issuing:  # Zenoh takes back no publisher that another thread puts on just then
+            for output in self._publishers.values():
+                output.undeclare()
 
     def _answer(self, request: Request) -> None:
         """Answer the question for an output with its last signal of this activation, if there is one."""

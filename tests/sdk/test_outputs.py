@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies, Sample
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Output, Ports, Profile
@@ -165,6 +166,38 @@ def test_nothing_is_emitted_after_a_fail_that_comes_while_the_value_is_written(m
     stage.let_pass(0.1)
     assert [signal.value for signal in listener.arrived] == ["before"]
     assert stage.fails[0].sequence == tracker.outputs.newest == 1
+
+
+def test_no_output_is_taken_back_while_another_thread_issues_a_signal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Zenoh would raise an error, and the component leave the ecology by half."""
+    is_issuing, is_over, told = threading.Event(), threading.Event(), list[str]()
+
+    class Slow:
+        def put(self, payload: bytes, attachment: bytes = b"") -> None:
+            is_issuing.set()
+            is_over.wait(0.2)
+            told.append("issued")
+
+        def undeclare(self) -> None:
+            told.append("taken back")
+
+    publisher = MemoryBus.publisher
+
+    def slow(bus: MemoryBus, key: str, *how: Any, **more: Any) -> Any:
+        return Slow() if key == KEYS.output(TRACKER, "pose") else publisher(bus, key, *how, **more)
+
+    monkeypatch.setattr(MemoryBus, "publisher", slow)
+    stage = Stage(profile=TRACKER_PROFILE)
+    stage.call(apply(1, US))
+    emitting = threading.Thread(target=lambda: stage.component.emit("pose", 1))
+    emitting.start()
+    assert is_issuing.wait(5.0)
+    stage.runtime.close()
+    is_over.set()
+    emitting.join()
+    assert told == ["issued", "taken back"]
+    stage.component.emit("pose", 2)
+    assert told == ["issued", "taken back"]
 
 
 def test_an_output_that_is_not_advertised_is_the_programmers_error() -> None:
