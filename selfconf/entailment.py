@@ -13,11 +13,11 @@ import hashlib
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
+from selfconf.atomic_write import write_atomically
 from selfconf.errors import AuthorError
 from selfconf.model.seconds import LIMIT_IN_WORDS, is_limit
 from selfconf.model.setting_names import setting
@@ -103,18 +103,10 @@ def _computed(lines: bytes) -> bytes:
 
 
 def _keep(path: Path, entailed: bytes) -> None:
-    """Write a closure in one step, so that no other process reads half of it; do without where that cannot be."""
-    try:
+    """Keep a closure for later; do without where that cannot be."""
+    with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as temporary:
-            try:
-                temporary.write(entailed)
-                temporary.close()
-                Path(temporary.name).replace(path)
-            except OSError:
-                Path(temporary.name).unlink(missing_ok=True)
-    except OSError:
-        return
+        write_atomically(path, entailed)
 
 
 def main() -> None:

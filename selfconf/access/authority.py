@@ -21,7 +21,8 @@ from selfconf.access.certificate_files import (
 from selfconf.access.certificates import EVERY_HOST, Certificate, Key, issue, new_authority, new_key, revocations
 from selfconf.access.keys_folder import MAIN, KeysFolder
 from selfconf.access.principal import Principal, PrincipalKind
-from selfconf.access.private_files import content, make_private_folder, read_file, write_private
+from selfconf.access.private_files import content, make_private_folder, read_file
+from selfconf.atomic_write import write_atomically
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import AuthorError, reason
 from selfconf.model.immutable import replace
@@ -97,11 +98,11 @@ class Authority(KeysFolder):
             raise AuthorError(f"there is no certificate of {principal} that has not expired; nothing to revoke")
         before = self.revoked()
         listed = revocations(authority, key, [one for one in current if one.serial in before or one in found])
-        write_private(self.path / REVOKED, listed)
+        write_atomically(self.path / REVOKED, listed)
         for folder in dict.fromkeys(self._folders().values()):
             if self._is_of_mine(folder):
                 with suppress(OSError):  # `unaware` names the folder
-                    write_private(folder / REVOKED, listed)
+                    write_atomically(folder / REVOKED, listed)
         return len(found)
 
     def issued(self) -> list[Certificate]:
@@ -179,11 +180,11 @@ class Authority(KeysFolder):
         try:
             make_private_folder(self.path / "issued")
             noted = self.path / "issued" / f"{certificate.common_name}~{certificate.serial:x}.pem"
-            write_private(noted, certificate.pem)
-            write_private(noted.with_name(f"{noted.stem}.folder"), os.fsencode(folder.resolve()))
+            write_atomically(noted, certificate.pem)
+            write_atomically(noted.with_name(f"{noted.stem}.folder"), os.fsencode(folder.resolve()))
             write_holder(folder, authority, certificate, key)
             if (self.path / REVOKED).is_file():
-                write_private(folder / REVOKED, read_file(self.path / REVOKED))
+                write_atomically(folder / REVOKED, read_file(self.path / REVOKED))
         except OSError as error:
             raise AuthorError(reason(error)) from None
         return certificate

@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from selfconf.access.certificates import Certificate, Key, key_pem, read_key
-from selfconf.access.private_files import check_private, make_private_folder, named_in_errors, read_file, write_private
+from selfconf.access.private_files import check_private, make_private_folder, named_in_errors, read_file
+from selfconf.atomic_write import write_atomically
 from selfconf.errors import AuthorError, reason
 
 AUTHORITY, HOST_AUTHORITY, OWN = "authority", "components", "certificate"
@@ -45,14 +46,14 @@ def read_pair_of_this_user(path: Path) -> tuple[Certificate, Key] | None:
 
 def write_pair(path: Path, certificate: Certificate, key: Key) -> None:
     """Write a certificate and its key, by their path without an ending."""
-    write_private(path.with_suffix(".key"), key_pem(key))
-    write_private(path.with_suffix(".pem"), certificate.pem)
+    write_atomically(path.with_suffix(".key"), key_pem(key))
+    write_atomically(path.with_suffix(".pem"), certificate.pem)
 
 
 def write_holder(folder: Path, authority: Certificate, certificate: Certificate, key: Key) -> None:
     """Write what a holder needs. The certificate comes last: a program that reads meanwhile finds a pair that fits."""
     make_private_folder(folder)
-    write_private(folder / f"{AUTHORITY}.pem", authority.pem)
+    write_atomically(folder / f"{AUTHORITY}.pem", authority.pem)
     write_pair(folder / OWN, certificate, key)
 
 

@@ -9,6 +9,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from selfconf.atomic_write import READABLE, write_atomically
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
 
@@ -56,9 +57,7 @@ def believe(folder: Path, component: IRI, site: str) -> None:
     """Note that a component is that of a site. Raises AuthorError."""
     path = folder / FILE
     said = {**believed(folder), component: site}
-    temporary = path.with_suffix(".new")
     try:
-        temporary.write_text(json.dumps(said, indent=1, sort_keys=True) + "\n")
-        temporary.replace(path)
+        write_atomically(path, f"{json.dumps(said, indent=1, sort_keys=True)}\n".encode(), READABLE)
     except OSError as error:
         raise AuthorError(f"cannot be written: {error.strerror}", file=str(path)) from None

@@ -25,7 +25,8 @@ from selfconf.access.certificate_files import (
 from selfconf.access.certificates import Certificate, Key, issue, new_authority, new_key
 from selfconf.access.keys_folder import KeysFolder, holder_name
 from selfconf.access.principal import Principal
-from selfconf.access.private_files import read_file, write_private
+from selfconf.access.private_files import read_file
+from selfconf.atomic_write import write_atomically
 from selfconf.errors import AuthorError, PeerError
 
 COMPONENT_DAYS = 1.0
@@ -51,7 +52,7 @@ class HostAuthority:
             self._pair()
             together = self._keys.authority.pem + read_file(self._pair_path.with_suffix(".pem"))
             if not trusted.is_file() or trusted.read_bytes() != together:
-                write_private(trusted, together)
+                write_atomically(trusted, together)
         return trusted
 
     def share(self, shared: Path) -> None:
@@ -82,7 +83,7 @@ class HostAuthority:
                 mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
                 certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
                 write_holder(folder, self._keys.authority, certificate, mine)
-                write_private(folder / f"{HOST_AUTHORITY}.pem", authority.pem)
+                write_atomically(folder / f"{HOST_AUTHORITY}.pem", authority.pem)
         return folder
 
     def _component_ends(self) -> datetime:

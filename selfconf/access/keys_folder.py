@@ -30,8 +30,8 @@ from selfconf.access.private_files import (
     make_private_folder,
     named_in_errors,
     read_file,
-    write_private,
 )
+from selfconf.atomic_write import write_atomically
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import AuthorError, PeerError, reason
 from selfconf.files import FileStamp, stamp
@@ -157,7 +157,7 @@ class KeysFolder:
         path = self._admitted(ecology) / f"{holder_name(certificate.principals)}.pem"
         if not self._has_later(path, certificate):
             make_private_folder(path.parent)
-            write_private(path, certificate.pem)
+            write_atomically(path, certificate.pem)
         return certificate
 
     def _has_later(self, path: Path, certificate: Certificate) -> bool:

@@ -1,8 +1,7 @@
-"""Files and folders that only their owner may read, written at once, with the file named in what goes wrong."""
+"""Files and folders that only their owner may read, with the file named in what goes wrong."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -10,15 +9,6 @@ from typing import TypeVar
 from selfconf.errors import AuthorError, PeerError, reason
 
 _Value = TypeVar("_Value")
-
-
-def write_private(path: Path, content: bytes) -> None:
-    """Write a file at once, readable by its owner alone."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    with os.fdopen(descriptor, "wb") as file:
-        file.write(content)
-    temporary.replace(path)
 
 
 def make_private_folder(folder: Path) -> None:

@@ -12,7 +12,6 @@ import json
 import multiprocessing
 import os
 import signal
-import tempfile
 import threading
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
@@ -20,6 +19,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from selfconf.atomic_write import write_atomically
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf.validation import CheckEach, FileChecker, UnclearedFile
 
@@ -92,13 +92,11 @@ class Remembered:
             return {}  # none yet, or not one of ours
 
     def _keep(self, outcomes: dict[str, list[Diagnostic]]) -> None:
-        """Replace the file as a whole, so that no reader sees half of it; without it where it cannot be written."""
+        """Keep what came of the files; do without where that cannot be written."""
         entries = {key: [asdict(found) for found in problems] for key, problems in outcomes.items()}
         with contextlib.suppress(OSError):
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile("w", dir=self._file.parent, delete=False, encoding="utf-8") as file:
-                json.dump({"versions": self._versions, "outcomes": entries}, file)
-            Path(file.name).replace(self._file)
+            write_atomically(self._file, json.dumps({"versions": self._versions, "outcomes": entries}).encode())
 
 
 def _own_version() -> str:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import logging
-import os
 from contextlib import suppress
 from pathlib import Path
 
+from selfconf.atomic_write import write_atomically
 from selfconf.errors import PeerError
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import TaskRecord
@@ -79,17 +79,7 @@ class TaskFolder:
 
     def _write(self, folder: Path, record: TaskRecord) -> None:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        path = self._path(folder, record.task)
-        temporary = path.with_suffix(".new")
-        try:
-            temporary.write_bytes(encode(record))
-            _synchronize(temporary)  # else a power cut may leave the new name with nothing in the file
-            temporary.replace(path)
-            _synchronize(folder)
-        except OSError:
-            with suppress(OSError):
-                temporary.unlink(missing_ok=True)
-            raise
+        write_atomically(self._path(folder, record.task), encode(record))
 
     def _forget_ended(self) -> None:
         """Forget the older half of the tasks that have ended: only a site that was away for long may not know it."""
@@ -115,12 +105,3 @@ def _kept_in(folder: Path) -> list[Path]:
             error.strerror,
         )
         return []
-
-
-def _synchronize(path: Path) -> None:
-    """Have the disk hold what was written to a file, or which files are in a folder. Raises OSError."""
-    opened = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(opened)
-    finally:
-        os.close(opened)

@@ -1,4 +1,4 @@
-"""Files of keys are written at once and for their owner alone, and errors name them."""
+"""Folders of keys are for their owner alone, and errors name what is in them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from selfconf.access.private_files import (
     make_private_folder,
     named_in_errors,
     read_file,
-    write_private,
 )
+from selfconf.atomic_write import write_atomically
 from selfconf.errors import AuthorError, PeerError
 
 
@@ -25,18 +25,14 @@ def mode(path: Path) -> int:
     return stat.S_IMODE(path.stat().st_mode)
 
 
-def test_what_is_written_is_for_its_owner_alone_and_leaves_nothing_beside_it(tmp_path: Path) -> None:
+def test_a_folder_is_made_for_its_owner_alone_with_those_above_it(tmp_path: Path) -> None:
     folder = tmp_path / "a" / "b"
     make_private_folder(folder)
-    for said in (b"one", b"two"):
-        write_private(folder / "key", said)
-        assert read_file(folder / "key") == said
-    assert [mode(one) for one in (folder.parent, folder, folder / "key")] == [0o700, 0o700, 0o600]
-    assert [one.name for one in folder.iterdir()] == ["key"]
+    assert [mode(one) for one in (folder.parent, folder)] == [0o700, 0o700]
 
 
 def test_a_key_that_others_may_read_is_refused(tmp_path: Path) -> None:
-    write_private(tmp_path / "key", b"secret")
+    write_atomically(tmp_path / "key", b"secret")
     check_private(tmp_path / "key")
     check_private(tmp_path / "none")
     (tmp_path / "key").chmod(0o640)

@@ -92,26 +92,6 @@ def test_a_folder_that_cannot_be_read_is_named_and_the_site_goes_on_without_its_
     assert f"the tasks in {tmp_path} cannot be read, and this site runs none of them" in caplog.text
 
 
-def test_a_record_is_on_the_disk_before_it_has_its_name_and_the_name_before_it_is_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    done: list[str] = []
-    replace, fsync = Path.replace, os.fsync
-
-    def noted_replace(path: Path, target: Path) -> Path:
-        done.append(f"replace {path.name}")
-        return replace(path, target)
-
-    def noted_fsync(opened: int) -> None:
-        done.append(f"fsync {Path(f'/proc/self/fd/{opened}').readlink().name}")
-        fsync(opened)
-
-    monkeypatch.setattr(Path, "replace", noted_replace)
-    monkeypatch.setattr(os, "fsync", noted_fsync)
-    TaskFolder(tmp_path / "tasks").learn(FIRST)
-    assert done == ["fsync navigate~1.new", "replace navigate~1.new", "fsync tasks"]
-
-
 def test_of_too_many_tasks_those_that_have_ended_go_and_then_none_is_taken(tmp_path: Path) -> None:
     folder = TaskFolder(tmp_path)
     for number in range(MOST_RECORDS):
@@ -130,11 +110,10 @@ def test_of_too_many_tasks_those_that_have_ended_go_and_then_none_is_taken(tmp_p
 def full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """From now on there is no room on the disk."""
 
-    def write_bytes(path: Path, data: bytes) -> int:
-        path.touch()
+    def full(opened: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(Path, "write_bytes", write_bytes)
+    monkeypatch.setattr(os, "fsync", full)
 
 
 def test_a_new_task_that_finds_no_room_is_refused_and_leaves_nothing_behind(tmp_path: Path, full: None) -> None:
