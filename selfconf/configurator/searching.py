@@ -129,7 +129,7 @@ def _improved(state: State, event: Composed) -> Reaction:
     assert state.target is not None
     if not isinstance(better, Configuration):
         return _improve(_avoided_in_vain(state)) if state.avoided else (state, ())
-    if better.assignments == state.target.assignments:
+    if (better.assignments, better.recruits) == (state.target.assignments, state.target.recruits):
         return state, ()
     if state.contested(better):
         return _improve(*_avoid(state, better))

@@ -80,6 +80,21 @@ def test_a_change_for_the_better_is_made_before_the_old_source_is_let_go() -> No
     assert history.state.owed.keys() == {ODOMETRY}
 
 
+def test_other_recruits_for_the_same_players_are_a_change_for_the_better() -> None:
+    ran, better = (
+        replace(whole, assignments=whole.assignments[1:], recruits=(recruit,))
+        for whole, recruit in ((navigation(ODOMETRY), ODOMETRY), (navigation(), TRACKER))
+    )
+    history = History(TASK).running(ran)
+    history.hear(Improvable(), Discovered())
+    assert history.composed(ran) == []
+    history.hear(Improvable(), Discovered())
+    history.composed(better)
+    history.all_answer()
+    assert history.state.target == better
+    assert history.state.held.keys() == {CONTROL, DRIVE, TRACKER}
+
+
 def test_before_a_change_for_the_better_the_ecology_is_asked_anew_while_everything_runs_on() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
     assert history.hear(Improvable()) == [Discover()]

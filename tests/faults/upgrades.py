@@ -105,7 +105,7 @@ def worse_than_need_be(history: History) -> Iterator[str]:
         assert state.target is not None
         if not isinstance(better, Configuration) or disagreeing(history, agent, better):
             continue
-        if better.assignments != state.target.assignments:
+        if (better.assignments, better.recruits) != (state.target.assignments, state.target.recruits):
             rather = sorted(one.short for one in {*better.components} - {*state.target.components})
             yield f"{agent.name} runs without {rather}"
 
