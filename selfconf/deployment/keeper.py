@@ -132,6 +132,9 @@ class Keeper:
         except OSError as error:
             why = f"site {self.site} cannot keep the task on its disk: {error.strerror}"
             request.refuse(f"{why}; mend that, or give the site another folder for its tasks")
+            # Others may have room for it, and count on this one to run it; where none has, it is not to be run.
+            self._to_ask |= dict.fromkeys(self._living.keys() - {self.site})
+            self._look_later()
         finally:
             request.finish()
 
@@ -171,7 +174,7 @@ class Keeper:
         try:
             heard = decode(sample.payload, TaskRecord)
             record = replace(heard, keeper="")
-            self._learn(record)
+            self._learn_of_another(record)
             newest = self.folder.records[record.task]
             if newest.supersedes(record):
                 self._tell(newest)
@@ -191,11 +194,24 @@ class Keeper:
             self._complaints.add(trouble)
             log.error("%s", trouble)
 
+    def _learn_of_another(self, record: TaskRecord) -> None:
+        """Learn a record that another site has, and so is to be run though it cannot be written here."""
+        try:
+            self._learn(record)
+        except OSError:
+            self.folder.hold(record)
+            self._learnt(record)
+            raise
+
     def _learn(self, record: TaskRecord) -> None:
         if self.folder.learn(record):
-            self._read(record)
-            self.bus.wake_up(self._assign)
-            self._look_later()
+            self._learnt(record)
+
+    def _learnt(self, record: TaskRecord) -> None:
+        """A record is new: have its task run, if this is the site to do so."""
+        self._read(record)
+        self.bus.wake_up(self._assign)
+        self._look_later()
 
     def _read(self, record: TaskRecord) -> None:
         """Read a task in advance, so that going on with it takes no time; one that cannot be read is never run."""

@@ -41,8 +41,8 @@ class TaskFolder:
     def learn(self, record: TaskRecord) -> bool:
         """Keep a record, unless a newer one of the same task is kept; whether it was new.
 
-        Raises PeerError where too many tasks are kept already, and OSError for a new task that cannot be written: it
-        is kept until this site ends, for other sites may have it on their disks, and count on this one to run it.
+        Raises PeerError where too many tasks are kept already, and OSError for a new task that cannot be written, which
+        is not kept then.
         """
         known = self.records.get(record.task)
         if not record.supersedes(known):
@@ -51,7 +51,6 @@ class TaskFolder:
             self._forget_ended()
         if known is None and len(self.records) >= MOST_RECORDS:
             raise PeerError(f"{MOST_RECORDS} tasks are kept already; end some with `selfconf stop TASK`")
-        self.records[record.task] = record
         if self._folder is not None:
             try:
                 self._write(self._folder, record)
@@ -62,7 +61,12 @@ class TaskFolder:
                 if record.ended:  # to be gone takes no room, and what has ended may not begin again
                     with suppress(OSError):
                         self._path(self._folder, record.task).unlink(missing_ok=True)
+        self.records[record.task] = record
         return True
+
+    def hold(self, record: TaskRecord) -> None:
+        """Keep a record that cannot be written until this site ends, as another one has it on its disk."""
+        self.records[record.task] = record
 
     def encoded(self, task: str) -> bytes:
         """The record of a task as it is sent; made once, as every site asks every other that comes for all of them."""

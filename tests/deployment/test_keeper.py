@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import itertools
 import logging
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -266,6 +268,36 @@ def test_what_a_site_cannot_keep_of_what_others_send_is_said_to_people_once(
     said = [record.getMessage() for record in caplog.records if "does not keep the task" in record.getMessage()]
     assert len(said) == 2 * len(keepers.keepers)
     assert all(keepers.lab.keys.task("odd~1") in one for one in said)
+
+
+def fill_disk(keeper: Keeper, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave no room for what a site keeps."""
+
+    def write(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(keeper.folder, "_write", write)
+
+
+def test_a_task_that_its_keeper_has_no_room_for_is_run_by_it_as_other_sites_keep_it(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keeper = keeper_of(RECORD.task, (*keepers.keepers, "astrid", "living-room"))
+    fill_disk(keepers.keepers[keeper], monkeypatch)
+    keepers.hand_over(RECORD)
+    assert keepers.lab.until(lambda: keepers.running() == [keeper])
+
+
+def test_a_task_that_no_site_has_room_for_is_not_run_though_others_are(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keepers.settled()
+    refused = replace(RECORD, task="patrol~2", priority=9)
+    for keeper in keepers.keepers.values():
+        fill_disk(keeper, monkeypatch)
+    keepers.hand_over(refused)
+    keepers.lab.let_pass(10.0)
+    assert not any(refused.task in keeper.runners for keeper in keepers.keepers.values())
 
 
 def test_a_task_whose_configuration_cannot_be_read_begins_anew_and_that_is_said(

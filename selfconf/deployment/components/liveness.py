@@ -93,8 +93,8 @@ class Liveness:
         self._reopenings: dict[str, list[float]] = {}
         """When each site has last said that its hub is about to be opened anew."""
         self._audited = 0
-        self._silences: dict[IRI, int] = {}
-        """How often in a row each component has not answered an audit."""
+        self._silences: dict[IRI, tuple[str, int]] = {}
+        """How often in a row each component has not answered an audit, and in which life."""
         self.dropped: dict[IRI, int] = {}
         """How many signals each component has passed over because its code was too slow, when it was asked last."""
 
@@ -250,8 +250,10 @@ class Liveness:
         if held is None or not self._runs_undisturbed(epoch):
             return
         if answer is None:
-            self._silences[component] = self._silences.get(component, 0) + 1
-            if self._silences[component] >= SILENT_AUDITS:
+            life, before = self._silences.get(component, (held.life, 0))
+            silences = before + 1 if life == held.life else 1
+            self._silences[component] = held.life, silences
+            if silences >= SILENT_AUDITS:
                 self._step(Failed(component, held.life, Cause.HUNG, "it lives, but answers no question"))
             return
         self._silences.pop(component, None)
@@ -336,6 +338,8 @@ class Liveness:
         """Believe no end while this node is cut off; what has become of the components is asked afterwards."""
 
         def look() -> None:
+            if self._state().ended:
+                return
             if self.bus.link:
                 self.bus.later(SETTLING, connected)
             else:
@@ -343,7 +347,7 @@ class Liveness:
                 self.bus.later(CUT_OFF, look)
 
         def connected() -> None:
-            if not self.bus.link:
+            if not self.bus.link or self._state().ended:
                 look()
                 return
             if self.bus.link != self._link:

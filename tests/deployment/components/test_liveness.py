@@ -251,6 +251,20 @@ def test_a_component_that_lives_and_answers_no_question_is_replaced(lab: Lab) ->
     assert (lost.component, lost.cause) == (iri("person-tracker"), "hung")
 
 
+def test_what_a_component_has_not_answered_in_its_last_life_does_not_count_in_the_next(lab: Lab) -> None:
+    lab.crash("odometry")
+    agent = lab.agent(patient=True)
+    for _ in range(2):
+        assert lab.running(agent)
+        lab.runtimes["tracker"].calls.close()
+        lab.let_pass(1.5 * AUDIT)
+        assert agent.state.phase is Phase.RUNNING
+        assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
+        lab.crash("tracker")
+        lab.let_pass(1.0)
+        lab.component("tracker")
+
+
 def test_the_status_says_how_many_signals_a_slow_component_has_passed_over(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
@@ -439,6 +453,9 @@ def test_a_configurator_that_is_cut_off_can_be_stopped(lab: Lab) -> None:
     assert lab.until(lambda: bool(lab.ended), 10.0)
     lab.let_pass(GRACE + 0.1)
     assert lab.active() == set()
+    lab.rejoin(agent)
+    lab.let_pass(2 * SETTLING)
+    assert not lab.acts("connected")
 
 
 def test_a_site_that_came_after_the_start_counts_before_the_task_is_given_up(tmp_path: Path) -> None:
