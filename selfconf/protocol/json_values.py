@@ -12,6 +12,8 @@ import json
 import math
 from typing import Any
 
+import orjson
+
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Wants
 from selfconf.model.log_line import LONGEST_LINE, LogLine
@@ -173,10 +175,10 @@ def _read_object(value: object) -> dict[str, Any]:
 
 
 def read_sayable(value: object) -> dict[str, Any]:
-    """An object that is handed on as it is: every number in it is finite, and every text can be written."""
+    """An object that is handed on as it is: every number in it is one of doubles, and every text can be written."""
     body = _read_object(value)
     try:
-        json.dumps(body, ensure_ascii=False, allow_nan=False).encode()
+        orjson.loads(json.dumps(body, ensure_ascii=False, allow_nan=False).encode())  # refuses 10**400
     except (ValueError, RecursionError):
         raise PeerError("finite numbers and texts of whole characters were expected") from None
     return body

@@ -82,6 +82,13 @@ def test_a_task_begins_at_a_moment_for_tasks_are_served_in_that_order(beginning:
         decode(good.replace(b"8.5", beginning.encode()), Reserve)
 
 
+@pytest.mark.parametrize("number", ["NaN", "-Infinity", "1e999", f"1{400 * '0'}"])
+def test_what_is_handed_on_to_observers_holds_no_number_beyond_any_double(number: str) -> None:
+    good = encode(Notice("c", 1, "t~1", {"act": "lost", "time": 8.5}))
+    with pytest.raises(PeerError, match="finite"):
+        decode(good.replace(b"8.5", number.encode()), Notice)
+
+
 @pytest.mark.parametrize("text", ["a\nLOST b", "\x1b[2J", "\u202egnp.exe"])
 def test_what_people_read_stands_on_one_line_and_what_names_something_has_no_controls(text: str) -> None:
     fail = {"kind": "fail", "component": "urn:a", "life": "1", "epoch": 1}
