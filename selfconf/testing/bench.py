@@ -139,8 +139,9 @@ class ComponentBench:
     def start(self, **parameters: str | int | float | bool) -> None:
         """Activate the component, with values for its operational parameters by name.
 
-        Raises ProgrammerError if it declines, breaks, acts already, or declares no parameter of that name, and where a
-        value is none that a parameter is set to.
+        All parameters of one type have one value, as tasks set them by their type. Raises ProgrammerError if the
+        component declines, breaks, acts already, or declares no parameter of that name, and where a value is none that
+        a parameter is set to, or two of one type differ.
         """
         if self.active:
             raise ProgrammerError(f"{self.profile.component.short} acts already; stop it first")  # it would be awaited
@@ -250,10 +251,19 @@ class ComponentBench:
         unknown = sorted(parameters.keys() - types.keys())
         if unknown:
             raise ProgrammerError(f"{self.profile.component.short} declares no parameter {unknown[0]!r}")
-        said = [
-            f"; sc:sets [ sc:parameterType <{types[n]}> ; sc:value {_turtle(n, v)} ]" for n, v in parameters.items()
-        ]
-        return " ".join(said)
+        set_by: dict[IRI, str] = {}
+        """For each type of parameter the name of the first that is set."""
+        for name in parameters:
+            first = set_by.setdefault(types[name], name)
+            if _turtle(name, parameters[name]) != _turtle(first, parameters[first]):
+                raise ProgrammerError(
+                    f"a task sets parameters by their type, and {first!r} and {name!r} are of one, {types[name].short}:"
+                    " they have one value"
+                )
+        return " ".join(
+            f"; sc:sets [ sc:parameterType <{kind}> ; sc:value {_turtle(name, parameters[name])} ]"
+            for kind, name in set_by.items()
+        )
 
 
 def _turtle(name: str, value: object) -> str:

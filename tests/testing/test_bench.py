@@ -81,6 +81,14 @@ def test_what_no_parameter_is_set_to_is_named(value: Any) -> None:
         ComponentBench(Thermostat(), ADVERTISEMENT).start(wanted=value)
 
 
+def test_parameters_of_one_type_are_set_together() -> None:
+    thermostat, alike = Thermostat(), ADVERTISEMENT.replace(":Mode", ":Degrees")
+    with pytest.raises(ProgrammerError, match="'wanted' and 'mode' are of one, Degrees: they have one value"):
+        ComponentBench(thermostat, alike).start(wanted=1, mode=2)
+    ComponentBench(thermostat, alike).start(wanted=3, mode=3)
+    assert (thermostat.wanted, thermostat.mode) == (3, 3)
+
+
 def test_time_is_turned_by_hand() -> None:
     bench = ComponentBench(Thermostat(), ADVERTISEMENT)
     bench.start()
