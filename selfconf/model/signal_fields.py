@@ -19,7 +19,7 @@ import math
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from operator import countOf
+from operator import countOf, eq
 from reprlib import Repr
 from typing import Any, NamedTuple
 
@@ -143,11 +143,14 @@ def _are_usual(check: _Check, values: Sequence[Any]) -> bool:
     """Whether all values of a list are of the usual types, and within the bounds of the datatype.
 
     Doubles with a finite sum are finite each, as NaN and infinity stay in a sum; it is had in a sixth of the time of
-    the least and the greatest, which decide where finite doubles have a sum beyond all doubles.
+    the least and the greatest, which decide where finite doubles have a sum beyond all doubles. NaN is neither of these
+    unless it comes first; it alone is not equal to itself.
     """
     if check.finite and countOf(map(type, values), float) == len(values) and math.isfinite(sum(values)):
         return True
     if not check.usual.issuperset(map(type, values)):
+        return False
+    if check.finite and not all(map(eq, values, values)):
         return False
     return not (check.bounded and values) or (check.least <= min(values) and max(values) <= check.greatest)
 

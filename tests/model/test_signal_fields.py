@@ -59,6 +59,8 @@ def test_a_value_with_all_its_fields_is_right(more: dict[str, Any]) -> None:
         ({**GOOD, "ranges": "abc"}, "has 'abc' as 'ranges'"),
         ({**GOOD, "ranges": [1.0, "far"]}, "has 'far' at 1 in 'ranges'"),
         ({**GOOD, "ranges": [1.0, True]}, "has True at 1 in 'ranges'"),
+        ({**GOOD, "ranges": [1.0, math.nan, 2.0]}, "has nan at 1 in 'ranges'"),
+        ({**GOOD, "ranges": [1, math.nan]}, "has nan at 1 in 'ranges'"),
         ({**GOOD, "max_range": True}, "has True as 'max_range', which is xsd:double"),
         ({**GOOD, "max_range": math.nan}, "has nan as 'max_range', which is xsd:double"),
         ({**GOOD, "max_range": -math.inf}, "has -inf as 'max_range'"),
