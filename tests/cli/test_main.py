@@ -34,11 +34,12 @@ def test_validating_what_is_right_loads_neither_the_network_nor_a_reasoner(tmp_p
 def test_where_no_thread_can_begin_a_sentence_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def no_thread(*_: object) -> None:
+    def no_thread(*_: object, **__: object) -> None:
         raise RuntimeError(NO_THREAD)
 
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path))
-    monkeypatch.setattr(threading, "_start_new_thread", no_thread)
+    begin = "_start_new_thread" if hasattr(threading, "_start_new_thread") else "_start_joinable_thread"  # since 3.13
+    monkeypatch.setattr(threading, begin, no_thread)
     assert main(["site", str(tmp_path), "--ecology", "crowded"]) == 2
     said = capsys.readouterr().err
     assert said.startswith("selfconf site: the system lets it begin no further thread; allow more by `ulimit -u`")

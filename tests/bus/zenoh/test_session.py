@@ -166,7 +166,7 @@ print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), bool(bus.link))
 
 
 def test_a_process_that_was_forked_opens_no_session_and_closes_none() -> None:
-    command = [sys.executable, "-c", FORKED]
+    command = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", FORKED]  # Python itself warns of it since 3.12
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout == "1 True\n"
     assert done.stderr.startswith("this process was forked from one that was in an ecology")
