@@ -89,7 +89,7 @@ class Request(Protocol):
         ...
 
     def refuse(self, reason: str) -> None:
-        """Reply that it cannot be answered."""
+        """Reply that it cannot be answered; what is no character in the reason, as in names of files, is replaced."""
         ...
 
     def finish(self) -> None:

@@ -15,6 +15,7 @@ from selfconf.bus.port import Bus, Request, Urgency
 from selfconf.errors import PeerError
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
+from selfconf.model.wording import sayable
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import End, Known, LogQuestion, Page, Wake
@@ -115,7 +116,7 @@ class Site:
 
     def tell_unable(self, why: Mapping[IRI, str]) -> None:
         """Say from now on with each advertisement why its component cannot act now, if that is so."""
-        self._unable = {component: reason[:MOST_REASON] for component, reason in why.items()}
+        self._unable = {component: sayable(reason)[:MOST_REASON] for component, reason in why.items()}
         self._tell_changed()
 
     def _tell_changed(self) -> None:
@@ -142,7 +143,7 @@ class Site:
             self.keys.advertisement(self.name, component),
             ntriples(advertisement.triples),
             component,
-            str(advertisement.profile.place or ""),
+            sayable(advertisement.profile.place or ""),
             advertisement.profile.command is not None,
             advertisement,
         )

@@ -281,7 +281,7 @@ def test_a_refusal_is_heard_with_its_reason(net: Net, top: str) -> None:
     one, two = net.node(), net.node()
 
     def answer(request: Request) -> None:
-        request.refuse("not today")
+        request.refuse("not today, nor \udcff")
         request.finish()
 
     two.serve(f"{top}/@ctl/apply", answer)
@@ -289,7 +289,7 @@ def test_a_refusal_is_heard_with_its_reason(net: Net, top: str) -> None:
     replies: list[Replies] = []
     one.ask(f"{top}/@ctl/apply", b"", 5.0, replies.append)
     assert net.until(lambda: bool(replies))
-    assert replies == [Replies((), ("not today",), True)]
+    assert replies == [Replies((), ("not today, nor ?",), True)]
 
 
 def test_a_queryable_that_never_finishes_is_not_waited_for_longer_than_asked(net: Net, top: str) -> None:

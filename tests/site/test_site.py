@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,14 @@ def test_every_advertisement_is_one_reply_on_a_key_of_its_own(network: Network, 
     pages = [decode(sample.attachment, Page) for sample in samples]
     assert [page.index for page in pages] == list(range(len(ADVERTISEMENTS)))
     assert {page.total for page in pages} == {len(ADVERTISEMENTS)}
+
+
+def test_a_file_with_a_name_that_is_no_text_is_advertised_like_any_other(network: Network, tmp_path: Path) -> None:
+    file = tmp_path / os.fsdecode(b"sonar-\xff.ttl")
+    write_advertisements(tmp_path, "sonar").joinpath("sonar.ttl").rename(file)
+    serve(network, tmp_path)
+    (sample,) = ask(network, KEYS.advertisements()).samples
+    assert decode(sample.attachment, Page).source.startswith(str(tmp_path / "sonar-?.ttl"))
 
 
 def test_one_advertisement_may_be_asked_for_alone_or_all_come(network: Network, tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from selfconf.model.immutable import immutable, replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.seconds import DELAY_IN_WORDS, is_delay
 from selfconf.model.term import IRI
+from selfconf.model.wording import sayable
 from selfconf.protocol.keys import checked_name, safe_name, task_identity
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import tasks, turtle
@@ -72,7 +73,7 @@ def task_record(task: TaskSpecification, method: Method, how: TaskOptions = AS_U
         priority=task.document.task.priority if how.priority is None else checked_priority(how.priority),
         beginning=time.time(),
         document=turtle.to_turtle(document.triples()),
-        source=document.source,
+        source=sayable(document.source),
         wanted=str(task.document.task.iri or task.iri),
         bindings=dict(task.bindings),
         ontologies=tuple(turtle.in_turtle(*text) for text in method.ontologies),

@@ -74,7 +74,8 @@ class MemoryRequest:
 
     def refuse(self, reason: str) -> None:
         """Reply that it cannot be answered."""
-        self._back(lambda: self._question.replied(None, reason))
+        said = reason.encode(errors="replace").decode()
+        self._back(lambda: self._question.replied(None, said))
 
     def finish(self) -> None:
         """End the answer."""

@@ -60,7 +60,7 @@ class ZenohRequest:
     def refuse(self, reason: str) -> None:
         """Reply that it cannot be answered."""
         if self._query is not None:
-            self._query.reply_err(reason.encode())
+            self._query.reply_err(reason.encode(errors="replace"))
 
     def finish(self) -> None:
         """End the answer."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from io import BytesIO, TextIOWrapper
@@ -124,6 +125,13 @@ def test_a_refusal_is_explained_by_the_ecology_in_which_it_was_found() -> None:
     wanted = sc.configure(task, home)
     assert isinstance(wanted, sc.Refusal)
     assert found[0].near_misses == wanted.near_misses != ()
+
+
+def test_a_template_in_a_file_whose_name_is_no_text_can_be_handed_to_the_sites(tmp_path: Path) -> None:
+    file = tmp_path / os.fsdecode(b"clock-\xff.ttl")
+    file.write_bytes((ROOT / "examples" / "clock" / "tell-the-time.ttl").read_bytes())
+    handed = task_record(sc.template(file).bind(room=":kitchen"), Method.of())
+    assert decode(encode(handed), TaskRecord).source.endswith("clock-?.ttl")
 
 
 def test_a_task_is_named_after_its_template_unless_it_is_told_otherwise() -> None:
