@@ -81,7 +81,7 @@ class PrintedLines:
 
     def note(self, source: str, text: str) -> None:
         """Keep what the site itself has to say of a process."""
-        self._order(_worded("site", source, [text.encode()]))
+        self._order(_worded("site", source, [text.encode(errors="replace")]))
 
     def close(self) -> None:
         """Read and show what is there already, and end."""

@@ -45,6 +45,7 @@ def test_each_line_has_its_time_its_stream_and_its_component(printed: PrintedLin
     say(printed, b"12:00:01\n\n12:00:02\r\nno end", "urn:clock")
     say(printed, b"oh\n", "urn:a,urn:b", "stderr")
     printed.note("urn:clock", "has ended")
+    printed.note("urn:clock", os.fsdecode(b"/h\xf6me is not there"))  # a name of a file that is no UTF-8
     printed.close()
     assert kept(tmp_path) == [
         ("stdout", "urn:clock", "12:00:01"),
@@ -53,6 +54,7 @@ def test_each_line_has_its_time_its_stream_and_its_component(printed: PrintedLin
         ("stdout", "urn:clock", "no end"),
         ("stderr", "urn:a,urn:b", "oh"),
         ("site", "urn:clock", "has ended"),
+        ("site", "urn:clock", "/h?me is not there"),
     ]
 
 
