@@ -193,11 +193,19 @@ def project_problems(name: str, octets: bytes, folder: Path) -> list[Diagnostic]
     for key, setting in PROJECT_KEYS.items():
         if setting.paths and key in body and not setting.wrong(body[key]):
             problems += (
-                _problem(name, octets, lines, (key,), "SC-P05", f"There is no file or folder {text}.")
+                _problem(name, octets, lines, (key,), "SC-P05", wrong)
                 for text in _listed(body[key])
-                if not (folder / text).exists()
+                if (wrong := _unseen(folder, text))
             )
     return problems
+
+
+def _unseen(folder: Path, text: str) -> str:
+    """What keeps the file or folder of a path from being seen, as a sentence; empty if nothing does."""
+    try:
+        return "" if (folder / text).exists() else f"There is no file or folder {text}."
+    except OSError as error:  # a name that is too long, or a folder into which only others may look
+        return f"{text} cannot be read: {error.strerror}."
 
 
 def _examined(name: str, octets: bytes) -> tuple[dict[str, Any], dict[tuple[str, ...], int], list[Diagnostic]]:

@@ -139,6 +139,7 @@ def test_a_stranger_s_file_in_a_folder_of_another_owner_is_passed_over_and_named
         ("[bind.a]\nx = 1\ny = [1]", "3:1 SC-P03", "the parameter 'y'"),
         ('ads = "."\nendpoint = "https://example.org"', "2:1 SC-P04", "two ecologies"),
         ('ads = [\n  ".",\n  "gone"]', "1:1 SC-P05", "no file or folder gone"),
+        (f'ads = "{300 * "a"}"', "1:1 SC-P05", "aaa cannot be read: File name too long."),
     ],
 )
 def test_what_is_wrong_is_found_with_its_place(text: str, place: str, words: str, tmp_path: Path) -> None:
