@@ -13,7 +13,7 @@ role needs more.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from selfconf.model.cost import CostTerm
@@ -26,8 +26,9 @@ from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.budget import Budget
 from selfconf.search.engines import any_by_clauses
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction
+from selfconf.search.reduction import LazyReduction, recruits_that_matter
 from selfconf.search.strategies import best_configuration, solution
+from selfconf.search.supply import Issued
 
 MOST_OF_A_ROLE = 64
 """How many components of one optional role are asked for at most."""
@@ -110,18 +111,32 @@ def _chosen(problem: Problem, optional: Problem, steps: int) -> Counter[int] | U
 def _needed(problem: Problem) -> dict[int, int]:
     """Return the optional roles that may help, by number, with how many of their components could be of use at most.
 
-    Each that is asked for feeds an input that none of the others feeds.
+    Each that is asked for feeds an input that none of the others feeds, of a player or of recruits.
     """
     unvalued = {number for number, _ in problem.unvalued}
     roles = (number for number in range(len(problem.roles)) if number not in unvalued)
     room = {number: some for number in roles if (some := _room(problem, number))}
     inputs = [max((len(c.profile.required) for c in some), default=0) for some in problem.candidates]
+    of_recruits = _needs_of_recruits_fed(problem, room)
     needed = dict.fromkeys(room, 0)
     for _ in room:  # along a chain of optional roles
         slots = [needed.get(number, role.minimum) for number, role in enumerate(problem.roles)]
-        fed = {number: sum(slots[sink] * inputs[sink] for sink in problem.sinks[number]) for number in room}
-        needed = {number: min(room[number], fed[number]) for number in room}
+        of_players = {number: sum(slots[sink] * inputs[sink] for sink in problem.sinks[number]) for number in room}
+        needed = {number: min(room[number], of_players[number] + of_recruits[number]) for number in room}
     return {number: count for number, count in needed.items() if count}
+
+
+def _needs_of_recruits_fed(problem: Problem, roles: Iterable[int]) -> dict[int, int]:
+    """Return for some roles, by number, how many of the signals that recruits need their candidates could issue."""
+    matter = recruits_that_matter(problem) if problem.supply.recruits else ()
+    required = (problem.supply.required[number] for number in matter)
+    wanted = {port.wanted for ports in required for port in ports}
+    found: dict[int, int] = {}
+    for role in roles:
+        issued = Issued(problem.hierarchy)
+        issued.add(role, {output for candidate in problem.candidates[role] for output in candidate.profile.outputs})
+        found[role] = sum(map(issued.serves, wanted))
+    return found
 
 
 def _room(problem: Problem, number: int) -> int:

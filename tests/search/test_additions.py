@@ -10,6 +10,9 @@ from hypothesis import given
 
 from selfconf.composition import Strategy
 from selfconf.composition.searches import Searches
+from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
+from selfconf.model.partition import Recruit
 from selfconf.model.refusal import Undecided
 from selfconf.search import additions
 from selfconf.search.additions import MOST_OF_A_ROLE, asking_for, with_additions
@@ -105,6 +108,28 @@ def test_of_equally_few_the_first_role_is_asked() -> None:
     found = with_additions(given_)
     assert isinstance(found, Problem)
     assert [role.minimum for role in found.roles] == [1, 0, 1]
+
+
+def test_a_role_is_asked_for_of_which_only_recruits_need_what_it_issues() -> None:
+    """It feeds another role as well, which needs nothing of it."""
+    plain = problem(
+        {
+            "many": [component(f"m{k}", outputs=f"o:S{k}") for k in range(3)],
+            "screen": [component("screen")],
+            "user": [component("user", "i:T")],
+        },
+        "many>screen",
+        counts={"many": (0, None)},
+    )
+    roles = tuple(replace(role, recruits=role.iri.short == "user") for role in plain.roles)
+    recruits = (Recruit(component("converter", "a:S0 b:S2", "o:T"), frozenset({2})),)
+    given_ = Problem(
+        replace(plain.task, template=replace(plain.task.template, roles=roles)),
+        replace(plain.partition, recruits=recruits),
+    )
+    *_, answer = Searches(Strategy.FIRST).answers(given_)
+    assert isinstance(answer, Configuration)
+    assert [component.short for component in answer.components] == ["m0", "m2", "screen", "user", "converter"]
 
 
 def test_where_a_role_lacks_candidates_nothing_is_tried() -> None:
