@@ -3,7 +3,7 @@
 A signal is a JSON object with a member for each field; further members are allowed, as a kind of signal below this one
 has more. A field holds one value of its datatype, or, if it is repeated, any number of them in order. JSON has numbers,
 truth values and text: numeric datatypes of XML Schema are checked as numbers (whole ones by their bounds, and as in
-JSON Schema 2.0 is a whole number; floating ones by what a double holds), xsd:boolean as a truth value, dates, times,
+JSON Schema 2.0 is a whole number; all others by what a double holds), xsd:boolean as a truth value, dates, times,
 durations and languages as text that is written as one, every other datatype of XML Schema as text, such as that of
 bytes, which may be long, and a datatype that is of none of these kinds is not checked.
 
@@ -23,7 +23,7 @@ from operator import countOf, eq
 from reprlib import Repr
 from typing import Any, NamedTuple
 
-from selfconf.model.literal_values import DATATYPES, FLOATING, TEXT_PATTERNS, WHOLE_NUMBERS
+from selfconf.model.literal_values import DATATYPES, TEXT_PATTERNS, WHOLE_NUMBERS
 from selfconf.model.term import IRI, XSD_NAMESPACE
 
 _SHORT = Repr()
@@ -174,11 +174,9 @@ def _kind(datatype: IRI) -> _JsonKind:
         bounded = (least, greatest) != (None, None)
         low, high = -math.inf if least is None else least, math.inf if greatest is None else greatest
         return _JsonKind(frozenset((int,)), bounded, low, high, _is_whole)
-    if datatype in FLOATING:
+    if datatype in DATATYPES:
         return _JsonKind(frozenset((int, float)), True, -sys.float_info.max, sys.float_info.max, _is_number, True)
     unbounded = (False, -math.inf, math.inf)
-    if datatype in DATATYPES:
-        return _JsonKind(frozenset((int, float)), *unbounded, _is_number)
     if datatype == XSD_NAMESPACE + "boolean":
         return _JsonKind(frozenset((bool,)), *unbounded, lambda value: isinstance(value, bool))
     if datatype in TEXT_PATTERNS:

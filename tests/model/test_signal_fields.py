@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.model.literal_values import DATATYPES, FLOATING, WHOLE_NUMBERS
+from selfconf.model.literal_values import DATATYPES, WHOLE_NUMBERS
 from selfconf.model.signal_fields import SignalField, SignalFields
 from selfconf.model.term import IRI, XSD_NAMESPACE
 
@@ -77,6 +77,16 @@ def test_a_value_with_all_its_fields_is_right(more: dict[str, Any]) -> None:
 )
 def test_what_is_wrong_with_a_value_is_said(value: object, words: str) -> None:
     assert words in (SCAN.problem(value) or "")
+
+
+@pytest.mark.parametrize("repeated", [False, True])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 10**400])
+def test_a_decimal_is_a_number_that_a_double_holds_too(value: float, repeated: bool) -> None:
+    level = SignalFields(
+        IRI("urn:signals#Level"), (SignalField("level", IRI(XSD_NAMESPACE + "decimal"), True, repeated),)
+    )
+    assert "xsd:decimal" in (level.problem({"level": [1.5, value] if repeated else value}) or "")
+    assert level.problem({"level": [1.5, 2] if repeated else 2}) is None
 
 
 def test_what_a_stranger_writes_does_not_make_a_problem_long() -> None:
@@ -171,7 +181,7 @@ def is_of(value: object, datatype: IRI) -> bool:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     if datatype not in WHOLE_NUMBERS:
-        return datatype not in FLOATING or abs(value) <= sys.float_info.max
+        return abs(value) <= sys.float_info.max
     least, greatest = WHOLE_NUMBERS[datatype]
     whole = math.isfinite(value) and value == math.floor(value)
     return whole and (least is None or value >= least) and (greatest is None or value <= greatest)
