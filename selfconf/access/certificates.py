@@ -158,8 +158,9 @@ class Certificate:
         return min(self.begins + CLOCKS_DIFFER, self.ends)
 
     def half_over(self, now: datetime | None = None) -> bool:
-        """Whether more than half of its time has passed: time to renew it."""
-        return (now or _now()) > self.issued + (self.ends - self.issued) / 2
+        """Whether it is time to renew it: half of its time has passed, or none, as the clock of its host was ahead."""
+        now = now or _now()
+        return now < self.begins or now > self.issued + (self.ends - self.issued) / 2
 
     def belongs_to(self, key: Key) -> bool:
         """Whether it is the certificate of a private key."""

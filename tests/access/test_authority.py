@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -52,6 +53,20 @@ def test_what_is_half_over_is_renewed_by_itself(authority: Authority, monkeypatc
     monkeypatch.setattr(certificates.Certificate, "half_over", lambda self: True)
     authority.credentials((SITE,), "attic")
     assert serial() != first
+
+
+def test_what_was_issued_while_the_clock_was_ahead_is_made_anew(
+    authority: Authority, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on a board without a clock of its own: until then it would not be valid, however long that is."""
+    now = certificates._now()
+    monkeypatch.setattr(certificates, "_now", lambda: now + timedelta(days=1000))
+    before = KeysFolder(authority.credentials((CONF,)).certificate.parent).own()
+    monkeypatch.setattr(certificates, "_now", lambda: now)
+    assert before.untimely()
+    after = KeysFolder(authority.credentials((CONF,)).certificate.parent).own()
+    assert not after.untimely()
+    assert after.common_name == before.common_name
 
 
 def test_who_is_revoked_is_admitted_no_more_and_gets_no_new_certificate(authority: Authority, tmp_path: Path) -> None:
