@@ -35,7 +35,7 @@ Every command that prints results takes `--format json`. What it prints then is 
 [JSON Schema](https://json-schema.org) (draft 2020-12) in [`docs/schemas`](schemas) and shipped with the package, where
 `selfconf.library.schemas()` lists the files. A member that is not listed here does not occur; one that is optional says
 so. Sentences (`message`, `obstacle`, `hint`) are for people and may be reworded; programs go by `status`, `act` and
-`code`.
+`code`. The text is UTF-8, in which letters of every script stand as they are.
 
 A schema refers to others by relative references, so a validator needs all of them at hand:
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, joined
-from selfconf.cli.terminal import complain
+from selfconf.cli.terminal import complain, display_json
 from selfconf.errors import AuthorError
 from selfconf.model.wording import client_text, utc_text
 
@@ -45,7 +44,7 @@ def run(given: argparse.Namespace) -> int:
         if not sites:
             raise AuthorError("no site of the ecology has keys: everybody who reaches it may do everything")
         if given.format == "json":
-            print(json.dumps({"sites": [_body(site) for site in sites]}, indent=2))
+            display_json({"sites": [_body(site) for site in sites]})
         else:
             for site in sites:
                 _tell(site)
@@ -75,7 +74,7 @@ def _task(given: argparse.Namespace, ecology: LivingEcology) -> int:
     for one in ecology.complaints:
         complain(one)
     if given.format == "json":
-        print(json.dumps({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]}))
+        display_json({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]})
         return 0
     for component, heard in links.items():
         print(f"{component!r} hears {', '.join(map(repr, heard)) or 'no component'}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import gc
-import json
 from collections.abc import Iterable
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,7 @@ from selfconf.cli.options import (
     task_of,
 )
 from selfconf.cli.progress import progress
-from selfconf.cli.terminal import complain, display
+from selfconf.cli.terminal import complain, display, display_json
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer
@@ -73,7 +72,7 @@ def run(given: argparse.Namespace) -> int:
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
         complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")
     if given.format == "json":
-        display(json.dumps(_body(inquiry, answer), indent=2, ensure_ascii=False))
+        display_json(_body(inquiry, answer))
     elif isinstance(answer, Undecided):
         complain(undecided_text(answer, task.iri, task.names))
     else:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
-from selfconf.cli.terminal import styled_state
+from selfconf.cli.terminal import display_json, styled_state
 
 if TYPE_CHECKING:
     from selfconf.api.living.component_states import ComponentState
@@ -36,7 +35,7 @@ def run(given: argparse.Namespace) -> int:
         complain_of(ecology)
     if given.format == "json":
         body = {"ecology": ecology.name, "components": [one.body() for one in states], "sites": discovery.sites}
-        print(json.dumps({**body, "missing": discovery.missing}, indent=2))
+        display_json({**body, "missing": discovery.missing})
         return 0
     print(_table(states))
     for line in _sentences(states, disobedient):

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_format_argument, domain
-from selfconf.cli.terminal import complain
+from selfconf.cli.terminal import complain, display_json
 from selfconf.errors import AuthorError
 from selfconf.model.wording import listed
 
@@ -66,7 +65,7 @@ def run(given: argparse.Namespace) -> int:
     if not report.files and not report.unreadable:
         complain(f"selfconf import: {_looked_for(given)}")
     if given.format == "json":
-        print(json.dumps(_body(report), indent=2, ensure_ascii=False))
+        display_json(_body(report))
     else:
         _print_table(report)
     return 2 if report.unreadable else 0 if report.files else 1

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_keys_argument
 from selfconf.cli.parsing import add_parser
+from selfconf.cli.terminal import display_json
 from selfconf.errors import AuthorError
 from selfconf.model.wording import utc_text
 
@@ -133,7 +133,7 @@ def _show(given: argparse.Namespace) -> int:
         _described(one, folder) for one in (folder.issued() if isinstance(folder, Authority) else [folder.pair()[0]])
     ]
     if given.format == "json":
-        print(json.dumps({"authority": folder.is_authority, "certificates": shown}, indent=2))
+        display_json({"authority": folder.is_authority, "certificates": shown})
     else:
         print(f"{given.folder}: {'an authority' if folder.is_authority else 'keys of a holder'}")
         for one in shown:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import gc
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
@@ -20,7 +19,7 @@ from selfconf.cli.options import (
     task_of,
 )
 from selfconf.cli.progress import progress
-from selfconf.cli.terminal import display
+from selfconf.cli.terminal import display, display_json
 from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
@@ -84,7 +83,7 @@ def run(given: argparse.Namespace) -> int:
         with progress("computing what configurations with each candidate would cost"):
             why = alternatives(inquiry)
     if given.format == "json":
-        display(json.dumps(_body(found, why), indent=2, ensure_ascii=False))
+        display_json(_body(found, why))
     else:
         display("\n".join(line for one in found.roles for line in _lines(one, found.names, why, bool(inquiry.holders))))
     return 0 if found.sufficient else 1

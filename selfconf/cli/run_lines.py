@@ -151,4 +151,4 @@ def json_lines(event: RunEvent) -> None:
     """Reports an event to programs: a JSON object on a line of stdout. Raises OSError if it cannot be written."""
     from selfconf.render.run_events import event_body
 
-    print(json.dumps(event_body(event)), flush=True)
+    print(json.dumps(event_body(event), ensure_ascii=False), flush=True)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 from selfconf.cli.tasks import code_of_tasks
-from selfconf.cli.terminal import STATE_COLOURS, complain, paint
+from selfconf.cli.terminal import STATE_COLOURS, complain, display_json, paint
 from selfconf.model.term import IRI
 from selfconf.model.wording import one_line
 
@@ -39,7 +39,7 @@ def run(given: argparse.Namespace) -> int:
         code = code_of_tasks(ecology)
     if given.format == "json":
         bodies = [_body(status, deployed.get(status.configurator, {})) for status in found]
-        print(json.dumps(bodies, indent=2, ensure_ascii=False))
+        display_json(bodies)
         return code
     if not found and not code:
         print(f"nothing is deployed in ecology {ecology.name}")

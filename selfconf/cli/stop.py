@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
+from selfconf.cli.terminal import display_json
 
 EXAMPLE = """  selfconf stop"""
 
@@ -26,7 +26,7 @@ def run(given: argparse.Namespace) -> int:
         found = ecology.stop(given.task if given.task is not None else given.configurator)
         complain_of(ecology)
     if given.format == "json":
-        print(json.dumps({"ecology": ecology.name, "stopped": found}, indent=2))
+        display_json({"ecology": ecology.name, "stopped": found})
         return 0
     where = f"in ecology {ecology.name}"
     print(f"took down {', '.join(found)} {where}" if found else f"nothing is deployed {where}")

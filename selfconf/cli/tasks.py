@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
+from selfconf.cli.terminal import display_json
 
 if TYPE_CHECKING:
     from selfconf.api.living.living_ecology import LivingEcology
@@ -31,7 +31,7 @@ def run(given: argparse.Namespace) -> int:
         complain_of(ecology)
         code = code_of_tasks(ecology)
     if given.format == "json":
-        print(json.dumps([task.body() for task in found], indent=2))
+        display_json([task.body() for task in found])
     elif found:
         rows = [
             [

@@ -10,6 +10,7 @@ Nor does what a command comes to depend on its readers: one may have seen enough
 from __future__ import annotations
 
 import io
+import json
 import os
 import re
 import secrets
@@ -120,6 +121,11 @@ def display(text: str, stream: TextIO | None = None, end: str = "\n") -> None:
         print(text, end=end, file=stream, flush=True)
     except BrokenPipeError:
         silence(stream)
+
+
+def display_json(body: object) -> None:
+    """Print a result for programs, as indented JSON in which letters are letters, of whatever script."""
+    display(json.dumps(body, indent=2, ensure_ascii=False))
 
 
 def complain(sentence: str) -> None:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined, seconds_option
-from selfconf.cli.terminal import Terminal, complain, display, styled_state
+from selfconf.cli.terminal import Terminal, complain, display, display_json, styled_state
 from selfconf.errors import NetworkError
 
 if TYPE_CHECKING:
@@ -54,7 +53,7 @@ def run(given: argparse.Namespace) -> int:
                 rates = _rates(before, now, moment - looked)
                 if given.format == "json":
                     body = [{**one.body(), "rates": rates[one.component]} for one in now]
-                    display(json.dumps({"ecology": ecology.name, "components": body}, indent=2))
+                    display_json({"ecology": ecology.name, "components": body})
                     complain_of(ecology)
                     return 0
                 shown = _table(ecology, now, rates)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
+from selfconf.cli.terminal import display_json
 from selfconf.model.moments import parsed_moment
 
 EXAMPLE = """  selfconf why position
@@ -56,7 +56,7 @@ def run(given: argparse.Namespace) -> int:
 def _tell(given: argparse.Namespace, sentences: Sequence[str], where: str) -> int:
     """Print the answer, and return the exit code."""
     if given.format == "json":
-        print(json.dumps({"term": given.term, "at": given.at, "sentences": list(sentences)}, indent=2))
+        display_json({"term": given.term, "at": given.at, "sentences": list(sentences)})
     elif sentences:
         print("\n".join(sentences))
     else:

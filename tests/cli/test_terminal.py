@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.cli.main import main
-from selfconf.cli.terminal import Terminal, display, guard, in_colour, paint, plain
+from selfconf.cli.terminal import Terminal, display, display_json, guard, in_colour, paint, plain
 from tests.harness.frozen import nothing_frozen
 from tests.lab import PREFIXES
 
@@ -60,6 +60,11 @@ def test_what_nobody_reads_ends_nothing_and_what_cannot_be_encoded_is_escaped(mo
         display("and yet more")
         with sys.stderr as nowhere:
             display("nothing", nowhere)
+
+
+def test_letters_of_every_script_are_letters_in_json(capsys: pytest.CaptureFixture[str]) -> None:
+    display_json({"lämp": ["灯"]})
+    assert capsys.readouterr().out == '{\n  "lämp": [\n    "灯"\n  ]\n}\n'
 
 
 def test_what_programs_read_is_utf_8_whatever_the_terminal_would_have(
