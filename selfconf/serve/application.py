@@ -168,8 +168,8 @@ def _without_port(host: str) -> str:
 
 
 async def _client_gone(_: Request, error: Exception) -> Response:
-    """The client has gone in the middle of its request, which is no fault of this server: the answer is not read."""
-    return problem(400, "the request was not sent in full")
+    """The client has gone before it was answered, which is no fault of this server: the answer is not read."""
+    return problem(400, "the client has not waited for the answer")
 
 
 async def _refused(_: Request, error: Exception) -> Response:

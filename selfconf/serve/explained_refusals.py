@@ -19,6 +19,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
 from selfconf.serve.board import Board
+from selfconf.serve.disconnection import unless_gone
 from selfconf.serve.judging_process import judged_apart
 from selfconf.serve.problems import problem
 from selfconf.serve.watching.change import Body
@@ -44,12 +45,17 @@ class ExplainedRefusals:
         task = request.query_params.get("task", "")
         if not self._board.knows(task):
             return problem(404, "there is no task of this identity; /mend?task=IDENTITY takes one of /state")
+        body = await unless_gone(request, self._explained(task))
+        return Response(json.dumps(body, ensure_ascii=False), media_type="application/json")
+
+    async def _explained(self, task: str) -> Body | None:
+        """The refusal of a task, as its configurator explains it or as is found here; or why there is none."""
         body = await self._told(task)
         if body is None:
             record = self._board.record(task)
             told = {"detail": "its configurator has not told its task"}
             body = told if record is None else await self._found(task, record)
-        return Response(json.dumps(body, ensure_ascii=False), media_type="application/json")
+        return body
 
     async def _told(self, task: str) -> Body | None:
         """The refusal as the configurator of a task explains it, which it may do soon; None if it does not."""

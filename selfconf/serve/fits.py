@@ -21,6 +21,7 @@ from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.serve.board import Board
+from selfconf.serve.disconnection import unless_gone
 from selfconf.serve.judging_process import judged_apart
 from selfconf.serve.problems import problem
 
@@ -45,14 +46,19 @@ class Fits:
         found = self._board.advertised.get(IRI.unchecked(request.query_params.get("component", "")))
         if found is None:
             return problem(404, "no component of this IRI is advertised; /fit?component=IRI takes one of /things")
+        tasks = await unless_gone(request, self._verdicts_on(found.advertisement))
+        return Response(json.dumps({"tasks": tasks}, ensure_ascii=False), media_type="application/json")
+
+    async def _verdicts_on(self, advertisement: Advertisement) -> dict[str, Any]:
+        """For each task that runs, by its identity, what its roles say of a component."""
         tasks = {}
         for task in self._board.running()[:MOST_JUDGED]:
             record = self._board.record(task)
             if record is not None:
-                verdict = await self._verdict(record, found.advertisement)
+                verdict = await self._verdict(record, advertisement)
                 body = {"roles": verdict} if isinstance(verdict, list) else verdict
                 tasks[task] = {"name": task_name(task), **body}
-        return Response(json.dumps({"tasks": tasks}, ensure_ascii=False), media_type="application/json")
+        return tasks
 
     async def _verdict(self, record: TaskRecord, advertisement: Advertisement) -> Any:
         """A list of roles, or an object that says why there is none."""

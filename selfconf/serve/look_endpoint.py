@@ -49,6 +49,8 @@ class Onlookers:
         return streamed(request, self._stream(found))
 
     async def _stream(self, found: FoundAdvertisement) -> AsyncIterator[bytes]:
+        if len(self._queues) >= MOST_LOOKS:
+            return  # of many that came at the same moment this is one too many; its browser asks again
         loop, queue = asyncio.get_running_loop(), asyncio.Queue[_Told]()
 
         def put(told: _Told) -> None:

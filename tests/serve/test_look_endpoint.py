@@ -58,6 +58,17 @@ def test_no_more_may_look_than_the_ecology_can_bear_and_those_who_go_make_room(b
     asyncio.run(play())
 
 
+def test_of_many_that_come_at_the_same_moment_no_more_may_look_either(board: Board) -> None:
+    async def play() -> None:
+        onlookers = Onlookers(Network().node(), board)
+        responses = [await onlookers.respond(Request(SCOPE)) for _ in range(MOST_LOOKS + 3)]
+        streams = [cast(StreamingResponse, response).body_iterator for response in responses]
+        firsts = [await anext(cast(AsyncGenerator[bytes, None], stream), b"") for stream in streams]
+        assert firsts.count(b"") == 3
+
+    asyncio.run(play())
+
+
 def test_only_what_is_advertised_can_be_looked_at(board: Board) -> None:
     for path in ("/look", "/look?component=urn:nobody", "/fit", "/fit?component=urn:nobody"):
         answer = ask(served(board), path)

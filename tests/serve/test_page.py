@@ -316,6 +316,18 @@ def test_what_is_inside_of_a_composite_is_a_task_below_the_one_that_holds_it(
     page.click("eyes", ".detail button")
 
 
+def test_a_component_that_is_advertised_anew_is_looked_at_anew(shown: Callable[[Board], Shown]) -> None:
+    board, one = Board("anew", Metrics()), advertised("tracker")
+    ((component, body),) = one.components.items()
+    assert body is not None
+    board.apply(one)
+    page, change = shown(board)
+    page.click("person-tracker", "#components button")
+    page.says(".signals", "pose")
+    change(replace(one, components={component: {**body, "outputs": [{"name": "place", "signals": []}]}}))
+    page.says(".signals", "place")
+
+
 def test_a_thousand_components_are_grouped_and_found(
     shown: Callable[[Board], Shown],
 ) -> None:

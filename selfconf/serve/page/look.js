@@ -23,7 +23,7 @@ function fields(text) {
 }
 
 export class Look {
-  #stream = null; #iri = ""; #signals = new Map(); #lines = []; #trouble = ""; #number = 0;
+  #stream = null; #iri = ""; #about = ""; #signals = new Map(); #lines = []; #trouble = ""; #number = 0;
   /** The elements, which stay, so that neither focus nor scrolling is lost. */
   signals = h("ul", { class: "signals" });
   log = h("ol", { class: "log", tabindex: 0, "aria-label": "What it has printed" });
@@ -33,11 +33,12 @@ export class Look {
     setInterval(() => this.#iri && this.#showSignals(), 1000);  // so that their ages grow
   }
 
-  /** Look at a component with these outputs; an empty IRI: at none. */
-  show(iri, outputs) {
-    if (iri === this.#iri) return;
-    this.#iri = iri;
-    this.#signals = new Map(outputs.map((port) => [port.name, null]));
+  /** Look at a component, anew where it is advertised with other outputs or by another site; an empty IRI: at none. */
+  show(iri, body) {
+    const about = JSON.stringify(iri && [iri, body.site, body.outputs]);
+    if (about === this.#about) return;
+    [this.#iri, this.#about] = [iri, about];
+    this.#signals = new Map(iri ? body.outputs.map((port) => [port.name, null]) : []);
     [this.#lines, this.#trouble] = [[], ""];
     this.#stream?.close();
     this.#stream = null;

@@ -175,7 +175,7 @@ let asked = "", detailSays = "";
 export function showDetail(model, iri, select, chooseTask, look, fits) {
   const place = by("detail"), one = model.components.get(iri), live = model.at === null;
   place.classList.toggle("open", Boolean(iri));
-  look.show(one && live ? iri : "", one?.outputs ?? []);
+  look.show(one && live ? iri : "", one);
   fits.show(one && live ? iri : "", one, model.tasksSeen());
   if (!iri) {
     asked = detailSays = "";

@@ -6,8 +6,6 @@ import asyncio
 import contextlib
 import socket
 import time
-from collections.abc import Coroutine
-from typing import Any
 
 from starlette.requests import Request
 from starlette.responses import Response
@@ -15,6 +13,7 @@ from starlette.types import Receive, Scope, Send
 
 from selfconf.errors import NetworkError, NotAcceptableError, ProgrammerError, QueryError, QueryTimeoutError
 from selfconf.query import RESULT_TYPES, TRIPLE_TYPES, StandingDataset, StandingQuestion, outcome
+from selfconf.serve.disconnection import unless_gone
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.negotiation import acceptable
 from selfconf.serve.problems import problem
@@ -89,7 +88,7 @@ class SparqlEndpoint:
         try:
             async with contextlib.AsyncExitStack() as held:
                 await held.enter_async_context(self._free)
-                received = await _unless_gone(request, self._received(question))
+                received = await unless_gone(request, self._received(question))
                 kind, answer = outcome(received, question)
                 until_sent = held.pop_all()
         except (QueryError, NetworkError, ProgrammerError) as error:
@@ -117,29 +116,13 @@ class SparqlEndpoint:
 
 def _close_line(begun: asyncio.Future[socket.socket]) -> None:
     """Close the socket of a question that was begun in vain, which ends the query."""
-    if begun.exception() is None:
+    if not begun.cancelled() and begun.exception() is None:  # the server may have ended meanwhile
         begun.result().close()
 
 
 def _endpoint(request: Request) -> str:
     """The URL at which a request found the endpoint."""
     return str(request.url.replace(query="", fragment=""))
-
-
-async def _unless_gone(request: Request, work: Coroutine[Any, Any, bytes]) -> bytes:
-    """Do some work for a client; it is broken off, and its result empty, if the client hangs up."""
-
-    async def gone() -> None:
-        while (await request.receive())["type"] != "http.disconnect":
-            pass
-
-    both = asyncio.create_task(work), asyncio.create_task(gone())
-    try:
-        await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
-        return both[0].result() if both[0].done() else b""
-    finally:
-        for task in both:
-            task.cancel()
 
 
 async def _read(line: socket.socket) -> bytes:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import logging
 import time
-from bisect import bisect_left, insort
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -133,25 +133,41 @@ class History:
 
     def _note(self, graph: str, triples: bytes) -> dict[str, bytes]:
         quads = list(ox.parse(triples, format=ox.RdfFormat.N_TRIPLES))
-        name = _configuration(quads)
+        name, before = _configuration(quads), self._current.get(graph)
+        if name == before:
+            return {}
+        over: dict[str, bytes] = {}
         if name is not None and self._has_ended(name):
-            return {}  # told late: another has taken its place already
-        before = self._current.get(graph)
-        ended = "" if before is None or before == name else before
-        is_new = name is not None and not any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name)))
-        added = [*self._end(graph, ended, replaced=name is not None)] if ended else []
-        if name is not None and is_new:
-            added += [ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads]
+            if before is not None:
+                return {}  # told late: another has taken its place already
+            self._forget(self._generated(name), name)  # only the way to its configurator was gone, or another goes on
+            over = {name: b""}
+        added = self._added(name, quads)
+        ends = before is not None and list(self._current.values()).count(before) == 1
+        if before is not None and ends:
+            added += self._end(graph, before, replaced=name is not None)
         self._store.extend(added)  # all of it or nothing: where this fails, nothing has changed
-        if ended:
-            del self._current[graph]
-            self._losses.pop(graph, None)
-        if name is not None:
-            self._current[graph] = name
-            if is_new:
-                insort(self._in_order, (self._generated(name), name))
-        over = {ended: self._triples(ended)} if ended else {}
-        return over | (self._forget_oldest() if is_new else {})
+        self._current.pop(graph, None)
+        self._losses.pop(graph, None)
+        if before is not None and ends:
+            over[before] = self._triples(before)
+        return over | (self._deployed(graph, name) if name is not None else {})
+
+    def _added(self, name: str | None, quads: Iterable[ox.Quad]) -> list[ox.Quad]:
+        """What is to be kept of a configuration of which nothing is; nothing of one that is, or is none."""
+        if name is None or any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))):
+            return []
+        return [ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads]
+
+    def _deployed(self, graph: str, name: str) -> dict[str, bytes]:
+        """Note which configuration a graph states; return what is forgotten, as it is one too many."""
+        self._current[graph] = name
+        entry = self._generated(name), name
+        place = bisect_left(self._in_order, entry)
+        if self._in_order[place : place + 1] == [entry]:
+            return {}
+        self._in_order.insert(place, entry)
+        return self._forget_oldest()
 
     def _end(self, graph: str, name: str, replaced: bool) -> Iterator[ox.Quad]:
         """The end of a configuration, now; with what has failed in it, where no other one has replaced it."""
@@ -186,9 +202,12 @@ class History:
         oldest = self._in_order[: max(old, len(self._in_order) - MOST_KEPT)]
         over = [entry for entry in oldest if entry[1] not in current]
         for entry in over:
-            self._store.remove_graph(ox.NamedNode(entry[1]))
-            self._in_order.remove(entry)
+            self._forget(*entry)
         return {name: b"" for _, name in over}
+
+    def _forget(self, generated: str, name: str) -> None:
+        self._store.remove_graph(ox.NamedNode(name))
+        self._in_order.remove((generated, name))
 
     def _names(self) -> list[str]:
         return [graph.value for graph in self._store.named_graphs() if isinstance(graph, ox.NamedNode)]

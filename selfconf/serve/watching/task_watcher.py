@@ -112,6 +112,8 @@ class TaskWatcher:
         name = owner_of(key)
         if alive:
             self._leaving.discard(name)
+            if name in self._over:  # only the way to it was gone
+                self._over.remove(name)
             self._task(name).alive = True
             self._ask_all(name)
             self._ask_task(name)

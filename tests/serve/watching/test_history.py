@@ -16,7 +16,7 @@ from selfconf.serve.watching import history
 from selfconf.serve.watching.history import DEPLOYED, History
 from tests.lab import Lab, iri
 
-GRAPH = DEPLOYED + "lab/conf/c1/cfg"
+GRAPH, OTHER_GRAPH = DEPLOYED + "lab/conf/c1/cfg", DEPLOYED + "lab/conf/c2/cfg"
 
 
 def told(number: int) -> bytes:
@@ -44,6 +44,25 @@ def test_a_configuration_that_is_told_after_its_end_has_ended_once(tmp_path: Pat
         kept.note({GRAPH: told(number)})
     ends = {name: triples.count(b"invalidatedAtTime") for name, triples in kept.past().items()}
     assert ends == {"urn:c:1": 1, "urn:c:2": 1, "urn:c:3": 0}
+
+
+def test_a_configuration_that_is_deployed_again_after_its_end_runs(tmp_path: Path) -> None:
+    kept = History(tmp_path)
+    kept.note({GRAPH: told(1)})
+    assert list(kept.note({GRAPH: b""})) == ["urn:c:1"]  # as where the server was cut off for a while
+    assert kept.note({GRAPH: told(1)}) == {"urn:c:1": b""}, "it is none of the past any more"
+    assert b"invalidatedAtTime" not in kept.past()["urn:c:1"]
+    assert b"invalidatedAtTime" in kept.note({GRAPH: told(2)})["urn:c:1"]
+
+
+@pytest.mark.parametrize("first", [OTHER_GRAPH, GRAPH], ids=["told before the end", "told after it"])
+def test_a_configuration_with_which_another_configurator_goes_on_has_not_ended(tmp_path: Path, first: str) -> None:
+    kept = History(tmp_path)
+    kept.note({GRAPH: told(1)})
+    for graph in (first, GRAPH if first is OTHER_GRAPH else OTHER_GRAPH):
+        kept.note({graph: told(1) if graph is OTHER_GRAPH else b""})
+    assert b"invalidatedAtTime" not in kept.past()["urn:c:1"]
+    assert list(kept.note({OTHER_GRAPH: b""})) == ["urn:c:1"]
 
 
 def test_where_nothing_takes_its_place_a_configuration_says_which_of_its_components_failed(tmp_path: Path) -> None:

@@ -106,6 +106,24 @@ def test_a_configurator_that_comes_back_at_once_was_never_gone(lab: Lab) -> None
     assert tasks.phases() == ["running"]
 
 
+def test_a_configurator_that_comes_back_later_is_not_forgotten_with_those_that_have_ended(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(task_watcher, "ENDED_TASKS", 2)
+    tasks = Tasks(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    for alive in (False, True):  # as where this node was cut off for a while
+        tasks.watcher._configurator_changed(lab.keys.configurator_life(agent.name, "1"), alive)
+        lab.let_pass(1.0)
+    for name in ("c1", "c2"):
+        for alive in (True, False):
+            tasks.watcher._configurator_changed(lab.keys.configurator_life(name, "1"), alive)
+        lab.let_pass(1.0)
+    assert sorted(tasks.phases()) == ["gone", "gone", "running"]
+
+
 def test_a_configuration_that_is_replaced_before_it_is_handed_on_is_handed_on_before_the_other(lab: Lab) -> None:
     tasks = Tasks(lab)
     agent = lab.agent()
