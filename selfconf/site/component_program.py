@@ -118,6 +118,7 @@ class ComponentProgram:
         """
         self._asked.add(profile.component)
         self._profiles = {one.component: one for one in (profile, *sharing)}
+        self._asked.intersection_update(self._profiles)  # one may have been given another command since
         if self.running:
             self._follow_lives()
             return

@@ -152,6 +152,28 @@ def test_whoever_asks_for_a_program_again_and_again_leaves_it_its_pauses_after_t
         assert live(network, lambda number=number: len(runs(tmp_path)) == number + 1)
 
 
+def test_a_component_that_has_another_command_by_now_is_not_said_to_have_ended_with_the_program_of_before(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made, heard = site(python(NUMBERED), "left", "right"), fails(network)
+    made.start(iri("left"))
+    shared = made.processes.by_component[iri("left")]
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    dormant(tmp_path / "here", python(NUMBERED + "; 0"), "left")
+    assert live(network, lambda: made.shelf.advertisements[iri("left")].profile.command != shared.command)
+    ended: list[bool] = []
+    made.processes.end(iri("left"), "", lambda: ended.append(True))
+    assert live(network, lambda: bool(ended))
+    made.start(iri("left"))
+    made.start(iri("right"))
+    assert made.processes.by_component[iri("left")] is not shared is made.processes.by_component[iri("right")]
+    assert live(network, lambda: len(runs(tmp_path)) == 3)
+    assert shared.group is not None
+    os.kill(shared.group.number, signal.SIGKILL)
+    assert live(network, lambda: bool(heard))
+    assert [fail.component for fail in heard] == [iri("right")]
+
+
 def test_a_program_that_crashes_too_often_is_given_up(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:
