@@ -131,7 +131,8 @@ def _lack(sources: tuple[IRI, ...], optional: tuple[IRI, ...], none_issues: str,
     """Why an input is not fed: `none_issues` is said of the sources that ask for at least one component."""
     asked = [source.short for source in sources if source not in optional]
     said = [none_issues.format(listed(asked))] if asked else [] if optional else [no_role]
-    said += [f"the role {role.short} asks for no component (sc:minCount 0)" for role in optional]
+    # Where to ask such a role for components made a configuration possible, there would be one.
+    said += [f"what could serve it cannot play the optional role {role.short} (sc:minCount 0)" for role in optional]
     return ", and ".join([*said, *(["no recruit that can be fed itself does"] if recruits and sources else [])])
 
 

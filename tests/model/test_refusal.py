@@ -55,7 +55,10 @@ WORDED: list[tuple[Reason, str]] = [
     ),
     (
         InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,), optional=(EYE,)),
-        "the input 'picture' (Image) of cap cannot be fed: the role eye asks for no component (sc:minCount 0)",
+        (
+            "the input 'picture' (Image) of cap cannot be fed: "
+            "what could serve it cannot play the optional role eye (sc:minCount 0)"
+        ),
     ),
     (
         InputUnfed(MIND, CAP, "photo()", needed_operation("photo", None, IMAGE).wanted, (EYE,)),

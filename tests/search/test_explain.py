@@ -9,6 +9,8 @@ from hypothesis import given
 
 import selfconf
 from benchmarks.search.further_families import pigeonholes
+from selfconf.composition import Strategy
+from selfconf.composition.searches import Searches
 from selfconf.model.refusal import InputUnfed, MisnamedPort, Refusal
 from selfconf.search import explain
 from selfconf.search.problem import Problem
@@ -114,17 +116,21 @@ def test_a_component_that_cannot_play_for_another_cause_is_not_counted() -> None
 
 
 def test_a_source_with_a_minimum_of_zero_is_not_said_to_issue_nothing() -> None:
+    """Nor that it was not asked for a component: it was, and what issues the signal cannot be fed itself."""
     given_ = problem(
         {
-            "sonar": [component("ring", outputs="scan:RangeScan")],
+            "sonar": [component("ring", "power:Power", "scan:RangeScan")],
             "bumper": [component("skirt", outputs="o:Bump")],
             "control": [component("cap", "scan:RangeScan", "v:Velocity")],
         },
         "sonar>control bumper>control",
         {"sonar": (0, 1)},
     )
-    (reason,) = first.search(given_).reasons
-    cause = "no candidate of bumper issues a RangeScan for it, and the role sonar asks for no component (sc:minCount 0)"
+    *_, answer = Searches(Strategy.FIRST).answers(given_)
+    assert isinstance(answer, Refusal)
+    (reason,) = answer.reasons
+    nothing, unplayed = "no candidate of bumper issues a RangeScan for it", "cannot play the optional role sonar"
+    cause = f"{nothing}, and what could serve it {unplayed} (sc:minCount 0)"
     assert str(reason) == f"the input 'scan' (RangeScan) of cap cannot be fed: {cause}"
 
 
