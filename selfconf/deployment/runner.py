@@ -441,6 +441,7 @@ class TaskRunner:
             self._record.close()
             self._notices.close()
             self.ecology.unfollow()
+            self._search.abandon()
             self.request.abandon()
             self.request.ended(effect.refusal)
 

@@ -102,6 +102,10 @@ class TaskSearch:
 
         self._outdated = self._request.aside(work)
 
+    def abandon(self) -> None:
+        """End the search that was begun last, as its task has ended: other work may wait for that."""
+        self._outdated()
+
     def prepare(self) -> None:
         """Find out, when there is time, what the search will answer if one of the components that run is lost."""
         state = self._state()

@@ -43,6 +43,21 @@ def test_a_search_that_breaks_ends_the_task_which_says_so(lab: Lab) -> None:
     assert lab.active() == set()
 
 
+def test_a_search_is_abandoned_when_its_task_ends(lab: Lab) -> None:
+    searches, abandoned = list[Callable[[], None]](), list[Callable[[], None]]()
+
+    def aside(work: Callable[[], None]) -> Undo:
+        searches.append(work)
+        return partial(abandoned.append, work)
+
+    agent = lab.agent()
+    agent._search._request = replace(agent.request, aside=aside)
+    assert lab.until(lambda: bool(searches))
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    assert abandoned == searches
+
+
 def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> None:
     searches, abandoned = list[Callable[[], None]](), list[Callable[[], None]]()
 

@@ -125,7 +125,7 @@ class LivingTasks:
             try:
                 self._keep(record)
             except NetworkError:
-                with suppress(NetworkError):  # a site that cannot keep it on its disk may have it in mind
+                with suppress(NetworkError):  # a site may have taken it whose answer was lost
                     self._end_record(record)
                 raise
             self._settle(record)
