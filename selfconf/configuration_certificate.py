@@ -15,7 +15,7 @@ from selfconf.model.configuration import Configuration, Connection, ParameterSet
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.partition import Candidate, Partition
 from selfconf.model.profile import Input, Output, Profile
-from selfconf.model.template import Task
+from selfconf.model.template import Role, Task
 from selfconf.model.term import IRI, Term
 
 Players = Mapping[IRI, Sequence[Candidate]]
@@ -217,25 +217,38 @@ class _Check:
                         yield f"{candidate.profile.component.short} does not allow {name} to be {found}"
 
     def _settings(self, players: Players) -> Iterator[str]:
-        names = {parameter.iri: parameter.name for parameter in self.template.parameters}
         expected: list[ParameterSetting] = []
         for role in self.template.roles:
-            for setting in role.settings if players[role.iri] else ():
-                value: Term | None = setting.value
-                if isinstance(value, IRI) and value in names:
-                    value = self.configuration.bindings.get(names[value])
-                if value is None:
-                    yield f"the role {role.iri.short} sets a parameter to something that has no value"
-                    return
-                for candidate in players[role.iri]:
-                    for parameter in candidate.profile.parameters:
-                        if self.hierarchy.matches(setting.type, parameter.type):
-                            expected.append(ParameterSetting(candidate.profile.component, parameter.name, value))
+            values = self._set_by(role) if players[role.iri] else {}
+            for candidate in players[role.iri]:
+                expected += self._set_on(candidate.profile, values)
+            if None in values.values():
+                yield f"the role {role.iri.short} sets a parameter to something that has no value"
+                return
         actual = self.configuration.settings
         for one in dict.fromkeys((*actual, *expected)):
             if actual.count(one) != expected.count(one):
                 fault = "is missing" if one not in actual else "is not asked for"
                 yield f"setting {one.name!r} of {one.component.short} to {one.value} {fault}"
+
+    def _set_by(self, role: Role) -> dict[IRI, Term | None]:
+        """The values that a role sets, by the types of the parameters; None where a parameter of the task has none."""
+        names = {parameter.iri: parameter.name for parameter in self.template.parameters}
+        found: dict[IRI, Term | None] = {}
+        for setting in role.settings:
+            value: Term | None = setting.value
+            if isinstance(value, IRI) and value in names:
+                value = self.configuration.bindings.get(names[value])
+            found.setdefault(setting.type, value)
+        return found
+
+    def _set_on(self, profile: Profile, values: Mapping[IRI, Term | None]) -> Iterator[ParameterSetting]:
+        """What a component has its parameters set to: each to one value, that of its own type before all others."""
+        for parameter in profile.parameters:
+            types = [one for one in values if self.hierarchy.matches(one, parameter.type)]
+            value = values[parameter.type if parameter.type in types else types[0]] if types else None
+            if value is not None:
+                yield ParameterSetting(profile.component, parameter.name, value)
 
 
 def _idle(recruits: Sequence[IRI], connections: Sequence[Connection]) -> Iterator[str]:

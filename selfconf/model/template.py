@@ -10,8 +10,9 @@ from collections.abc import Mapping
 from dataclasses import field
 
 from selfconf.model.cost import CostLevel
+from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import immutable
-from selfconf.model.profile import Input, Output, Place
+from selfconf.model.profile import Input, OperationalParameter, Output, Place
 from selfconf.model.term import IRI, Term
 
 MOST_PRIORITY = 1_000_000
@@ -39,6 +40,14 @@ class Role:
     recruits: bool = False
     """Whether components outside of the roles may feed the inputs of its players that no role feeds."""
     place: Place | None = field(default=None, compare=False)
+
+    def setting_of(self, parameter: OperationalParameter, hierarchy: Hierarchy) -> Setting | None:
+        """The setting from which an operational parameter has its value, if any: it has one value at a time.
+
+        Of several that match its type it is the one of just that type, else the first.
+        """
+        matching = [one for one in self.settings if hierarchy.matches(one.type, parameter.type)]
+        return next((one for one in matching if one.type == parameter.type), matching[0] if matching else None)
 
 
 @immutable

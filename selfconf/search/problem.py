@@ -277,7 +277,7 @@ class Problem:
                     value = bindings[names[value]]
                 for candidate in chosen:
                     for parameter in candidate.profile.parameters:
-                        if self.hierarchy.matches(setting.type, parameter.type):
+                        if role.setting_of(parameter, self.hierarchy) is setting:
                             yield ParameterSetting(candidate.profile.component, parameter.name, value)
 
 

@@ -219,7 +219,9 @@ class World:
                     value = bindings[names[value]]
                 for candidate in chosen:
                     for parameter in candidate.profile.parameters:
-                        if parameter.type in self.hierarchy.superclasses(setting.type):
+                        matching = [s for s in role.settings if parameter.type in self.hierarchy.superclasses(s.type)]
+                        matching.sort(key=lambda one: one.type != parameter.type)
+                        if matching[:1] == [setting]:
                             settings.append(ParameterSetting(candidate.profile.component, parameter.name, value))
         order = {c.profile.component: k for k, c in enumerate(c for role in grown for c in role)}
         return Configuration(

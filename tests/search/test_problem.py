@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import pytest
 
+from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.profile import Output, Ports
+from selfconf.model.profile import OperationalParameter, Output, Ports
+from selfconf.model.template import Setting
+from selfconf.model.term import Literal
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
 from tests.search.worlds import component, iri, problem
@@ -27,3 +30,17 @@ def test_an_output_without_a_type_that_is_named_feeds_under_every_hierarchy(hier
     answer = first.search(Problem(plain.task, plain.partition, hierarchy))
     assert isinstance(answer, Configuration)
     assert [(one.output, one.input) for one in answer.connections] == [("o", "i")]
+
+
+def test_a_parameter_that_several_settings_match_has_one_value() -> None:
+    limit, hard = iri("Limit"), iri("HardLimit")
+    parameters = OperationalParameter("low", limit), OperationalParameter("high", hard)
+    plain = problem({"lamp": [replace(component("a"), parameters=parameters)]})
+    role = replace(plain.roles[0], settings=(Setting(hard, Literal("2")), Setting(limit, Literal("1"))))
+    task = replace(plain.task, template=replace(plain.task.template, roles=(role,)))
+    below = Hierarchy([(hard, limit)])
+    answer = first.search(Problem(task, plain.partition, below))
+    assert isinstance(answer, Configuration)
+    assert {(one.name, str(one.value)) for one in answer.settings} == {("low", "1"), ("high", "2")}
+    assert len(answer.settings) == 2
+    assert broken_conditions(task, plain.partition, answer, below) == []
