@@ -185,7 +185,8 @@ class MemoryEcology:
             unable=lambda why: self._site.tell_unable(why),
         )
         self._site = Site(node, ECOLOGY_NAME, "site", self._shelf, changed=self._composites.refresh)
-        self._runtimes: dict[IRI, tuple[ComponentRuntime, MemoryBus]] = {}
+        self._runtimes: list[tuple[ComponentRuntime, MemoryBus]] = []
+        """Each life with its node, also several of one component, of which the first acts."""
 
     @property
     def time(self) -> float:
@@ -214,7 +215,7 @@ class MemoryEcology:
         text = text_of(type(component).advertisement_path() if advertisement is None else advertisement)
         fields = files.signal_fields([*self._ontologies, *library.ontologies()], signals, [text]) if signals else {}
         runtime = ComponentRuntime(bus, Keys(ECOLOGY_NAME), found.profile, component, life, fields=fields)
-        self._runtimes[found.component] = runtime, bus
+        self._runtimes.append((runtime, bus))
         return component
 
     def advertise(self, advertisement: str | Path) -> IRI:
@@ -274,7 +275,7 @@ class MemoryEcology:
         return _advertisement(component, advertisement)
 
     def _node(self, component: Component) -> MemoryBus:
-        for runtime, bus in self._runtimes.values():
+        for runtime, bus in reversed(self._runtimes):  # one that was added again begins another life
             if runtime.component is component:
                 return bus
         raise ProgrammerError(f"{component!r} does not live in this ecology; add it first")

@@ -66,6 +66,16 @@ def test_a_task_runs_and_goes_on_when_a_component_crashes() -> None:
     assert not screen.active
 
 
+def test_of_two_lives_of_a_component_the_one_that_acts_can_be_ended() -> None:
+    ecology = MemoryEcology()
+    first, second = (ecology.add(Clock(name), CLOCK.replace("NAME", "a")) for name in ("first", "second"))
+    ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK)).started()
+    assert (first.active, second.active) == (True, False)
+    ecology.crash(first)
+    assert ecology.until(lambda: run.ended)
+
+
 def test_a_recruit_that_crashes_is_replaced_by_another() -> None:
     ecology = MemoryEcology()
     first = ecology.add(Clock("first"), CLOCK.replace("NAME", "a"))
