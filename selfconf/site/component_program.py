@@ -156,6 +156,11 @@ class ComponentProgram:
                 self.group.terminate()
             self._check_in(ENDING_CHECK)
 
+    def give_up(self) -> None:
+        """Start it again no more by itself: no component has its command any more."""
+        self._end_pause()
+        self._again = False
+
     def is_life(self, component: IRI, life: str) -> bool:
         """Whether a life of a component is that of the present process, as far as is known."""
         watch = self._watches.get(component)

@@ -76,8 +76,11 @@ class ComponentProcesses:
             if self._closed:  # after it is known: either it is closed here, or by `close`
                 program.close()
         program.start(profile, sharing, after)
+        before = {self.by_component.get(one.component, program) for one in (*sharing, profile)} - {program}
         for one in (*sharing, profile):
             self.by_component[one.component] = program
+        for left in before.difference(self.by_component.values()) if before else ():
+            left.give_up()
 
     def end(self, component: IRI, life: str = "", ended: Callable[[], None] = lambda: None) -> None:
         """End the process of a component, and call `ended` once it is gone; it can be started again.

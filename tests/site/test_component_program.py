@@ -174,6 +174,22 @@ def test_a_component_that_has_another_command_by_now_is_not_said_to_have_ended_w
     assert [fail.component for fail in heard] == [iri("right")]
 
 
+def test_a_command_that_no_component_has_any_more_is_not_started_again(
+    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else two processes would be the component for which it was mended."""
+    monkeypatch.setattr(restart_limit, "FIRST_PAUSE", 3.0)
+    made, heard = site(python("raise SystemExit(1)")), fails(network)
+    made.start(SLEEPER)
+    broken = program(made)
+    assert live(network, lambda: bool(heard) and broken.group is None)
+    dormant(tmp_path / "here", python(NUMBERED))
+    assert live(network, lambda: made.shelf.advertisements[SLEEPER].profile.command != broken.command)
+    made.start(SLEEPER)
+    assert program(made) is not broken
+    assert not live(network, lambda: broken.group is not None, 4.0)
+
+
 def test_a_program_that_crashes_too_often_is_given_up(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:
