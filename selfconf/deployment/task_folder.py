@@ -36,7 +36,8 @@ class TaskFolder:
                     error.strerror if isinstance(error, OSError) else error,
                 )
                 continue
-            self.records[record.task] = record
+            if record.supersedes(self.records.get(record.task)):  # a person may have copied a file beside it
+                self.records[record.task] = record
 
     def learn(self, record: TaskRecord) -> bool:
         """Keep a record, unless a newer one of the same task is kept; whether it was new.

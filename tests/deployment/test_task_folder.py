@@ -64,6 +64,14 @@ def test_without_a_folder_records_are_kept_in_memory() -> None:
     assert folder.records == {"navigate~1": FIRST}
 
 
+def test_a_copy_of_an_older_record_that_lies_beside_it_does_not_count(tmp_path: Path) -> None:
+    folder = TaskFolder(tmp_path)
+    folder.learn(FIRST)
+    (tmp_path / "navigate~1_before.json").write_bytes((tmp_path / "navigate~1.json").read_bytes())
+    folder.learn(SECOND)
+    assert TaskFolder(tmp_path).records == {"navigate~1": SECOND}
+
+
 def test_a_file_that_is_no_record_is_passed_over_and_that_is_said_to_people(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -23,7 +23,7 @@ from selfconf.serve.watching.change import Body, EcologyChange
 from tests.cli.processes import Home, dormant
 from tests.lab import PREFIXES, iri
 from tests.serve.chromium import CHROMIUM, Chromium, Page
-from tests.serve.shown import advertised, serving
+from tests.serve.shown import advertised, found, serving
 
 pytestmark = [
     pytest.mark.process,
@@ -326,6 +326,27 @@ def test_a_component_that_is_advertised_anew_is_looked_at_anew(shown: Callable[[
     page.says(".signals", "pose")
     change(replace(one, components={component: {**body, "outputs": [{"name": "place", "signals": []}]}}))
     page.says(".signals", "place")
+
+
+def test_a_page_that_has_missed_something_reads_the_advertisement_anew(
+    shown: Callable[[Board], Shown], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = Board("missed", Metrics())
+    board.apply(advertised("tracker"))
+    page, change = shown(board)
+    page.click("person-tracker", "#components button")
+    page.says(".turtle", "PositionSensor")
+    (component,) = board.advertised
+
+    def miss(_: EcologyChange) -> None:
+        """What is advertised is another by now, of which the server knows nothing, as it has begun anew."""
+        board.advertised[component] = found("tracker", ":person-tracker rob:place :attic .")
+        board.stream.close()
+        board.stream.life = "other"
+
+    monkeypatch.setattr(board, "apply", miss)
+    change(EcologyChange())
+    page.says(".turtle", "attic")
 
 
 def test_a_thousand_components_are_grouped_and_found(

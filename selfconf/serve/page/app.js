@@ -78,6 +78,7 @@ async function begin() {
   const answer = await fetch("/state");
   const state = await answer.json();
   model.begin(state);
+  forget(selected);
   lend(state.prefixes);
   draw();
   const stream = new EventSource(`/changes?last=${encodeURIComponent(state.last)}`);
