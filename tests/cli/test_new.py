@@ -12,7 +12,7 @@ from selfconf.cli.scaffolds import SCAFFOLDS
 from tests.cli.command import run
 
 
-@pytest.mark.parametrize("namespace", ["https://example.org/else/", "urn:home:"])
+@pytest.mark.parametrize("namespace", ["https://example.org/else/", "urn:home:", "https://example.org/%C3%A4#"])
 @pytest.mark.parametrize("kind", SCAFFOLDS)
 def test_a_namespace_of_ones_own_is_used(kind: str, namespace: str, tmp_path: Path) -> None:
     assert main(["new", kind, "x", "--dir", str(tmp_path), "--namespace", namespace]) == 0
@@ -45,7 +45,9 @@ def test_a_component_whose_file_would_hide_a_module_or_be_no_python_is_refused(
     assert main(["new", "template", name, "--dir", str(tmp_path)]) == 0
 
 
-@pytest.mark.parametrize("namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#"])
+@pytest.mark.parametrize(
+    "namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#", "https://a/%zz#"]
+)
 def test_a_namespace_that_is_no_iri_is_refused(
     namespace: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
