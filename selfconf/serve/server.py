@@ -67,6 +67,11 @@ def refuse_exposure(host: str, credentials: Credentials | None) -> None:
         )
 
 
+def names_at(host: str) -> Collection[str]:
+    """The names under which a server at an address may be asked; empty, for any, where other hosts can reach it."""
+    return () if is_beyond_loopback(host) else LOOPBACK | {host}
+
+
 def serve_ecology(membership: Membership, options: ServerOptions, listening: Callable[[str], None]) -> None:
     """Serve an ecology over HTTP until SIGINT, SIGTERM or SIGHUP; `listening` receives the URL.
 
@@ -139,9 +144,8 @@ async def _serve(
     board = Board(membership.ecology, metrics)
     sparql = SparqlEndpoint(record.dataset, metrics, options.seconds)
     host, port = place.getsockname()[:2]
-    local = socket.getaddrinfo(host, None)[0][4][0] in ("127.0.0.1", "::1")
     onlookers = Onlookers(bus, board, may_hear=not membership.looks_on_only)
-    fits, explained, hosts = Fits(board), ExplainedRefusals(board), LOOPBACK if local else ()
+    fits, explained, hosts = Fits(board), ExplainedRefusals(board), names_at(host)
     app = application(board, metrics, sparql, onlookers, fits, explained, lambda: bus.link, hosts, options.origins)
 
     def take(change: EcologyChange) -> None:

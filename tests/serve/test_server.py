@@ -12,7 +12,8 @@ import pytest
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.query import StandingQuestion
 from selfconf.rdf.vocabulary import ROB
-from selfconf.serve.server import Record, bound
+from selfconf.serve.application import LOOPBACK
+from selfconf.serve.server import Record, bound, names_at
 from selfconf.serve.watching.change import Body
 from selfconf.serve.watching.history import History
 from tests.lab import ADVERTISEMENTS
@@ -31,6 +32,13 @@ def test_what_is_no_address_is_a_sentence() -> None:
         bound("no such host", 0)
     with pytest.raises(NetworkError, match="cannot listen"):
         bound("192.0.2.1", 0)
+
+
+def test_on_this_machine_a_server_is_asked_by_names_of_this_machine_alone() -> None:
+    assert set(names_at("127.0.0.1")) == LOOPBACK
+    assert set(names_at("127.0.0.2")) == LOOPBACK | {"127.0.0.2"}
+    assert set(names_at("::1")) >= LOOPBACK
+    assert not names_at("0.0.0.0")
 
 
 def test_what_a_full_disk_keeps_from_the_history_can_be_asked_for_all_the_same(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from selfconf.bus.port import Bus
+from selfconf.bus.port import Bus, Undo
 from selfconf.discovery import Beliefs, Discovery, EcologyView
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
@@ -56,6 +56,7 @@ class EcologyWatcher:
         self._touched: set[IRI] = set()
         self._link = ""
         """The link over which was last found what is advertised."""
+        self._ask_again: Undo = lambda: None
         self._flushing = self._discovering = self._discover_again = self._following = False
 
     def begin(self) -> None:
@@ -85,6 +86,7 @@ class EcologyWatcher:
 
     def _discovered(self, discovery: Discovery) -> None:
         self._discovering = False
+        self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
         before, self.view.discovery = self.view.discovery.found, discovery
         gone: dict[IRI, None] = {c: None for c in before if c not in discovery.found}
         new = {c: found for c, found in discovery.found.items() if before.get(c) != found}
@@ -106,7 +108,7 @@ class EcologyWatcher:
             self._discover_again = False
             self._discover()
         elif discovery.missing:
-            self.bus.later(ASKED_AGAIN, self._discover)
+            self._ask_again = self.bus.later(ASKED_AGAIN, self._discover)
 
     def _changed_sites(self, discovery: Discovery) -> dict[str, Body | None]:
         before, self._sites = self._sites, {site: {"missing": site in discovery.missing} for site in discovery.sites}

@@ -8,9 +8,11 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import MemoryBus
+from selfconf.bus.port import Request, Urgency
+from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.serve.watching.change import EcologyChange
 from selfconf.serve.watching.task_watcher import LOOK_ANEW
-from selfconf.serve.watching.watcher import EcologyWatcher
+from selfconf.serve.watching.watcher import ASKED_AGAIN, EcologyWatcher
 from tests.lab import Lab, iri
 
 
@@ -151,6 +153,26 @@ def test_nothing_is_told_while_nothing_changes(lab: Lab) -> None:
     before = seen.changes
     lab.let_pass(3 * LOOK_ANEW)
     assert seen.changes == before
+
+
+def test_a_site_that_does_not_answer_is_asked_again_at_one_interval_whatever_else_changes(lab: Lab) -> None:
+    node, asked = lab.network.node(), list[float]()
+
+    def answer(request: Request) -> None:
+        asked.append(lab.network.time)
+        request.finish()
+
+    node.announce(lab.keys.site_life("kitchen", "1"))
+    node.serve(lab.keys.advertisements("kitchen"), answer)
+    Seen(lab)
+    changed = node.publisher(lab.keys.changed("kitchen"), Urgency.EVENT)
+    for _ in range(20):
+        lab.let_pass(0.7)
+        changed.put(b"")
+    lab.let_pass(ASKED_AGAIN)
+    asked.clear()
+    lab.let_pass(10 * ASKED_AGAIN)
+    assert len(asked) <= 10 * DISCOVERY_ATTEMPTS
 
 
 def test_over_another_link_everything_is_looked_at_anew(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
