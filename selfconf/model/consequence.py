@@ -22,8 +22,8 @@ class Consequence:
     """Components that would begin to play a part, in the order of the roles."""
     stopped: tuple[IRI, ...] = ()
     """Components that would no longer play one, apart from the one that failed."""
-    moved: tuple[tuple[IRI, IRI], ...] = ()
-    """Components that would play another role, each with that role."""
+    moved: tuple[tuple[IRI, IRI | None], ...] = ()
+    """Components that would play another role, each with that role; None for a player that would be recruited."""
 
     @property
     def fatal(self) -> bool:
@@ -35,7 +35,7 @@ class Consequence:
         if self.fatal:
             return "NONE, a single point of failure"
         changes = [", ".join(map(name, self.started))] if self.started else []
-        changes += [f"{name(one)} as {name(role)}" for one, role in self.moved]
+        changes += [f"{name(one)} as {'recruit' if role is None else name(role)}" for one, role in self.moved]
         instead = ", ".join(changes) or "no component needed"
         return f"{instead}, and {', '.join(map(name, self.stopped))} would stop" if self.stopped else instead
 

@@ -50,7 +50,7 @@ def consequences_body(consequences: Sequence[Consequence]) -> list[dict[str, Any
             "single_point_of_failure": one.fatal,
             "started": list(one.started),
             "stopped": list(one.stopped),
-            "moved": [{"component": component, "role": role} for component, role in one.moved],
+            "moved": [{"component": moved, **({} if role is None else {"role": role})} for moved, role in one.moved],
         }
         for one in consequences
     ]

@@ -33,7 +33,8 @@ def _consequence(
         return Consequence(component, role, after)
     before, now = dict.fromkeys(running.components), dict.fromkeys(after.components)
     played = {one: assignment.role for assignment in running.assignments for one in assignment.components}
-    playing = [(one, assignment.role) for assignment in after.assignments for one in assignment.components]
+    playing: list[tuple[IRI, IRI | None]] = [(one, a.role) for a in after.assignments for one in a.components]
+    playing += [(one, None) for one in after.recruits]
     return Consequence(
         component,
         role,

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from hypothesis import given
 
+from selfconf.composition import Strategy
+from selfconf.composition.searches import Searches
 from selfconf.model.configuration import Configuration
+from selfconf.model.immutable import replace
+from selfconf.model.partition import Recruit
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
 from selfconf.search.what_if import consequences
@@ -51,3 +55,18 @@ def test_a_component_that_would_play_another_role_is_named_with_it() -> None:
         "b (second): no component needed",
         "x (second): no component needed",
     ]
+
+
+def test_a_player_that_would_be_recruited_is_named() -> None:
+    lamp, spare = component("lamp", outputs="o:Light"), component("spare", outputs="o:Light")
+    plain = problem({"eye": [component("eye", "i:Light")], "hall": [lamp]}, counts={"hall": (0, 1)})
+    roles = tuple(replace(role, recruits=role.iri.short == "eye") for role in plain.roles)
+    given_ = Problem(
+        replace(plain.task, template=replace(plain.task.template, roles=roles)),
+        replace(plain.partition, recruits=(Recruit(spare, frozenset({0})), Recruit(lamp, frozenset({0})))),
+    )
+    search = Searches(Strategy.FIRST)
+    *_, running = search.answers(given_)
+    assert isinstance(running, Configuration)
+    said = {loss.component.short: str(loss) for loss in consequences(given_, running, search.after)}
+    assert said["spare"] == "spare (recruit): lamp as recruit"
