@@ -166,7 +166,8 @@ class Inquiry:
             return refusal_with_places(self.composer, able, found, self.method, limit, texts=self._texts)
         optimum = found if isinstance(found, Optimum) else None
         plain = found.configuration if isinstance(found, Optimum) else found
-        consequences = limit.within(lambda: self.composer.what_if(self.ecology, plain), None) if what_if else None
+        held = frozenset(self.holders)
+        consequences = limit.within(lambda: self.composer.what_if(self.ecology, held, plain), None) if what_if else None
         return Answer.of(
             plain,
             self.task.document,

@@ -258,9 +258,11 @@ class Composer:
             passed[assignment.role] = [c for c in order[: max(chosen, default=0)] if c not in assignment.components]
         return passed
 
-    def what_if(self, ecology: Mapping[IRI, Advertisement], configuration: Configuration) -> list[Consequence]:
-        """For each component of a configuration, what would come instead of it if it failed."""
-        problem = Problem(self.task.task, self.partition(ecology), self.hierarchy)
+    def what_if(
+        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], configuration: Configuration
+    ) -> list[Consequence]:
+        """For each component of a configuration, what would come instead of it, without the lost, if it failed."""
+        problem = self._problem(self.partition(ecology), lost, None)
         return list(consequences(problem, configuration, self.searches.after))
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:

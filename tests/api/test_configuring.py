@@ -53,6 +53,19 @@ def test_a_refusal_names_each_component_that_is_eligible_and_held(
     ]
 
 
+def test_what_another_task_holds_would_replace_nothing(
+    clock: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = Path("examples/clock/display.ttl").read_text()
+    ecology = sc.read("examples/clock", text.replace(":display ", ":spare "))
+    for holders, fatal in (({}, False), ({sc.IRI("https://example.org/my-home#spare"): Holder("watch~1")}, True)):
+        monkeypatch.setattr(sc.Ecology, "holders", lambda _, holders=holders: holders)
+        answer = sc.configure(clock, ecology, what_if=True)
+        assert isinstance(answer, Answer)
+        told = {one.component.short: one for one in answer.what_if or ()}
+        assert told["display"].fatal is fatal
+
+
 @pytest.mark.parametrize("agrees", [True, False])
 def test_what_can_be_shared_is_free_for_those_that_want_the_same_of_it(
     clock: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch, agrees: bool
