@@ -5,11 +5,12 @@ Where `AXE_CORE` names the file `axe.min.js` of axe-core (from npm), it is also 
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import re
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,8 @@ from pathlib import Path
 import pytest
 
 from selfconf.access import Principal, PrincipalKind
+from selfconf.protocol.messages import TaskRecord
+from selfconf.serve import fits
 from selfconf.serve.board import Board
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.watching.change import Body, EcologyChange
@@ -326,6 +329,25 @@ def test_a_component_that_is_advertised_anew_is_looked_at_anew(shown: Callable[[
     page.says(".signals", "pose")
     change(replace(one, components={component: {**body, "outputs": [{"name": "place", "signals": []}]}}))
     page.says(".signals", "place")
+
+
+def test_what_is_asked_of_a_component_is_asked_no_more_once_another_is_chosen(
+    shown: Callable[[Board], Shown], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def judged(_: str, question: Mapping[str, object], __: float) -> list[object]:
+        if "person-tracker" in str(question["advertisement"]):
+            await asyncio.Event().wait()  # it takes long
+        return []
+
+    monkeypatch.setattr(fits, "judged_apart", judged)
+    board = Board("chosen", Metrics())
+    task = {**refused_task(), "phase": "running", "refusal": None}
+    board.apply(replace(advertised("tracker", "encoder"), tasks={"t": task}, records={"t": TaskRecord("t~1", 1)}))
+    page, _ = shown(board)
+    page.click("person-tracker", "#components button")
+    page.says(".fits", "…")
+    page.click("wheels", "#components button")
+    page.says(".fits", "It fits no role")
 
 
 def test_a_page_that_has_missed_something_reads_the_advertisement_anew(

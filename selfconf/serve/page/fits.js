@@ -4,6 +4,7 @@ import { h, short } from "/page/dom.js";
 
 export class Fits {
   #asked = "";
+  #asking = null;
   /** What the server has said, by task; null as long as it has not. */
   told = null;
   /** Called when it has said it. */
@@ -17,18 +18,20 @@ export class Fits {
     if (about !== this.#asked) {
       this.#asked = about;
       this.told = null;
-      if (iri) this.#ask(iri, about);
+      this.#asking?.abort();  // the server judges one component at a time
+      this.#asking = new AbortController();
+      if (iri) this.#ask(iri, this.#asking);
     }
     this.#show(iri, running);
   }
 
-  async #ask(iri, about) {
+  async #ask(iri, asking) {
     let told = { trouble: "The server does not say." };
     try {
-      const answer = await fetch(`/fit?component=${encodeURIComponent(iri)}`);
+      const answer = await fetch(`/fit?component=${encodeURIComponent(iri)}`, { signal: asking.signal });
       if (answer.ok) told = (await answer.json()).tasks;
     } catch { /* it has ended; the page tries to reach it by itself */ }
-    if (about === this.#asked) {
+    if (asking === this.#asking) {
       this.told = told;
       this.changed?.();
     }

@@ -2,6 +2,7 @@
 
 export class ExplainedRefusals {
   #asked = "";
+  #asking = null;
   #told = null;
   /** Called when the server has said it. */
   changed = null;
@@ -14,18 +15,20 @@ export class ExplainedRefusals {
     if (about !== this.#asked) {
       this.#asked = about;
       this.#told = { pending: true };
-      this.#ask(id, about);
+      this.#asking?.abort();  // the server makes one search at a time
+      this.#asking = new AbortController();
+      this.#ask(id, this.#asking);
     }
     return { ...body, ...this.#told };
   }
 
-  async #ask(id, about) {
+  async #ask(id, asking) {
     let told = {};
     try {
-      const answer = await fetch(`/mend?task=${encodeURIComponent(id)}`);
+      const answer = await fetch(`/mend?task=${encodeURIComponent(id)}`, { signal: asking.signal });
       if (answer.ok) told = await answer.json();
     } catch { /* the server has ended; the page tries to reach it by itself */ }
-    if (about === this.#asked) {
+    if (asking === this.#asking) {
       this.#told = told.reasons ? told : { detail: told.detail };
       this.changed?.();
     }
