@@ -104,9 +104,8 @@ class ThingClient:
         """The next value of a long poll, however long that takes; None if the thing has let go of it for now."""
         async with self._asked(form, None) as answer:
             body = await self._body(form, answer)
-            return (
-                None if answer.status == 204 or (not body and not answer.content_type) else _value(form, answer, body)
-            )
+            nothing = answer.status == 204 or (not body and "Content-Type" not in answer.headers)
+            return None if nothing else _value(form, answer, body)
 
     @asynccontextmanager
     async def subscribed(self, form: ThingForm) -> AsyncIterator[AsyncIterator[ThingAnswer]]:

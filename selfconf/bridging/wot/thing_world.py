@@ -155,10 +155,23 @@ class ThingWorld:
         for iri, thing in list(here.items())[:MOST_THINGS]:
             watch = self._watches.get(iri)
             if watch is None or watch.thing != thing:
-                if watch is not None:
-                    watch.end()
-                found = self._interactions(thing)
-                self._watches[iri] = ThingWatch(thing, found, self._bridge, self._client, self._settings)
+                self._watch(iri, thing, watch)
+
+    def _watch(self, iri: IRI, thing: DescribedThing, before: ThingWatch | None) -> None:
+        """Look for a thing that is new or described anew; not anew where a bridge does with it what it did before.
+
+        A directory may say with each answer when it was asked (`registration`).
+        """
+        found = self._interactions(thing)
+        if before is not None and before.found == found:
+            before.thing = thing
+            return
+        if before is not None:
+            before.end()
+        try:
+            self._watches[iri] = ThingWatch(thing, found, self._bridge, self._client, self._settings)
+        except OSError as error:  # it is tried again at the next reading
+            self._tell(f"{iri.short} cannot be advertised: {error.strerror}")
 
     def _interactions(self, thing: DescribedThing) -> ThingInteractions:
         shown = thing.source.shown
@@ -192,7 +205,7 @@ class ThingWatch:
         settings: ThingSettings,
     ) -> None:
         self.thing = thing
-        self._found, self._bridge, self._client, self._settings = found, bridge, client, settings
+        self.found, self._bridge, self._client, self._settings = found, bridge, client, settings
         self._iri = found.component.iri
         self._code: ThingComponent | None = None
         self._since = 0.0
@@ -220,11 +233,11 @@ class ThingWatch:
 
     async def _probe(self) -> str | None:
         """Why the thing is not there, in a sentence; None if it is."""
-        probe = self._found.probe
+        probe = self.found.probe
         if probe is None:
             return "there is no form by which it could be reached"
         try:
-            if self._found.readable:
+            if self.found.readable:
                 await self._client.read(probe)
             else:
                 await self._client.reach(probe)
@@ -233,7 +246,7 @@ class ThingWatch:
         return None
 
     async def _begin(self, loop: asyncio.AbstractEventLoop) -> None:
-        code = ThingComponent(self._found, self._client, loop, self._settings.rate, self._lose)
+        code = ThingComponent(self.found, self._client, loop, self._settings.rate, self._lose)
         self._code, self._since = code, loop.time()  # before it lives: it may be held, and lost, at once
         trouble = await asyncio.wrap_future(self._bridge.begin_life(self._iri, code))
         self._tell(trouble or "")

@@ -341,3 +341,15 @@ def test_a_long_poll_waits_for_longer_than_an_answer_may_take(thing_server: Star
         return [await client.wait(form) for _ in range(3)]
 
     assert asked(work, LIMITS) == [ThingAnswer(1), None, ThingAnswer(3)]
+
+
+def test_a_long_poll_that_is_answered_with_nothing_is_let_go_of(thing_server: Start) -> None:
+    server = thing_server()
+
+    def nothing(handler: BaseHTTPRequestHandler) -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Length", "0")
+        handler.end_headers()
+
+    server.answers["/on"] = nothing
+    assert asked(lambda client: client.wait(ThingForm(server.url + "/on", "GET", subprotocol="longpoll"))) is None

@@ -7,6 +7,7 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,39 @@ def test_a_thing_that_is_described_anew_is_another_component(
         written(tmp_path, server.describe(**{"@type": "rob:Display"}))
         assert until(lambda: "rob:Display" in path.read_text() and found.lives("lamp"))
         assert len(list(found.folder.glob("*.ttl"))) == 1
+
+
+def test_a_thing_goes_on_of_which_a_directory_says_when_it_was_asked(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server, times = thing_server(), itertools.count()
+
+    def things(handler: BaseHTTPRequestHandler) -> None:
+        registration = {"retrieved": f"2026-01-01T00:00:{next(times):02}Z"}
+        reply(handler, json.dumps([server.describe(registration=registration)]).encode())
+
+    server.values["/on"] = True
+    server.answers["/things"] = things
+    with bridging(living, tmp_path / "ads", f"{server.url}/things") as found:
+        assert until(lambda: found.lives("lamp"))
+        asked = next(times)
+        assert until(lambda: next(times) > asked + 20)
+        assert len(found.complaints) == 1, found.complaints
+
+
+def test_a_thing_that_cannot_be_advertised_for_now_is_so_later(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    source, folder, away = tmp_path / "things", tmp_path / "ads", tmp_path / "away"
+    source.mkdir()
+    with bridging(living, folder, str(source)) as found:
+        folder.rename(away)
+        written(source, server.describe())
+        assert until(lambda: found.complained("lamp cannot be advertised: No such file or directory"))
+        away.rename(folder)
+        assert until(lambda: found.lives("lamp"))
 
 
 def test_a_thing_lives_as_long_as_it_answers(
