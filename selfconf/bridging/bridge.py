@@ -52,7 +52,10 @@ class Bridge:
         self._ended = False
 
     def advertise(self, component: IRI, document: ImportedDocument) -> None:
-        """Say what a component is, from now on; by what was said of it before it lives no more."""
+        """Say what a component is, from now on; by what was said of it before it lives no more.
+
+        Raises OSError where that cannot be written.
+        """
         self._end(component, None)
         path = self._paths.get(component)
         if path is None:

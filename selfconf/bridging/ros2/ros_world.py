@@ -192,10 +192,15 @@ class RosWorld:
                 self._settle(node, LOOK_WHETHER_FREE)
                 return
             node.code.fail(f"the node {node.token.full_name} offers less than before")
-        node.advertised = endpoints
         ports = ports_of(endpoints)
         component = described_node(node.token, ports)
-        self._bridge.advertise(iri, ImportedDocument("", _place(node.token), (component.described(),), {}))
+        try:
+            self._bridge.advertise(iri, ImportedDocument("", _place(node.token), (component.described(),), {}))
+        except OSError as error:
+            self._domain.tell(f"{node.token.full_name} cannot be advertised: {error.strerror}")
+            self._settle(node, LOOK_WHETHER_FREE)
+            return
+        node.advertised = endpoints
         self._live(node, ports)
 
     def _live(self, node: RosNode, ports: NodePorts) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 import tempfile
 from pathlib import Path
 
 import pytest
 
 import selfconf as sc
+from selfconf.api.sites import bridge_program
 from selfconf.api.sites.bridge_program import serve_bridge, serve_things
 from selfconf.api.sites.site_program import SiteOptions
 
@@ -32,6 +35,22 @@ def test_a_name_that_is_none_ends_it(
         serve_bridge(World(), SiteOptions(ecology=ecology, name=name), said.append)
     assert said == []
     assert list(tmp_path.iterdir()) == []
+
+
+def test_its_folder_is_locked_so_that_it_is_not_removed_for_its_age(monkeypatch: pytest.MonkeyPatch) -> None:
+    served: list[Path] = []
+
+    def serve(options: SiteOptions, *_: object) -> None:
+        (folder,) = options.paths
+        descriptor = os.open(folder, os.O_RDONLY)
+        with pytest.raises(BlockingIOError):
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.close(descriptor)
+        served.append(folder)
+
+    monkeypatch.setattr(bridge_program, "serve", serve)
+    serve_bridge(World(), SiteOptions(ecology="home"), print)
+    assert not served[0].exists()
 
 
 def test_sources_and_credentials_have_to_be_there(tmp_path: Path) -> None:

@@ -46,6 +46,16 @@ def test_a_node_that_goes_while_it_acts_fails_by_its_sentence(living: LivingStag
         found.activate("talker")
 
 
+def test_a_node_that_cannot_be_advertised_for_now_is_so_later(living: LivingStage, tmp_path: Path) -> None:
+    folder, away = tmp_path / "ads", tmp_path / "away"
+    with bridging_domain(living, folder) as found:
+        folder.rename(away)
+        found.node("talker").publishes("/chatter")
+        assert until(lambda: found.complained("/talker cannot be advertised: No such file or directory"))
+        away.rename(folder)
+        assert until(lambda: found.lives("talker"))
+
+
 def test_a_node_that_offers_more_is_advertised_anew_once_it_is_free(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
         talker = found.node("talker")
