@@ -279,5 +279,8 @@ def written(signal: Signal, kind: MessageType) -> bytes:
         raise ros2.MessageError(f"is an object, and the fields of {kind.name} are not known")
     translation, fields = translation_of(kind.name), signal.value
     if translation is not None and translation.write is not None and translation.is_signal(fields):
-        fields = translation.write(fields, signal.time)
+        try:
+            fields = translation.write(fields, signal.time)
+        except (TypeError, OverflowError) as error:
+            raise ros2.MessageError(f"is no {translation.name}: {error}") from None
     return ros2.message(fields, kind)

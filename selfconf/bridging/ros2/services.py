@@ -183,12 +183,15 @@ class ServedService:
         """An answer as CDR. Raises MessageError."""
         if not answer:
             raise MessageError(answer.detail)
-        if isinstance(answer.value, bytes):
-            return answer.value
         parts = ros2.service_parts(self._endpoint.type)
         if parts is None:
+            if isinstance(answer.value, bytes):
+                return answer.value
             raise MessageError(f"the fields of {self._endpoint.type.name} are not known")
         try:
+            if isinstance(answer.value, bytes):
+                ros2.check_message(answer.value, parts.response)
+                return answer.value
             return ros2.message({} if answer.value is None else answer.value, parts.response)
         except MessageError as error:
             raise MessageError(f"what is answered {error}") from None

@@ -13,9 +13,11 @@ import zenoh.ext
 
 from selfconf import ros2
 from selfconf.bridging.ros2 import node_component
+from selfconf.bridging.ros2.node_component import written
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
+from selfconf.sdk import Signal
 from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node, reader, text
 from tests.ros2.test_messages import STRING_HASH
 from tests.sdk.living import LivingStage, until
@@ -151,6 +153,15 @@ def test_an_object_that_cannot_be_a_message_is_a_sentence(living: LivingStage, t
         assert until(refused)
         assert heard == strange == []
         assert sum("has words" in one for one in found.complaints) == 1
+
+
+@pytest.mark.parametrize("heading", [None, "north", 10**400])
+def test_an_object_that_cannot_be_translated_is_a_sentence(heading: object) -> None:
+    kind = ros2.usual_type("geometry_msgs/msg/PoseStamped")
+    assert kind is not None
+    pose = Signal({"x": 1.0, "y": 2.0, "theta": heading, "frame": ""}, IRI("urn:c:odometry"), 0.0, 1)
+    with pytest.raises(ros2.MessageError, match=r"^is no PlanarPose2D: "):
+        written(pose, kind)
 
 
 def test_broken_bytes_are_blamed_on_the_node_that_publishes_them(living: LivingStage, tmp_path: Path) -> None:

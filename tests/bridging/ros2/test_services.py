@@ -51,6 +51,8 @@ class Adder(Component):
         self.requests.append(request)
         if request["a"] < 0:
             raise Refused("I count upwards only")
+        if request["a"] == 0:
+            return b"\x89PNG"
         return {"sum": request["a"] + request["b"]}
 
 
@@ -127,6 +129,8 @@ def test_a_node_calls_a_component_and_ros_sees_who_serves(living: LivingStage, t
         assert any("/SS/%/%/selfconf_bridge/%add/" in key for key in tokens)
         assert replies_to(found, client, "/add", asked(-1, 0)).errors == ("I count upwards only",)
         assert "AddTwoInts_Request" in replies_to(found, client, "/add", b"short").errors[0]
+        (error,) = replies_to(found, client, "/add", asked(0, 1)).errors
+        assert error.startswith("what is answered is no example_interfaces/srv/AddTwoInts_Response")
 
 
 def test_a_call_of_several_clients_is_made_once(living: LivingStage, tmp_path: Path) -> None:
