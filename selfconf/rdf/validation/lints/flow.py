@@ -3,9 +3,10 @@
 A cycle of `sc:feeds` is no mistake by itself: closed loops are what control is about. But a loop acts on the world
 through an actuator in it, or hands something on; one that does neither only keeps itself busy.
 
-An input that a role asks its component to have has to be fed, or no component that has it can play the role. Most
-templates leave ports to the components. Where one speaks of them, what is asked of the one end is held against what is
-asked of the other; whether signals match is seen in the widest sense, that of the loaded ontologies.
+An input that a role asks its component to have has to be fed, or no component that has it can play the role, unless the
+input is optional, or the role recruits what feeds it. Most templates leave ports to the components. Where one speaks of
+them, what is asked of the one end is held against what is asked of the other; whether signals match is seen in the
+widest sense, that of the loaded ontologies.
 """
 
 from __future__ import annotations
@@ -20,11 +21,12 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.wording import listed
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
-from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement
+from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
 from selfconf.rdf.vocabulary import ROB, SC
 
 _FEEDS, _NAME, _SIGNAL = URIRef(SC.feeds), URIRef(SC.name), URIRef(SC.signalType)
 _INPUT, _OUTPUT = URIRef(SC.hasInput), URIRef(SC.hasOutput)
+_OPTIONAL, _RECRUITS = URIRef(SC.optional), URIRef(SC.recruits)
 
 
 class RoleLink(NamedTuple):
@@ -77,6 +79,8 @@ def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:
     for roles, links in _templates(file):
         normal = {role: NormalForm(file.source, (role,)) for role in roles}
         for sink in roles:
+            if any(not isinstance(shape, Literal) or shape.value for shape in file.graph.objects(sink, _RECRUITS)):
+                continue  # what no role feeds, recruits do
             feeding = [link for link in links if link.sink == sink]
             for asked in _asked(normal[sink], _INPUT):
                 if any(_could(file, normal[link.source], link, asked) for link in feeding):
@@ -132,16 +136,22 @@ def _acts(file: LintedFile, role: Node) -> bool:
 
 
 def _asked(normal: NormalForm, link: URIRef) -> Iterator[Ask]:
-    """The inputs or outputs that a role asks for."""
+    """The inputs or outputs that a role asks for; not the inputs that it asks to be optional."""
     for along, signals in ((_SIGNAL, True), (_NAME, False)):
         values = normal.values.get((RDF.first, link, along))
         for one in values.required if values else ():
             yield Ask(None, one[2], one) if signals else Ask(one[2], None, one)
     ports = normal.values.get((link,))
-    needed = ports.needed() if ports else None
-    if ports is None or needed is None:
+    for port, statement in _ports(ports) if ports else ():
+        if not _optional(port):
+            yield Ask(_only(port, _NAME), _only(port, _SIGNAL), statement)
+
+
+def _ports(ports: ValueNormalForm) -> Iterator[tuple[NormalForm, ShapeStatement]]:
+    """What has to hold of a port that has to be there, and what says so: a shape for some ports, or for all of them."""
+    needed, source = ports.needed(), ports.source
+    if needed is None:
         return
-    source = normal.source
     shapes = [
         (shape, inner)
         for shape in ports.shapes
@@ -149,10 +159,14 @@ def _asked(normal: NormalForm, link: URIRef) -> Iterator[Ask]:
         if any(isinstance(n, Literal) and n.value for n in source.values(shape, SH.qualifiedMinCount))
     ]
     for shape, inner in shapes:
-        port = NormalForm(source, (inner,))
-        yield Ask(_only(port, _NAME), _only(port, _SIGNAL), (shape, SH.qualifiedValueShape, inner))
+        yield NormalForm(source, (inner,)), (shape, SH.qualifiedValueShape, inner)
     if not shapes:
-        yield Ask(None, _only(ports.each, _SIGNAL), needed[1])
+        yield ports.each, needed[1]
+
+
+def _optional(port: NormalForm) -> bool:
+    """Whether a port has to be one that may stay unfed."""
+    return _only(port, _OPTIONAL) == Literal(True)
 
 
 def _only(port: NormalForm, path: URIRef) -> Node | None:

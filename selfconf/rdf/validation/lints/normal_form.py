@@ -43,7 +43,7 @@ _SILENT = frozenset(
 
 
 class ShapeSource:
-    """The graphs that shapes stand in, as one; what an author wrote, and what holds of every advertisement."""
+    """The graphs that shapes stand in, as one; first what an author wrote, then what holds of every advertisement."""
 
     def __init__(self, *graphs: Graph) -> None:
         self.graphs = graphs
@@ -58,6 +58,14 @@ class ShapeSource:
         """What has that value."""
         for graph in self.graphs:
             yield from graph.subjects(predicate, value)
+
+    def applied(self, target: Node, value: Node) -> Iterator[Node]:
+        """The shapes that apply to whatever they target: those of all graphs but the first.
+
+        What an author writes there is judged by roles alone; the targets of other shapes are not looked for.
+        """
+        for graph in self.graphs[1:]:
+            yield from graph.subjects(target, value)
 
     def values(self, subject: Node, predicate: Node) -> list[Node]:
         """The objects of a subject and predicate."""
@@ -200,7 +208,7 @@ class ValueNormalForm:
         if self._depth > 0:
             for shape in (*self.shapes, *self._step_by_step()):
                 found.require(shape)
-            for shape in self.source.subjects(SH.targetObjectsOf, self._last()):
+            for shape in self.source.applied(SH.targetObjectsOf, self._last()):
                 found.add(shape)
         return found
 

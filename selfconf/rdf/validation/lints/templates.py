@@ -68,7 +68,7 @@ def _told_otherwise(file: LintedFile) -> Iterator[tuple[Node, URIRef, URIRef]]:
 def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:
     """Roles whose shape every component meets, and of which nothing else asks for a port or a parameter either."""
     graph, component = file.graph, URIRef(SC.Component)
-    every = NormalForm(file.source, file.source.subjects(SH.targetClass, component))
+    every = NormalForm(file.source, file.source.applied(SH.targetClass, component))
     every.own.append((component, SH["class"], component))
     joined = {
         role
@@ -148,7 +148,7 @@ def _named(file: LintedFile, query: str) -> set[str]:
 
 def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
     """Roles, or what they recruit, whose shapes contradict themselves or what holds of every advertisement."""
-    always = list(file.source.subjects(SH.targetClass, URIRef(SC.Component)))
+    always = list(file.source.applied(SH.targetClass, URIRef(SC.Component)))
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
         short = file.short(str(role))
         for conflict in contradictions(NormalForm(file.source, (role, *always))):

@@ -28,7 +28,7 @@ def impossible(shape: str) -> bool:
     """Whether a role of that shape is found to be impossible."""
     graph = Graph().parse(data=f"{PREFIXES}:role a sc:Role ; {shape} .", format="turtle")
     source = ShapeSource(graph, ALWAYS)
-    shapes = (URIRef(iri("role")), *source.subjects(SH.targetClass, URIRef(SC.Component)))
+    shapes = (URIRef(iri("role")), *source.applied(SH.targetClass, URIRef(SC.Component)))
     return next(contradictions(NormalForm(source, shapes)), None) is not None
 
 

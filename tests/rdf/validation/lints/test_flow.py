@@ -21,6 +21,8 @@ PAIR = """
 FED = ":source sc:feeds :sink ."
 WANTS = ":sink sh:property [ sh:path ( sc:hasInput sc:signalType ) ; sh:hasValue rob:Image ] ."
 
+OPTIONAL = "[ sh:path sc:optional ; sh:hasValue true ]"
+
 
 def asks(role: str, link: str, port: str) -> str:
     """A role that asks for a port by a shape of its own."""
@@ -77,6 +79,11 @@ def test_a_loop_is_shown_where_it_closes() -> None:
         (FED + ":sink sh:property [ sh:path sc:hasInput ; sh:minCount 1 ] .", []),
         (":sink sh:property [ sh:path sc:hasInput ; sh:minCount 1 ] .", ["SC-L13"]),
         (":sink sh:property [ sh:path sc:hasInput ; sh:maxCount 1 ] .", []),
+        (WANTS + ":sink sc:recruits true .", []),
+        (WANTS + ":sink sc:recruits [ sh:class rob:Camera ] .", []),
+        (WANTS + ":sink sc:recruits false .", ["SC-L13"]),
+        (asks(":sink", "sc:hasInput", f"{typed('rob:Image')} , {OPTIONAL}"), []),
+        (f":sink sh:property [ sh:path sc:hasInput ; sh:minCount 1 ; sh:property {OPTIONAL} ] .", []),
     ],
 )
 def test_an_input_that_a_role_asks_for_has_to_be_fed_by_another(more: str, found: list[str]) -> None:

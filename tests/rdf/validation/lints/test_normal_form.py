@@ -12,9 +12,13 @@ from tests.lab import PREFIXES, iri
 P = (URIRef(iri("p")),)
 
 
+def graph(text: str) -> Graph:
+    return Graph().parse(data=PREFIXES + text, format="turtle")
+
+
 def source(text: str) -> ShapeSource:
     """The shapes of a text."""
-    return ShapeSource(Graph().parse(data=PREFIXES + text, format="turtle"))
+    return ShapeSource(graph(text))
 
 
 def form(shape: str, more: str = "") -> NormalForm:
@@ -107,7 +111,9 @@ def test_a_sequence_asks_also_for_what_its_steps_ask_for_one_by_one() -> None:
 
 
 def test_what_holds_of_every_object_of_a_property_holds_of_its_values() -> None:
-    found = form("sh:property [ sh:path :p ; sh:minCount 1 ]", ":always sh:targetObjectsOf :p ; sh:nodeKind sh:IRI .")
+    asked = graph(":s sh:property [ sh:path :p ; sh:minCount 1 ] . :other sh:targetObjectsOf :p ; sh:class :A .")
+    always = graph(":always sh:targetObjectsOf :p ; sh:nodeKind sh:IRI .")
+    found = NormalForm(ShapeSource(asked, always), [URIRef(iri("s"))])
     assert written(found.values[P].each.own) == {"nodeKind IRI"}
 
 

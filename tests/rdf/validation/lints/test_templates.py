@@ -56,6 +56,24 @@ def test_a_property_shape_that_contradicts_itself_is_noticed(shape: str) -> None
 
 
 @pytest.mark.parametrize(
+    "other",
+    [
+        ":q a sc:Role ; sh:class rob:Lamp ; sh:targetClass sc:Component ; sh:property [ sh:path rob:place ; %s ] .",
+        ":q a sh:NodeShape ; sh:targetClass sc:Component ; sh:property [ sh:path rob:place ; %s ] .",
+        ":q a sh:NodeShape ; sh:targetObjectsOf rob:place ; sh:nodeKind sh:Literal .",
+    ],
+)
+def test_the_targets_of_other_shapes_of_the_file_say_nothing_of_a_role(other: str) -> None:
+    asked = "sh:property [ sh:path rob:place ; sh:minCount 1 ; sh:nodeKind sh:IRI ]"
+    text = TEMPLATE.replace("( :r )", "( :r :q )" if "Role" in other else "( :r )")
+    assert not lints(f"{text} :r {asked} . {other.replace('%s', 'sh:maxCount 0')}")
+
+
+def test_a_target_of_a_role_does_not_make_every_component_meet_its_shape() -> None:
+    assert not lints(TEMPLATE + ":r sh:targetClass sc:Component .")
+
+
+@pytest.mark.parametrize(
     "shape", ["sh:minCount 1 ; sh:maxCount 1", "sh:minCount 2 ; sh:in ( :x :y )", "sh:hasValue :x ; sh:in ( :x )"]
 )
 def test_a_property_shape_that_can_be_kept_is_left_alone(shape: str) -> None:
