@@ -177,10 +177,11 @@ class TaskWatcher:
                 notice = decode(sample.payload, Notice)
             except PeerError:
                 continue
-            if sample.key == self.keys.notices(notice.configurator):
+            # An answer may come after the end of a configurator that was forgotten: then it is not to come back by it.
+            if notice.configurator in self._tasks and sample.key == self.keys.notices(notice.configurator):
                 notices.append(notice)
         for notice in sorted(notices, key=lambda notice: (notice.configurator, notice.sequence)):
-            self._hear(self._task(notice.configurator), notice)
+            self._hear(self._tasks[notice.configurator], notice)
 
     def _audit(self) -> None:
         """Ask everyone, so that nothing that was lost stays lost."""
@@ -232,8 +233,9 @@ class TaskWatcher:
                 status = decode(sample.payload, Status)
             except PeerError:
                 continue
-            if sample.key == self.keys.configurator_call(status.configurator, "status"):
-                self._task(status.configurator).take_status(status)
+            task = self._tasks.get(status.configurator)
+            if task is not None and sample.key == self.keys.configurator_call(status.configurator, "status"):
+                task.take_status(status)
         self._changed()
 
     def _take_deployed(self, replies: Replies) -> None:

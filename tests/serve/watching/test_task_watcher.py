@@ -11,7 +11,7 @@ from selfconf.bus.port import Bus, Replies, Sample, Urgency
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.serve.watching import task_watcher
-from selfconf.serve.watching.task_watcher import TaskWatcher
+from selfconf.serve.watching.task_watcher import LOOK_ANEW, TaskWatcher
 from tests.lab import Lab, iri
 
 
@@ -93,6 +93,28 @@ def test_of_what_comes_too_early_some_is_kept_and_no_more(lab: Lab, monkeypatch:
     tell(lab, lab.network.node(), (2, "composed"), (3, "waking"), (4, "running"), (5, "lost"))
     lab.let_pass(3.0)
     assert [event["act"] for event in tasks.events] == ["running", "lost"]
+
+
+def test_what_is_answered_for_a_configurator_that_has_ended_and_was_forgotten_does_not_bring_it_back(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(task_watcher, "ENDED_TASKS", 0)
+    tasks, answers = Tasks(lab), list[tuple[Any, Replies]]()
+    asked = tasks.watcher.bus.ask
+
+    def ask(key: str, payload: bytes, seconds: float, done: Any) -> None:
+        asked(key, payload, seconds, lambda replies: answers.append((done, replies)))
+
+    monkeypatch.setattr(tasks.watcher.bus, "ask", ask)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(LOOK_ANEW + 1.0)
+    lab.crash(agent)
+    lab.let_pass(3.0)
+    assert tasks.phases() == []
+    for done, replies in answers:  # as where another configurator hangs: all wait until its time is over
+        done(replies)
+    assert tasks.phases() == []
 
 
 def test_a_configurator_that_comes_back_at_once_was_never_gone(lab: Lab) -> None:
