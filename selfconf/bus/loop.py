@@ -209,10 +209,15 @@ class Loop:
                     return action
 
     def _run_callback(self, action: Callable[[], None]) -> None:
-        """The outermost loop: what breaks in a callback is logged, and the loop goes on."""
+        """The outermost loop: what breaks in a callback is logged, and the loop goes on, as timers and the end need it.
+
+        What Zenoh panics with is no Exception of Python.
+        """
         try:
             action()
-        except Exception:
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException:
             log.exception("a callback broke; going on")
 
 

@@ -72,6 +72,35 @@ def test_a_callback_that_breaks_is_logged_and_the_loop_goes_on(caplog: pytest.Lo
     assert "no such port" in caplog.text
 
 
+class Panic(BaseException):
+    """As Zenoh has it: what a library in Rust panics with is no Exception."""
+
+
+def test_a_panic_does_not_end_the_thread_of_the_loop(caplog: pytest.LogCaptureFixture) -> None:
+    def panic() -> None:
+        raise Panic("DidntWrite")
+
+    loop, said = Loop(), threading.Event()
+    loop.run_aside()
+    loop.wake_up(panic)
+    loop.wake_up(said.set)
+    assert said.wait(10.0)
+    loop.end()
+    assert "a callback broke" in caplog.text
+    assert "DidntWrite" in caplog.text
+
+
+@pytest.mark.parametrize("ending", [KeyboardInterrupt, SystemExit])
+def test_what_ends_a_program_ends_the_loop_too(ending: type[BaseException]) -> None:
+    def end() -> None:
+        raise ending
+
+    loop = Loop()
+    loop.wake_up(end)
+    with pytest.raises(ending):
+        loop.poll()
+
+
 def test_a_flood_holds_up_neither_timers_nor_the_end() -> None:
     loop = Loop()
     said = 0
