@@ -188,12 +188,12 @@ class TaskRunner:
 
     @property
     def recorded_losses(self) -> tuple[RecordedLoss, ...]:
-        """What was lost and lives on as it was, so that another configurator would not find out by itself."""
-        return tuple(
-            RecordedLoss(component, loss.life, loss.cause, loss.detail)
-            for component, loss in sorted(self.state.lost.items())
-            if loss.lasts
-        )
+        """What was lost and lives on as it was, so that another configurator would not find out by itself.
+
+        Of very many those that were lost last, as sites take no record that is too large.
+        """
+        lasting = [(component, loss) for component, loss in self.state.lost.items() if loss.lasts][-LOSSES_TOLD:]
+        return tuple(RecordedLoss(component, loss.life, loss.cause, loss.detail) for component, loss in sorted(lasting))
 
     def rewire(self, rests: bool = False) -> None:
         """Tell those inside that are connected to what is outside that it has changed; `rests` as in an `Apply`."""

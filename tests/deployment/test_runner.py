@@ -16,7 +16,7 @@ from selfconf.deployment.runner import LOSSES_TOLD
 from selfconf.model.refusal import TooFewEligible
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import CallAnswer, Cause, Release, Status, Verdict
+from selfconf.protocol.messages import CallAnswer, Cause, Release, Status, TaskRecord, Verdict
 from selfconf.render.run_events import event_body
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.tasks import TASK
@@ -260,6 +260,16 @@ def test_of_very_many_losses_the_newest_are_told_so_that_the_status_can_be_sent(
     agent.state = replace(agent.state, lost=lost)
     told = decode(encode(agent.status()), Status).lost
     assert list(told) == list(agent.losses) == list(lost)[-LOSSES_TOLD:]
+
+
+def test_of_very_many_losses_that_last_the_newest_are_recorded_so_that_sites_take_the_record(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    lost = {iri(f"passing-by-{number}"): Loss(Cause.FAIL, "blind", life="1") for number in range(20_000)}
+    agent.state = replace(agent.state, lost=lost)
+    record = TaskRecord("navigate~1", 1, lost=agent.recorded_losses)
+    assert decode(encode(record), TaskRecord).lost == agent.recorded_losses
+    assert {one.component for one in record.lost} == set(list(lost)[-LOSSES_TOLD:])
 
 
 def test_why_a_component_was_lost_is_its_cause_where_nothing_else_is_known(lab: Lab) -> None:
