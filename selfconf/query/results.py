@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
 
 import pyoxigraph as ox
 
@@ -61,11 +60,18 @@ def _json_results(variables: Sequence[str], rows: Sequence[Sequence[Cell]]) -> s
 
 
 def _csv_results(variables: Sequence[str], rows: Sequence[Sequence[Cell]]) -> str:
-    written = io.StringIO()
-    writer = csv.writer(written, lineterminator="\n")
+    # By lines that end with \r\n, else a lone \r stands without quotation marks; shown with \n, as all other text is.
+    lines: list[str] = []
+    writer = csv.writer(_Lines(lines.append), lineterminator="\r\n")
     writer.writerow(variables)
     writer.writerows([_plain(cell) for cell in row] for row in rows)
-    return written.getvalue().rstrip("\n")
+    return "\n".join(line.removesuffix("\r\n") for line in lines)
+
+
+class _Lines(NamedTuple):
+    """Takes each line as it is written."""
+
+    write: Callable[[str], object]
 
 
 def _tsv_results(variables: Sequence[str], rows: Sequence[Sequence[Cell]]) -> str:

@@ -53,6 +53,11 @@ def test_csv_and_tsv_are_those_of_sparql(dataset: Dataset) -> None:
     assert '"x\\ty, \\"z\\""@en\t' in lines
 
 
+def test_a_text_with_a_carriage_return_is_one_field_of_csv(dataset: Dataset) -> None:
+    written = ask(dataset, "SELECT ?a ?b { VALUES (?a ?b) { ('x\\ry' 'z') ('' UNDEF) } }", "csv")
+    assert list(csv.reader(io.StringIO(written, newline=""))) == [["a", "b"], ["x\ry", "z"], ["", ""]]
+
+
 @pytest.mark.parametrize(("form", "word"), [("turtle", "<urn:b>"), ("json", '"@id":"urn:b"')])
 def test_triples_are_turtle_or_json_ld(dataset: Dataset, form: str, word: str) -> None:
     assert word in ask(dataset, "CONSTRUCT WHERE { ?s ?p ?o }", form)

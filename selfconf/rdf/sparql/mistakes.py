@@ -6,13 +6,14 @@ import re
 from collections.abc import Container
 
 from selfconf.rdf.sparql.prologue import PROLOGUE
-from selfconf.rdf.sparql.read_only import without
+from selfconf.rdf.sparql.read_only import hidden, without
 
 BEGINNINGS = ("PREFIX", "BASE", "SELECT", "ASK", "CONSTRUCT", "DESCRIBE")
 _DECLARED = re.compile(r"\bprefix\s+([^\s:]*)\s*:", re.IGNORECASE)
 _PREFIX = re.compile(r"(?<![\w?$@:.-])((?:[^\W\d_][\w.-]*)?):(?!//)")
 _COMPLAINT = re.compile(r"error at (\d+):(\d+): expected (?:one of )?(.*)", re.DOTALL)
 _SENTENCE = re.compile(r"(?:^|, )([A-Z][A-Za-z]*(?: [A-Za-z*]+){2,})(?=,|$)")
+_PAIRS = {"(": ")", "[": "]", "{": "}"}
 LONGEST_EXCERPT = 30
 """Characters of the query that are shown."""
 
@@ -33,12 +34,30 @@ def mistake(text: str, complaint: str, known: Container[str]) -> str:
     if found is None:
         return " ".join(complaint.split())
     line, column = int(found[1]), int(found[2])
+    unpaired = _unpaired(text)
+    if unpaired is not None and unpaired[:2] <= (line, column):
+        return f"at {unpaired[0]}:{unpaired[1]} the '{unpaired[2]}' closes what is not open"
     place = f"at {line}:{column}"
     sentence = _SENTENCE.search(found[3])
     if sentence is not None:
         return f"{place}: {sentence[1]}"
     rest = "\n".join(text.split("\n")[line - 1 :])[column - 1 :]
     return f"{place} something is wrong before {_short(rest)}" if rest.strip() else f"{place} it ends too soon"
+
+
+def _unpaired(text: str) -> tuple[int, int, str] | None:
+    """Line and column of the first bracket of a query that closes another than the last open one, or none; and it.
+
+    The parser goes on behind a bracket too many, and complains of a later place, mostly of the end.
+    """
+    line, column, awaited = 1, 0, [""]
+    for mark in hidden(text):
+        line, column = (line + 1, 0) if mark == "\n" else (line, column + 1)
+        if mark in _PAIRS:
+            awaited.append(_PAIRS[mark])
+        elif mark in _PAIRS.values() and mark != awaited.pop():
+            return line, column, mark
+    return None
 
 
 def _short(text: str) -> str:

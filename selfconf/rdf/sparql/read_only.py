@@ -49,6 +49,11 @@ def without(text: str, *marks: str) -> str:
     return _STRINGS_IRIS_COMMENTS.sub(lambda token: " " if token[0].startswith(marks) else token[0], text)
 
 
+def hidden(text: str) -> str:
+    """A query with blanks for its strings, IRIs, comments and escapes; all else stays in its place."""
+    return _STRINGS_IRIS_COMMENTS.sub(lambda token: re.sub(r"[^\n]", " ", token[0]), text)
+
+
 def only_reads(text: str) -> None:
     """Raises QueryError for a query of a user that asks others, however that is spelt."""
     expanded = _expanded(text)
