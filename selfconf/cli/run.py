@@ -129,8 +129,7 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.termination import end_as_by_ctrl_c, ignore_from_now_on
 
     end_as_by_ctrl_c()
-    if "ads" in given.from_project and _lives(given):
-        given.ads = None  # what is missing is started, and this is there
+    _begin_none_for_the_project(given)
     task = task_of(given)
     if given.detach:
         return _detach(given, task)
@@ -160,6 +159,14 @@ def run(given: argparse.Namespace) -> int:
     if running.refusal is not None and given.format == "text":
         _explain(running, task, lines.told)
     return 1 if running.refusal is not None else 0
+
+
+def _begin_none_for_the_project(given: argparse.Namespace) -> None:
+    """Pass over what the project file says an ecology is begun from, where the task is to run in one that is there."""
+    if "ads" in given.from_project and _lives(given):
+        given.ads = None  # what is missing is started, and this is there
+    if "endpoint" in given.from_project and given.detach:
+        given.endpoint = None
 
 
 def _lives(given: argparse.Namespace) -> bool:
@@ -215,6 +222,7 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
     if given.ads is not None or given.endpoint is not None:
         raise AuthorError(
             "a detached task lives in the sites that there are: start them with `selfconf site`, without --ads"
+            " and --endpoint"
         )
     from selfconf.model.run_event import TaskDetached
 

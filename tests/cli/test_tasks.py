@@ -157,6 +157,16 @@ def test_a_detached_task_needs_sites_that_are_there_already(capsys: pytest.Captu
     )
 
 
+def test_what_a_project_file_begins_an_ecology_from_has_no_part_in_a_detached_task(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path))
+    for source in ('ads = ["."]', 'endpoint = "http://127.0.0.1:1/sparql"'):
+        (tmp_path / "selfconf.toml").write_text(source)
+        assert run(capsys, "run", TEMPLATE, "--detach").is_one_sentence("no site runs on this machine")
+
+
 def test_a_run_of_this_machine_that_is_suspended_leaves_the_tasks_unknown(
     home: Home, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -53,10 +53,10 @@ class HeardSignal(NamedTuple):
         return f"<{what}{encoding.datatype} {' x '.join(map(str, encoding.shape))}, {self.size} bytes>"
 
     def body(self) -> dict[str, Any]:
-        """The signal as JSON; bytes and arrays are described."""
+        """The signal as JSON; bytes and arrays are described, and what holds NaN or infinity, which JSON has not."""
         stamp, encoding = self.stamp, self.stamp.encoding
         said: dict[str, Any] = {"value": self.value}
-        if self.raw:
+        if self.raw or not _is_of_json(self.value):
             said = {"bytes": self.size, "media": encoding.media, "datatype": encoding.datatype}
             said["shape"] = list(encoding.shape)
         return {
@@ -68,6 +68,15 @@ class HeardSignal(NamedTuple):
             "passed_over": self.passed_over,
             **said,
         }
+
+
+def _is_of_json(value: Any) -> bool:
+    """Whether all numbers in what was read have a place in JSON."""
+    try:
+        json.dumps(value, allow_nan=False)
+    except ValueError:
+        return False
+    return True
 
 
 def heard_signal(

@@ -74,7 +74,7 @@ def past_graphs(folder: Path) -> dict[str, bytes]:
         with tempfile.TemporaryDirectory(prefix="selfconf-history-") as copy:
             try:
                 for ending in _ORDER:
-                    for path in folder.iterdir():
+                    for path in filter(Path.is_file, folder.iterdir()):  # no folder, such as lost+found
                         if path.suffix == ending or (not ending and path.suffix not in _ORDER):
                             shutil.copy2(path, copy)
                 store = ox.Store.read_only(copy)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from collections.abc import Iterator
 from functools import partial
 
@@ -76,6 +77,16 @@ def test_bytes_and_arrays_are_described() -> None:
     body = signal.body()
     assert (signal.raw, signal.value, body["bytes"], body["shape"]) == (True, None, 6, [2, 3])
     assert (body["media"], body["datatype"]) == ("image/x-raw", "uint8")
+
+
+@pytest.mark.parametrize("payload", [b'{"x": NaN}', b"[1e999]", b"-Infinity"])
+def test_what_holds_numbers_that_json_has_not_is_described_in_json_and_shown_to_people(payload: bytes) -> None:
+    stage = Stage()
+    stage.later(0.1, payload)
+    signal = next(stage.heard)
+    body = json.loads(json.dumps(signal.body()), parse_constant=pytest.fail)
+    assert (body["bytes"], "value" in body) == (len(payload), False)
+    assert any(word in signal.worded() for word in ("NaN", "Infinity"))
 
 
 def test_what_comes_too_quickly_is_passed_over_and_counted() -> None:

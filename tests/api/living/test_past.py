@@ -137,6 +137,12 @@ def test_a_task_goes_by_the_name_that_it_ran_by(tmp_path: Path) -> None:
     assert past_why(tmp_path, "patrol", None)
 
 
+def test_a_folder_in_it_is_passed_over(kept: Path) -> None:
+    known = past_graphs(kept)
+    (kept / "lost+found").mkdir()
+    assert past_graphs(kept) == known
+
+
 def test_a_folder_without_a_history_and_one_that_is_broken_are_sentences(tmp_path: Path, kept: Path) -> None:
     with pytest.raises(AuthorError, match="holds no history; `selfconf serve --history"):
         past_graphs(tmp_path / "nowhere")
