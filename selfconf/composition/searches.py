@@ -71,13 +71,14 @@ class Searches:
         self, search: AnswersOf, problem: Problem, running: Configuration | None
     ) -> Iterator[Optimum | Outcome]:
         """The answers of a search; where there is no configuration, with the optional roles that it takes."""
+        asked = False
         for answer in search(problem, running):
-            raised = with_additions(problem, self.steps) if isinstance(answer, Refusal) else None
-            if raised is None:
-                yield answer
-                continue
-            yield from (raised,) if isinstance(raised, Undecided) else search(raised, running)
-            return
+            if isinstance(answer, Refusal) and not asked:  # one without reasons comes before the one that has them
+                asked, raised = True, with_additions(problem, self.steps)
+                if raised is not None:
+                    yield from (raised,) if isinstance(raised, Undecided) else search(raised, running)
+                    return
+            yield answer
 
     def _search(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         found = self._best if self.strategy is Strategy.BEST else self._first_or_nearest

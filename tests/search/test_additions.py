@@ -8,12 +8,12 @@ from itertools import product
 import pytest
 from hypothesis import given
 
-from selfconf.composition import Strategy
+from selfconf.composition import Strategy, searches
 from selfconf.composition.searches import Searches
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
 from selfconf.model.partition import Recruit
-from selfconf.model.refusal import Undecided
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.search import additions
 from selfconf.search.additions import MOST_OF_A_ROLE, asking_for, with_additions
 from selfconf.search.problem import Problem
@@ -96,6 +96,16 @@ def test_a_question_that_is_not_decided_in_its_steps_leaves_the_answer_undecided
     assert isinstance(with_additions(fan(1, 2)), Undecided)
     *_, answer = Searches(Strategy.FIRST).answers(fan(1, 2))
     assert isinstance(answer, Undecided)
+
+
+def test_that_no_optional_role_helps_is_found_out_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A refusal is told twice, the second time with its reasons."""
+    asked: list[Problem] = []
+    monkeypatch.setattr(searches, "with_additions", lambda given_, steps: asked.append(given_))
+    user = {"one": [component("a", "i:T", "o:S")], "user": [component("user", "i:S")]}
+    answers = list(Searches(Strategy.FIRST).answers(problem(user, "one>user", counts={"one": (0, 1)})))
+    assert [bool(one.reasons) for one in answers if isinstance(one, Refusal)] == [False, True]
+    assert len(asked) == 1
 
 
 def test_of_equally_few_the_first_role_is_asked() -> None:
