@@ -15,7 +15,7 @@ from selfconf.errors import AuthorError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import immutable
-from selfconf.model.profile import Input, Output, Profile, port_in_words
+from selfconf.model.profile import Condition, Input, Output, Profile, port_in_words
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import MANY
@@ -196,7 +196,7 @@ def _check_ports(profile: Profile, inside: TaskDocument) -> None:
         if other:
             raise AuthorError(f"its {word}s and those of the template {template.iri.short} differ: {', '.join(other)}")
         for port in ports:
-            if _carried(port) != _carried(own[port.name]):
+            if _carried(port) != _carried(own[port.name]) or not _agree(port, own[port.name]):
                 raise AuthorError(
                     f"its {word} {port.name!r} is {_in_words(port)}, and that of the template {template.iri.short} is"
                     f" {_in_words(own[port.name])}"
@@ -206,6 +206,17 @@ def _check_ports(profile: Profile, inside: TaskDocument) -> None:
 def _carried(port: Input | Output) -> tuple[object, ...]:
     """What two ports have to have in common of which one stands for the other."""
     return port.signals, port.request
+
+
+def _agree(one: Input | Output, other: Input | Output) -> bool:
+    """Whether two ports have one unit and one frame, as far as both say it."""
+    pairs = zip(_unit_and_frame(one), _unit_and_frame(other), strict=True)
+    return all(None in pair or pair[0] == pair[1] for pair in pairs)
+
+
+def _unit_and_frame(port: Input | Output) -> tuple[IRI | None, Term | None]:
+    unit, frame, *_ = (port.condition or Condition()) if isinstance(port, Input) else (port.unit, port.frame)
+    return unit, frame
 
 
 def _in_words(port: Input | Output) -> str:

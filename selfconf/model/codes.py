@@ -268,7 +268,10 @@ CODES: tuple[Code, ...] = (
         f"{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] .",
         f'{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] ;\n'
         '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
-        ("CompositeTemplateHere", "CompositePorts", "CompositePortTypes", "CompositeParameters"),
+        (
+            "CompositeTemplateHere", "CompositePorts", "CompositePortTypes", "CompositePortUnits",
+            "CompositeParameters",
+        ),
     ),
     Code(
         "SC-T01", "A template has an IRI and is a sc:Template.",

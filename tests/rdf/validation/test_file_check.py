@@ -97,12 +97,30 @@ def test_shapes_are_read_once_for_the_same_texts() -> None:
         ("sc:hasInput [ {} sc:signalType :A ]", "sc:hasInput [ {} sc:signalType :A , :B ]", False),
         ("sc:hasInput [ {} sc:signalType :A ]", "sc:hasInput [ {} ]", False),
         ("sc:hasInput [ {} sc:signalType :A ]", "sc:hasInput [ {} sc:signalType :A ; sc:optional true ]", True),
+        (
+            "sc:hasOutput [ {} sc:signalType :A ; sc:unit :C ]",
+            "sc:hasOutput [ {} sc:signalType :A ; sc:unit :F ]",
+            False,
+        ),
+        ("sc:hasInput [ {} sc:signalType :A ; sc:unit :C ]", "sc:hasInput [ {} sc:signalType :A ; sc:unit :F ]", False),
+        (
+            "sc:hasInput [ {} sc:signalType :A ; sc:frame :h ]",
+            "sc:hasInput [ {} sc:signalType :A ; sc:frame :i ]",
+            False,
+        ),
+        ("sc:hasInput [ {} sc:signalType :A ; sc:unit :C ]", "sc:hasInput [ {} sc:signalType :A ; sc:frame :h ]", True),
+        (
+            "sc:hasOutput [ {} sc:signalType :A ; sc:unit :C ]",
+            "sc:hasOutput [ {} sc:signalType :A ; sc:unit :C ]",
+            True,
+        ),
+        ("sc:hasOutput [ {} sc:signalType :A ]", "sc:hasOutput [ {} sc:signalType :A ; sc:unit :F ]", True),
         ("sc:hasOperation [ {} sc:request :A ]", "sc:hasOperation [ {} sc:request :A ]", True),
         ("sc:needsOperation [ {} sc:request :A ]", "sc:needsOperation [ {} sc:response :A ]", False),
         ("sc:hasOperation [ {} ]", "sc:hasOperation [ {} sc:response :A ]", False),
     ],
 )
-def test_a_composite_has_the_types_of_its_template_as_whoever_configures_it_asks(
+def test_a_composite_has_the_types_and_units_of_its_template_as_whoever_configures_it_asks(
     inside: str, outside: str, same: bool
 ) -> None:
     name = 'sc:name "p" ;'
