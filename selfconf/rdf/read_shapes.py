@@ -30,6 +30,12 @@ from rdflib.term import Node
 from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.library_patches import replaced
 
+_DEEPEST = 50
+"""How many shapes within shapes pySHACL follows.
+
+By itself it follows 15; the shape of shapes nests 16, which are needed for a path of alternatives in a list of shapes.
+"""
+
 
 class ReadShapes:
     """Some shapes, read by pySHACL. The graph that they come from is copied."""
@@ -41,7 +47,8 @@ class ReadShapes:
         graph = _IndexedGraph()
         for triple in shapes:
             graph.add(triple)
-        validator = Validator(DataGraph.from_rdflib(Graph(bind_namespaces="none")), shacl_graph=graph)
+        nothing = DataGraph.from_rdflib(Graph(bind_namespaces="none"))
+        validator = Validator(nothing, shacl_graph=graph, options={"max_validation_depth": _DEEPEST})
         self._executor = validator.make_executor()
         self._with_targets = [shape for shape in validator.shacl_graph.shapes if any(map(list, shape.target()))]
 

@@ -41,6 +41,7 @@ def places(text: str) -> list[tuple[int, int]]:
         "sh:or ( [ sh:class :A ] [ sh:class :B ] )",
         "sh:property [ sh:path ( :p :q ) ; sh:pattern '^a+$' ]",
         "sh:sparql [ sh:select 'SELECT $this WHERE { $this a ?type }' ]",
+        "sh:or ( [ sh:path [ sh:alternativePath ( :p ( :q :p ) ) ] ; sh:minCount 1 ] [ sh:class :K ] )",
     ],
 )
 def test_a_role_that_is_a_shape_has_nothing_wrong(shape: str) -> None:

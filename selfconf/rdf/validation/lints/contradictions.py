@@ -209,24 +209,28 @@ def entails(more: NormalForm, less: NormalForm) -> bool:
 # complexity: one rule for each part of a normal form; each needs what the one before it has found
 def _covers(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> bool:
     """Whether whatever satisfies `more` satisfies `less`; what shows it is added to `basis`."""
-    if not less.whole or less.closed or less.nots or less.choices or not _all_in(more, less, basis):
+    if not _compared(less) or not _all_in(more, less, basis):
         return False
-    for path, values in less.values.items():
+    for path, values in list(less.values.items()):  # what holds of each value looks for further paths
         ours = more.along(path)
-        if not _all_in(ours.each, values.each, basis) or values.each.values:
+        if not _compared(values.each) or values.each.values or not _all_in(ours.each, values.each, basis):
             return False
         wanted = {one[2] for one in values.required}
         fewer = [pair[1] for most in values.most for pair in ours.most if pair[0] <= most[0]][: len(values.most)]
         enough = [pair[1] for least in values.least for pair in ours.least if pair[0] >= least[0]]
         if (
-            not values.each.whole
-            or not wanted <= {one[2] for one in ours.required}
+            not wanted <= {one[2] for one in ours.required}
             or any(all(pair[0] > most for pair in ours.most) for most, _ in values.most)
             or any(least > 0 and all(pair[0] < least for pair in ours.least) for least, _ in values.least)
         ):
             return False
         basis += [*fewer, *enough]
     return True
+
+
+def _compared(normal: NormalForm) -> bool:
+    """Whether statements about the node and the values of paths are all that a normal form asks for."""
+    return normal.whole and not (normal.closed or normal.nots or normal.choices)
 
 
 def _all_in(more: NormalForm, less: NormalForm, basis: list[ShapeStatement]) -> bool:

@@ -140,6 +140,9 @@ def test_a_contradiction_is_found_wherever_its_two_sides_stand(shape: str) -> No
         "sh:property [ sh:path sc:preference ; sh:hasValue 5 ]",
         "sh:property [ sh:path ( sc:hasInput sc:signalType ) ; sh:hasValue :X , :Y ]",
         "sh:node :role ; sh:property [ sh:path :p ; sh:node :role ; sh:minCount 1 ]",
+        "sh:property [ sh:path :p ; sh:minCount 1 ] ; sh:not [ sh:path :p ; sh:minCount 1 ; sh:not [ sh:class :A ] ]",
+        "sh:property [ sh:path :p ; sh:minCount 1 ] ; sh:not [ sh:path :p ; sh:minCount 1 ; sh:or ( [ sh:in () ] ) ]",
+        "sh:not [ sh:path ( :p :q ) ]",
     ],
 )
 def test_what_a_component_could_conform_to_is_left_alone(shape: str) -> None:

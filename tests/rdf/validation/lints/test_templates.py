@@ -103,6 +103,7 @@ def test_a_closed_role_that_does_not_let_a_component_have_a_type_is_told_how_to(
         " ; sh:nodeKind sh:IRI",
         " ; sh:property [ sh:path rob:place ]",
         " ; sh:property [ sh:path rob:place ; sh:minCount 0 ]",
+        " ; sh:property [ sh:path ( rob:place rob:part ) ; sh:minCount 0 ]",
     ],
 )
 def test_a_role_that_every_component_meets_is_noticed(role: str) -> None:
@@ -115,6 +116,9 @@ def test_a_role_that_every_component_meets_is_noticed(role: str) -> None:
         ":r sh:property [ sh:path rob:place ; sh:minCount 1 ] .",
         ":r sh:property [ sh:path rob:place ; sh:in ( :kitchen ) ] .",
         ":r sh:or ( [ sh:class rob:Tuner ] [ sh:class rob:Display ] ) .",
+        ":r sh:property [ sh:path rob:place ; sh:or ( [ sh:in ( :kitchen ) ] [ sh:in ( :hall ) ] ) ] .",
+        ":r sh:property [ sh:path rob:place ; sh:not [ sh:in ( :kitchen ) ] ] .",
+        ":r sh:property [ sh:path rob:place ; sh:closed true ] .",
         ":r sc:sets [ sc:parameterType rob:Station ; sc:value 3 ] .",
         ':t sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :r ] .',
     ],
