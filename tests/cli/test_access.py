@@ -47,6 +47,7 @@ def its_keys(running: Home, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_task_with_keys_is_repaired_and_nobody_is_refused(running: Home, capsys: pytest.CaptureFixture[str]) -> None:
     (running.folder / "tracker.fail").touch()
     assert running.until(lambda: "odometry" in running.active("odometry"))
+    assert running.until(lambda: "running for" in run(capsys, "status", *running.arguments()).out)
     (site,) = run(capsys, "access", *running.arguments(), "--format", "json").body["sites"]
     assert site["refused"] == []
     shown = run(capsys, "access", *running.arguments())
