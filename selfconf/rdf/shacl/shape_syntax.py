@@ -12,12 +12,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-import pyoxigraph as ox
-
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES
-from selfconf.rdf.sparql import fault
+from selfconf.rdf.sparql import why_not_asked
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import FIRST, NIL, SH, XSD
 
@@ -92,9 +90,11 @@ def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[T
         shape, predicate, value = triple
         if value in variables and predicate not in LISTS:
             continue
-        query = _refused(document, value) if predicate == SH.sparql else None
-        if query is not None or (predicate in WANTED and not _fits(document, predicate, value)):
-            return query or triple, unfit(predicate).rstrip(".")
+        refused = _refused(document, value) if predicate == SH.sparql else None
+        if refused is not None:
+            return refused
+        if predicate in WANTED and not _fits(document, predicate, value):
+            return triple, unfit(predicate).rstrip(".")
         lacking = _lacking(document, shape, predicate)
         if lacking is not None:
             return triple, lacking
@@ -200,8 +200,8 @@ def _compiles(pattern: str) -> bool:
     return True
 
 
-def _refused(document: Document, constraint: Term) -> Triple | None:
-    """The first query of a constraint that is no SPARQL, or that asks another machine (SHACL, 5.3.1)."""
+def _refused(document: Document, constraint: Term) -> tuple[Triple, str] | None:
+    """The first query of a constraint that is no SPARQL or asks another machine (SHACL, 5.3.1), and a sentence."""
     if isinstance(constraint, Literal):
         return None
     declared = {
@@ -210,17 +210,10 @@ def _refused(document: Document, constraint: Term) -> Triple | None:
         for each in document.values(owner, SH.declare)
     }
     for predicate, query in document.about(constraint):
-        if predicate in (SH.select, SH.ask) and (fault(str(query)) is not None or not _parses(str(query), declared)):
-            return constraint, predicate, query
+        reason = why_not_asked(str(query), declared) if predicate in (SH.select, SH.ask) else None
+        if reason is not None:
+            return (constraint, predicate, query), reason.rstrip(".")
     return None
-
-
-def _parses(query: str, prefixes: dict[str, str]) -> bool:
-    try:
-        ox.Store().query(query, prefixes=prefixes)
-    except SyntaxError:
-        return False
-    return True
 
 
 def component_parameters(document: Document) -> frozenset[IRI]:

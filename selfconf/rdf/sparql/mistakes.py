@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container
+from collections.abc import Container, Mapping
+
+import pyoxigraph as ox
 
 from selfconf.rdf.sparql.prologue import PROLOGUE
-from selfconf.rdf.sparql.read_only import hidden, without
+from selfconf.rdf.sparql.read_only import fault, hidden, without
 
 BEGINNINGS = ("PREFIX", "BASE", "SELECT", "ASK", "CONSTRUCT", "DESCRIBE")
 _DECLARED = re.compile(r"\bprefix\s+([^\s:]*)\s*:", re.IGNORECASE)
@@ -16,6 +18,18 @@ _SENTENCE = re.compile(r"(?:^|, )([A-Z][A-Za-z]*(?: [A-Za-z*]+){2,})(?=,|$)")
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
 LONGEST_EXCERPT = 30
 """Characters of the query that are shown."""
+
+
+def why_not_asked(text: str, prefixes: Mapping[str, str]) -> str | None:
+    """Why the query of a shape, to which some prefixes are declared, is not asked, in a sentence; None if it may be."""
+    reason = fault(text)
+    if reason is not None:
+        return reason
+    try:
+        ox.Store().query(text, prefixes=dict(prefixes))
+    except SyntaxError as error:
+        return f"This is not SPARQL: {mistake(text, str(error), prefixes)}."
+    return None
 
 
 def mistake(text: str, complaint: str, known: Container[str]) -> str:

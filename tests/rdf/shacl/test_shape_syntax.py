@@ -78,6 +78,20 @@ def test_of_a_constraint_in_sparql_the_query_is_named() -> None:
     assert found[0][1] == SH.select
 
 
+@pytest.mark.parametrize(
+    ("query", "sentence"),
+    [
+        ("SELECT $this { $this a sc:Component }", "This is not SPARQL: the prefix sc: is not declared"),
+        ("SELECT $this { SERVICE <a:b> { $this a ?c } }", "leave out SERVICE"),
+    ],
+)
+def test_of_a_query_that_is_not_asked_it_is_told_why(query: str, sentence: str) -> None:
+    document = parse(f"{PREFIXES}:r sh:sparql [ sh:select '{query}' ] .", "r.ttl")
+    found = misfit(document, document.triples(), frozenset())
+    assert found is not None
+    assert sentence in found[1]
+
+
 def test_a_parameter_is_no_list() -> None:
     document = parse(f"{PREFIXES}:r sh:in :n .", "r.ttl")
     found = misfit(document, list(document.triples()), frozenset({iri("n")}))
