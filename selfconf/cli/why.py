@@ -71,7 +71,10 @@ def _moment(text: str) -> float:
     14:02:07.4, they say, is so since 14:02:07.
     """
     moment = _written(text)
-    return (moment if moment.microsecond else moment.replace(microsecond=999_999)).timestamp()
+    try:
+        return (moment if moment.microsecond else moment.replace(microsecond=999_999)).timestamp()
+    except (ValueError, OverflowError):  # of the first year or the last one, as it is elsewhere
+        raise argparse.ArgumentTypeError(f"{text!r} is before or after all moments that are known") from None
 
 
 def _written(text: str) -> datetime:

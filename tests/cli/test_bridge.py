@@ -71,6 +71,8 @@ def test_what_it_cannot_do_is_one_sentence(tmp_path: Path, capsys: pytest.Captur
         (("wot", source), "give --ecology NAME"),
         (("wot", source, "--ecology", "a/b"), "cannot name an ecology"),
         (("wot", source, "--ecology", "e", "--credentials", str(secret)), "chmod 600"),
+        (("wot", "http://[::1/", "--ecology", "e"), "http://[::1/ is no http or https URL"),
+        (("wot", "http://localhost:99999/", "--ecology", "e"), "http://localhost:99999/ is no http or https URL"),
     ):
         run(capsys, "bridge", *arguments).is_one_sentence(words)
 

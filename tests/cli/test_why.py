@@ -40,6 +40,11 @@ def test_what_is_no_time_is_one_sentence(text: str, capsys: pytest.CaptureFixtur
     assert run(capsys, "why", "position", "--at", text).is_one_sentence(f"{text!r} is no time")
 
 
+def test_a_moment_that_no_clock_has_is_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+    said = run(capsys, "why", "position", "--at", "0001-01-01")
+    assert said.is_one_sentence("'0001-01-01' is before or after all moments that are known")
+
+
 @pytest.mark.process
 def test_what_a_server_has_kept_answers_for_every_moment_as_the_run_has_told(
     home: Home, capsys: pytest.CaptureFixture[str]

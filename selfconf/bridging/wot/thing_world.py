@@ -19,7 +19,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from selfconf.bridging.bridge import Bridge
-from selfconf.bridging.wot.credentials import ThingCredentials
+from selfconf.bridging.wot.credentials import ThingCredentials, origin
 from selfconf.bridging.wot.forms import ThingForm, ThingForms
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
 from selfconf.bridging.wot.thing_client import ThingClient, ThingError, ThingLimits
@@ -75,8 +75,10 @@ class ThingWorld:
     """The other side of a bridge to things."""
 
     def __init__(self, sources: Sequence[str], settings: ThingSettings) -> None:
+        """Raises AuthorError for a source that is to be fetched and is no URL."""
         self._sources, self._settings = sources, settings
-        self._hosts = settings.hosts | {urlsplit(source).hostname or "" for source in sources if is_url(source)}
+        of_sources = {_host_of(source) for source in sources if is_url(source)}
+        self._hosts = of_sources.union(host.lower() for host in settings.hosts)  # as `urlsplit` has those of forms
         self._told: set[str] = set()
 
     def open(self, bridge: Bridge) -> None:
@@ -302,3 +304,12 @@ def unreadable_file(source: str) -> AuthorError | None:
 def is_url(source: str) -> bool:
     """Whether a source is fetched, and no path."""
     return source.lower().startswith(("http://", "https://"))
+
+
+def _host_of(url: str) -> str:
+    """The host to which a URL leads. Raises AuthorError for what is none."""
+    try:
+        origin(url)
+    except ValueError:
+        raise AuthorError(f"{url} is no http or https URL") from None
+    return urlsplit(url).hostname or ""

@@ -137,7 +137,7 @@ def test_a_description_that_was_fetched_leads_to_its_own_host_alone(
         assert until(lambda: found.complained("there is no form by which it could be reached"))
         assert not found.lives("lamp")
     assert private.received == []
-    allowed = replace(HASTY, hosts=frozenset(("localhost",)))
+    allowed = replace(HASTY, hosts=frozenset(("LocalHost",)))
     with bridging(living, tmp_path / "ads", f"{server.url}/td", settings=allowed) as found:
         assert until(lambda: found.lives("lamp"))
 
