@@ -91,8 +91,8 @@ class MemoryRun:
             report=self._report,
             ended=self._ended,
         )
-        network = ecology.network
-        self._runner = TaskRunner(network.node(), ECOLOGY_NAME, request, f"c{len(network.nodes)}", lambda: network.time)
+        network, node = ecology.network, ecology._another_node()
+        self._runner = TaskRunner(node, ECOLOGY_NAME, request, f"c{len(network.nodes)}", lambda: network.time)
         self._runner.start()
 
     @property
@@ -187,6 +187,8 @@ class MemoryEcology:
         self._site = Site(node, ECOLOGY_NAME, "site", self._shelf, changed=self._composites.refresh)
         self._runtimes: list[tuple[ComponentRuntime, MemoryBus]] = []
         """Each life with its node, also several of one component, of which the first acts."""
+        self._isolated: list[MemoryBus] = []
+        """The nodes that are cut off from every other one, also from those that come later."""
 
     @property
     def time(self) -> float:
@@ -209,7 +211,7 @@ class MemoryEcology:
             raise ProgrammerError(f"a component is an object of a class of selfconf.sdk.Component, not {component!r}")
         found = self._advertised(component, advertisement)
         self._shelf.put(found)
-        bus = self.network.node()
+        bus = self._another_node()
         life = f"life{len(self.network.nodes)}"
         signals = {signal for port in found.profile.outputs for signal in port.signals}
         text = text_of(type(component).advertisement_path() if advertisement is None else advertisement)
@@ -243,17 +245,21 @@ class MemoryEcology:
         self._node(component).close()
 
     def isolate(self, component: Component) -> None:
-        """Cut a component off from every other program."""
+        """Cut a component off from every other program, also from one that begins later."""
         node = self._node(component)
+        if node not in self._isolated:
+            self._isolated.append(node)
         for other in self.network.nodes:
-            if other is not node and self.network.reaches(node, other):
+            if other is not node:
                 self.network.cut(node, other)
 
     def rejoin(self, component: Component) -> None:
-        """Let a component reach every other program again."""
+        """Let a component reach every other program again, but for those that are isolated themselves."""
         node = self._node(component)
+        if node in self._isolated:
+            self._isolated.remove(node)
         for other in self.network.nodes:
-            if other is not node and not self.network.reaches(node, other):
+            if other is not node and other not in self._isolated:
                 self.network.reconnect(node, other)
 
     def advance(self, seconds: float) -> None:
@@ -273,6 +279,13 @@ class MemoryEcology:
     def _advertised(self, component: Component, advertisement: str | Path | None) -> Advertisement:
         """What is advertised of a component that is to live."""
         return _advertisement(component, advertisement)
+
+    def _another_node(self) -> MemoryBus:
+        """A node for another program, which no isolated component reaches."""
+        node = self.network.node()
+        for isolated in self._isolated:
+            self.network.cut(isolated, node)
+        return node
 
     def _node(self, component: Component) -> MemoryBus:
         for runtime, bus in reversed(self._runtimes):  # one that was added again begins another life

@@ -104,6 +104,30 @@ def test_a_component_that_is_cut_off_comes_back() -> None:
     assert ecology.until(lambda: run.running)
 
 
+def test_an_isolated_component_is_reached_by_no_program_that_begins_later() -> None:
+    ecology = MemoryEcology()
+    clock = ecology.add(Clock("only"), CLOCK.replace("NAME", "a"))
+    ecology.isolate(clock)
+    screen = ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK), wait=True)
+    assert not ecology.until(lambda: run.running or clock.active)
+    ecology.rejoin(clock)
+    assert ecology.until(lambda: screen.shown == ["only"])
+
+
+def test_a_component_that_comes_back_does_not_reach_another_that_is_isolated() -> None:
+    ecology = MemoryEcology()
+    clock = ecology.add(Clock("only"), CLOCK.replace("NAME", "a"))
+    screen = ecology.add(Screen(), SCREEN)
+    _, *nodes = ecology.network.nodes
+    ecology.isolate(clock)
+    ecology.isolate(screen)
+    ecology.rejoin(clock)
+    assert not ecology.network.reaches(*nodes)
+    ecology.rejoin(screen)
+    assert ecology.network.reaches(*nodes)
+
+
 def test_a_task_that_cannot_run_says_why() -> None:
     ecology = MemoryEcology()
     ecology.add(Screen(), SCREEN)
