@@ -43,7 +43,7 @@ class LogFile:
         self._size = 0
         self._failing = False
         self._cut = False
-        """Whether the last line was written in part, as the disk was full."""
+        """Whether the last line was written in part, as the disk was full, perhaps in another life of the site."""
 
     def write(self, lines: bytes) -> None:
         """Add whole lines. Where that cannot be done, say so once, and go on without them."""
@@ -83,8 +83,9 @@ class LogFile:
 
     def _open(self) -> None:
         self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        self._descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o600)
-        self._size, self._cut = os.fstat(self._descriptor).st_size, False
+        self._descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o600)
+        self._size = os.fstat(self._descriptor).st_size
+        self._cut = self._size > 0 and os.pread(self._descriptor, 1, self._size - 1) != b"\n"
 
     def _put_aside(self) -> None:
         aside = [self.path, *(self.path.with_name(f"{self.path.name}.{number + 1}") for number in range(PUT_ASIDE))]

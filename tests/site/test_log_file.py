@@ -77,6 +77,16 @@ def test_a_line_that_a_full_disk_has_cut_does_not_run_into_the_next_one(tmp_path
     assert path.read_bytes() == b"one\nlo\ntwo\nthree\n"
 
 
+def test_nor_into_the_first_one_of_the_next_life_of_a_site(tmp_path: Path) -> None:
+    path = tmp_path / "home.log"
+    path.write_bytes(b"one\nlo")
+    log = LogFile(path)
+    for line in (b"two\n", b"three\n"):
+        log.write(line)
+    log.close()
+    assert path.read_bytes() == b"one\nlo\ntwo\nthree\n"
+
+
 def test_the_oldest_logs_of_sites_that_have_ended_are_forgotten(tmp_path: Path) -> None:
     for number in range(MOST_LOGS + 5):
         for suffix in ("", ".1"):
