@@ -351,7 +351,13 @@ class Joining:
             self._await(relays)
         patience = 0.0 if all(site.is_suspended() for site in relaying) else SLOW
         if (not relays or self._hangs(patience)) and self._is_believed():
-            self._relay_at(self._usual, relays)
+            self._relay_at(self._places(), relays)
+
+    def _places(self) -> list[str]:
+        """Where this site can relay: at the usual ports, or at that of loopback where the one before did."""
+        loopback = self._usual[0].rpartition(":")[0]
+        before = [self._reached_at] if self._reached_at.rpartition(":")[0] == loopback else []
+        return list(dict.fromkeys([*self._usual, *before]))
 
     def _await(self, relays: list[str]) -> None:
         """Let those that relay since this moment be reached: those before may have to be given up one by one first."""

@@ -236,6 +236,21 @@ def test_where_every_usual_port_is_taken_any_other_will_do(machine: Machine, mon
         assert machine.sites["a"].endpoint != taken
 
 
+def test_where_every_usual_port_is_taken_the_place_is_taken_where_the_one_before_had_it(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as stranger:
+        taken = f"tcp/127.0.0.1:{stranger.getsockname()[1]}"
+        monkeypatch.setattr(rendezvous, "usual_endpoints", lambda ecology, secure: [taken])
+        for name in "abc":
+            machine.join(name)
+        before = machine.sites["a"].endpoint
+        machine.leave("a")
+        assert machine.until(lambda: bool(machine.relaying()) and machine.united())
+        assert len(machine.relaying()) == 1
+        assert [site.endpoint for site in machine.sites.values()] == [before, before]
+
+
 @pytest.fixture
 def home(tmp_path: Path) -> Iterator[Home]:
     """An ecology of processes."""
