@@ -52,8 +52,18 @@ class Terminal(io.TextIOBase):
         self.flush()
 
     def renew_line(self, text: str) -> None:
-        """Show a text in place of the line that the cursor is in, past the buffer. Raises OSError."""
-        write_text(self._stream, f"\r\x1b[2K{self.shown(text)}")
+        """Show a text in place of the line that the cursor is in, past the buffer. Raises OSError.
+
+        What a narrow terminal would show in a second line, where it would stay, is left out.
+        """
+        write_text(self._stream, f"\r\x1b[2K{self.shown(text)[: self._columns() - 1]}")
+
+    def _columns(self) -> int:
+        """How many letters a line has; more than any text where that is not known."""
+        try:
+            return os.get_terminal_size(self.fileno()).columns or sys.maxsize
+        except OSError:
+            return sys.maxsize
 
     def flush(self) -> None:
         """Let the terminal have it; as Python ends, that may be gone first."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import struct
 import subprocess
 import sys
+import termios
 from collections.abc import Sequence
 from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
@@ -130,6 +133,15 @@ def test_only_a_terminal_gets_colours_and_only_from_paint(monkeypatch: pytest.Mo
                 patch.setenv(name, value)
                 assert not in_colour()
                 assert paint("bad", "red") == "bad"
+
+
+@pytest.mark.parametrize(("columns", "shown"), [(20, b"searching for a con"), (0, b"searching for a configuration")])
+def test_a_line_that_is_renewed_stays_one_on_a_narrow_terminal(columns: int, shown: bytes) -> None:
+    ours, theirs = os.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    with os.fdopen(theirs, "w") as terminal, os.fdopen(ours, "rb", buffering=0) as screen:
+        Terminal(terminal).renew_line("searching for a configuration")
+        assert screen.read(100) == b"\r\x1b[2K" + shown
 
 
 def test_a_screen_is_renewed_as_a_whole() -> None:
