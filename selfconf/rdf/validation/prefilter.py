@@ -207,7 +207,8 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     found.answers = found.answers or SC.Configuration in types
     for predicate in _REFERRING:
         found.referred.update(value for value in properties.get(predicate, ()) if isinstance(value, str))
-    found.signals.update(value for value in properties.get(SC.signalType, ()) if isinstance(value, str))
+    signals = properties.get(SC.signalType, ())
+    found.signals.update(value for value in signals if isinstance(value, str) and value[:2] != "_:")
     found.relevant = found.relevant or any(_validated(term) for term in (*properties, *types))
 
 

@@ -33,6 +33,10 @@ def test_a_type_of_an_unknown_namespace_is_told_where_it_is_first_used() -> None
     assert "ontologies=" in (only.hint or "")
 
 
+def test_a_blank_node_is_no_type_that_an_ontology_could_declare() -> None:
+    assert not told(component("a", "[ a :Sound ]", "( sc:Signal sc:Signal )"))
+
+
 def test_several_types_of_one_namespace_are_counted_in_one_warning() -> None:
     (only,) = told(component("a", ":Sound", ":Light"))
     assert only.message.endswith("<https://example.org/peis-home#>: this file uses 2 of them.")
