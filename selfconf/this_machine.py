@@ -289,14 +289,15 @@ def _announced() -> Iterator[tuple[Path, LocalSite]]:
 
 
 def _lives(site: LocalSite, path: Path) -> bool:
-    """Whether the process that has written the file of a site is there; if not, the file is removed."""
+    """Whether the process that has written the file of a site is there; if not, the file is removed if that can be."""
     try:
         began = alive_since(int(site.process))
         living = began is not None and _is_the_same(site, began, path)
     except (OSError, ValueError, TypeError, OverflowError):  # no system has processes of such numbers
         return False
     if not living:
-        path.unlink(missing_ok=True)
+        with suppress(OSError):  # it is gone already, or the folder cannot be written in
+            path.unlink()
     return living
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import json
 import os
@@ -42,6 +43,24 @@ def test_a_site_that_has_announced_itself_is_found(runtime_folder: Path) -> None
     assert rendezvous.find(None, []) == ("home", [meeting().endpoint, *usual_endpoints("home")])
     path.unlink()
     assert this_machine.local_sites() == []
+
+
+def test_where_the_file_of_one_that_is_gone_cannot_be_removed_the_others_are_found(
+    runtime_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    this_machine.announce(meeting())
+    left = runtime_folder / "home@gone.json"
+    left.write_text((runtime_folder / "home@a.json").read_text().replace(str(os.getpid()), str(dead_process())))
+
+    def read_only(path: Path, missing_ok: bool = False) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), path)
+
+    with monkeypatch.context() as folder:
+        folder.setattr(Path, "unlink", read_only)
+        assert this_machine.local_sites() == [meeting()]
+    assert left.exists()
+    assert this_machine.local_sites() == [meeting()]
+    assert not left.exists()
 
 
 def test_the_file_of_a_site_is_as_the_protocol_shows_it() -> None:
