@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
-import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from selfconf import files
 from selfconf.api.sites.site_program import SiteOptions, serve
+from selfconf.api.sites.temporary_folder import temporary_folder
 from selfconf.bridging import Bridge, ForeignWorld
 from selfconf.model.immutable import replace
 
@@ -20,21 +17,10 @@ def serve_bridge(world: ForeignWorld, site: SiteOptions, complain: Callable[[str
 
     `site` is what the site of the bridge begins with, but for what it serves.
     """
-    with tempfile.TemporaryDirectory(prefix="selfconf-bridge-") as folder, _kept(folder):
-        bridge = Bridge(Path(folder), complain, site.ontologies)
-        options = replace(site, paths=(Path(folder),))
+    with temporary_folder("selfconf-bridge-") as folder:
+        bridge = Bridge(folder, complain, site.ontologies)
+        options = replace(site, paths=(folder,))
         serve(options, complain, lambda ecology, session: bridge.living(world, ecology, session))
-
-
-@contextmanager
-def _kept(folder: str) -> Iterator[None]:
-    """Keep a temporary folder, however old it gets: systemd-tmpfiles passes over one that is locked."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH)
-        yield
-    finally:
-        os.close(descriptor)
 
 
 def serve_things(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ipaddress import ip_address
@@ -11,6 +10,7 @@ from urllib.parse import urlsplit
 
 from selfconf.api.ecology import EndpointEcology
 from selfconf.api.method import Method
+from selfconf.api.sites.temporary_folder import temporary_folder
 from selfconf.api.task import TaskSpecification
 from selfconf.errors import AuthorError
 from selfconf.model.left_out import LeftOut
@@ -33,10 +33,10 @@ def endpoint_files(
         )
     composer = method.composer(task.complete())
     found, left_out = ecology.for_task(composer.partitioner, method.wider() or composer.hierarchy)
-    with tempfile.TemporaryDirectory(prefix="selfconf-") as folder:
+    with temporary_folder("selfconf-") as folder:
         for number, component in enumerate(sorted(found)):
-            Path(folder, f"{number}.ttl").write_text(to_turtle(found[component].triples), "utf-8")
-        yield Path(folder), left_out
+            (folder / f"{number}.ttl").write_text(to_turtle(found[component].triples), "utf-8")
+        yield folder, left_out
 
 
 def _trustworthy(url: str) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 from pathlib import Path
 
 import pytest
@@ -23,6 +25,10 @@ def test_what_a_task_may_want_is_in_files_while_the_block_runs(clock: sc.TaskSpe
     with oxigraph(unwanted, {f"x:{name}": text for name, text in texts.items()}) as url:
         with endpoint_files(EndpointEcology(url), clock, Method()) as (folder, left_out):
             assert left_out == ()
+            descriptor = os.open(folder, os.O_RDONLY)
+            with pytest.raises(BlockingIOError):  # so that it is not removed for its age
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            os.close(descriptor)
             assert sc.validate(folder).conforms
             local = sc.read(folder)
             assert sorted(component.short for component in local.components) == ["clock", "display"]
