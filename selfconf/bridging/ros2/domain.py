@@ -7,12 +7,15 @@ import secrets
 import threading
 import time
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from selfconf.bridging.ros2.attachments import RosAttachment
 from selfconf.bridging.ros2.tokens import NODE, RosEndpoint, RosNodeId, RosToken
 from selfconf.bridging.ros2.topic_sources import TopicSources
 from selfconf.bus.port import Bus, Replies
+
+if TYPE_CHECKING:
+    from selfconf.bridging.ros2.services import ServedService
 
 BRIDGE_NODE = "selfconf_bridge"
 """The name of the node as which a bridge is seen in ROS 2."""
@@ -35,15 +38,16 @@ class RosDomain:
         self.session = secrets.token_hex(16)
         """The name of this bridge in the tokens that it declares."""
         self.entities = itertools.count(1)
-        self.serving: dict[str, list[object]] = {}
-        """What answers calls in the place of a server, by the key of the service, the first first.
+        self.serving: dict[str, list[ServedService]] = {}
+        """What answers calls where no node does, by the key of the service, the first first.
 
         It is used on the thread of the bus alone.
         """
         self._own: dict[str, OwnPublisher] = {}
         self._complain = complain
         self._topics: dict[str, TopicSources] = {}
-        self._servers: dict[str, set[str]] = {}
+        self._servers: dict[str, dict[str, bool]] = {}
+        """The tokens of the servers of each service, and whether they are of bridges."""
         self._told: set[str] = set()
         self._lock = threading.Lock()
 
@@ -52,17 +56,21 @@ class RosDomain:
         with self._lock:
             return self._topics.setdefault(key, TopicSources())
 
-    def server_changed(self, key: str, token: str, alive: bool) -> None:
-        """A server of a service, by the key of its token, has come or gone."""
-        with self._lock:
-            servers = self._servers.setdefault(key, set())
-            servers.add(token) if alive else servers.discard(token)
-            if not servers:  # names of services, as those of tools, may be others each time
-                del self._servers[key]
+    def server_changed(self, key: str, token: str, alive: bool, of_bridge: bool = False) -> None:
+        """A server of a service, by the key of its token, has come or gone; on the thread of the bus."""
+        servers = self._servers.setdefault(key, {})
+        if alive:
+            servers[token] = of_bridge
+        else:
+            servers.pop(token, None)
+        if not servers:  # names of services, as those of tools, may be others each time
+            del self._servers[key]
+        for one in self.serving.get(key, ()):
+            one.look()
 
-    def has_server(self, key: str) -> bool:
-        """Whether a node serves the key of a service."""
-        return bool(self._servers.get(key))
+    def has_server(self, key: str, *, of_bridges: bool = True) -> bool:
+        """Whether a node serves the key of a service; also another bridge, unless these are left out."""
+        return any(of_bridges or not of_bridge for of_bridge in self._servers.get(key, {}).values())
 
     def own(self, key: str) -> OwnPublisher:
         """The identity under which the bridge publishes on a topic, or calls a service, for as long as it is there."""

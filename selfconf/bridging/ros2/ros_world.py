@@ -23,7 +23,7 @@ from selfconf.bridging.ros2.described_nodes import (
     node_iri,
     ports_of,
 )
-from selfconf.bridging.ros2.domain import RosDomain, bridge_token
+from selfconf.bridging.ros2.domain import BRIDGE_NODE, RosDomain, bridge_token
 from selfconf.bridging.ros2.node_component import NodeComponent
 from selfconf.bridging.ros2.tokens import (
     NODE,
@@ -128,7 +128,8 @@ class RosWorld:
             )
             sources.add(publisher) if alive else sources.remove(publisher)
         if token.kind == SERVER and token.endpoint is not None:
-            self._domain.server_changed(token.endpoint.key(self._number), key, alive)
+            of_bridge = token.name.startswith(BRIDGE_NODE)
+            self._domain.server_changed(token.endpoint.key(self._number), key, alive, of_bridge)
         if is_bridged(token):
             self._come(key, token) if alive else self._go(key, token)
 

@@ -5,16 +5,15 @@ answered by whatever the configuration has connected to the operation that its n
 a server of the service, as itself. Requests and responses travel as CDR from node to node, as messages do; where the
 other end is no node they are objects with the fields of the `.srv` definition, if that is known.
 
-No component answers in place of a server that ROS 2 has: a client that finds one there is not connected to another one
-too. A call does not say which client it is of: of several clients of one service the first that is connected counts for
-all.
+No component answers in place of a server that ROS 2 has: as long as there is one, clients are not connected to another
+one too. A call does not say which client it is of: of several clients of one service the first that is connected counts
+for all.
 """
 
 from __future__ import annotations
 
 import time
 from concurrent.futures import Future
-from functools import partial
 from typing import Any
 
 from selfconf import ros2
@@ -121,24 +120,40 @@ class ServedService:
         self._open: set[Request] = set()
         """The requests that wait for an answer."""
         self._declared: list[Undo] = []
-        key = endpoint.key(domain.number)
-        if domain.has_server(key):
-            domain.tell(f"{endpoint.topic}: a node of ROS 2 serves it, which its clients reach; no other is connected")
-            return
-        self._serving = domain.serving.setdefault(key, [])
+        """What takes back that the bridge serves; nothing while a node does."""
+        self._key = endpoint.key(domain.number)
+        self._serving = domain.serving.setdefault(self._key, [])
         self._serving.append(self)
         if len(self._serving) > 1:
             domain.tell(
                 f"{endpoint.topic}: several nodes call it, and which call is whose cannot be said; the first counts"
             )
-        self._declared.append(partial(self._serving.remove, self))
-        self._declared.append(domain.bus.serve(key, self._asked, complete=True))
-        self._declared.append(domain.bus.announce(bridge_token(domain, SERVER, endpoint).key()))
+        self.look()
+
+    def look(self) -> None:
+        """Serve where no node of ROS 2 does; servers may have come or gone.
+
+        Of two bridges that serve already neither takes that back, or both would.
+        """
+        domain, is_serving = self._domain, bool(self._declared)
+        if domain.has_server(self._key, of_bridges=not is_serving):
+            domain.tell(
+                f"{self._endpoint.topic}: a node of ROS 2 serves it, which its clients reach; no other is connected"
+            )
+            self._withdraw()
+        elif not is_serving:
+            self._declared.append(domain.bus.serve(self._key, self._asked, complete=True))
+            self._declared.append(domain.bus.announce(bridge_token(domain, SERVER, self._endpoint).key()))
+
+    def _withdraw(self) -> None:
+        for undo in self._declared:
+            undo()
+        self._declared = []
 
     def end(self) -> None:
         """Serve no more; a client that waits for an answer hears that."""
-        for undo in self._declared:
-            undo()
+        self._serving.remove(self)
+        self._withdraw()
         for request in list(self._open):
             self._refuse(request, "what was connected to it is so no more")
 

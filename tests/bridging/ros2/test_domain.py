@@ -25,6 +25,9 @@ def test_a_service_is_served_until_its_last_server_has_gone() -> None:
     assert found.has_server("key")
     found.server_changed("key", "two", False)
     assert not found.has_server("key")
+    found.server_changed("key", "three", True, of_bridge=True)
+    assert found.has_server("key")
+    assert not found.has_server("key", of_bridges=False)
 
 
 def test_a_complaint_is_told_once_and_there_is_an_end_of_complaints() -> None:

@@ -150,6 +150,30 @@ def test_a_call_of_several_clients_is_made_once(living: LivingStage, tmp_path: P
         assert len(component.requests) == known + 2
 
 
+def test_a_component_answers_while_no_node_serves_however_servers_come_and_go(
+    living: LivingStage, tmp_path: Path
+) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        client, server = found.node("client"), found.node("server")
+        client.token("SC", "/add", key=ADD_KEY)
+        server.serves("/add", adds)
+        component = adder(living, f'sc:hasOperation [ sc:name "add" ; {TYPES} ]', callers={CALL: (node("client"),)})
+        assert until(lambda: found.is_complete("client", "add") and found.is_complete("server", "add"))
+        found.activate("client", **{CALL: (Wire(ADDER, CALL),)})
+        assert until(lambda: found.complained("/add: a node of ROS 2 serves it"))
+        server.close()
+        assert replies_to(found, client, "/add", asked(20, 22)).samples[0].payload == answered(42)
+        known = len(component.requests)
+        assert known
+        tokens: list[bool] = []
+        client.bus.watch(f"@ros2_lv/{DOMAIN}/**/SS/**", lambda key, alive: tokens.append(alive))
+        assert until(lambda: tokens == [True])
+        found.node("server").serves("/add", adds)
+        assert until(lambda: tokens == [True, True, False])
+        assert replies_to(found, client, "/add", asked(1, 2)).samples[0].payload == answered(3)
+        assert len(component.requests) == known
+
+
 def test_a_node_calls_another_one_by_another_name(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
         server, client = found.node("server"), found.node("client")
