@@ -1,12 +1,13 @@
 """Signals of a template that come to nothing: loops that lead nowhere, inputs that no role feeds.
 
 A cycle of `sc:feeds` is no mistake by itself: closed loops are what control is about. But a loop acts on the world
-through an actuator in it, or hands something on; one that does neither only keeps itself busy.
+through an actuator in it, or hands something on, to a role or by an output of the template; one that does neither only
+keeps itself busy.
 
 An input that a role asks its component to have has to be fed, or no component that has it can play the role, unless the
-input is optional, or the role recruits what feeds it. Most templates leave ports to the components. Where one speaks of
-them, what is asked of the one end is held against what is asked of the other; whether signals match is seen in the
-widest sense, that of the loaded ontologies.
+input is optional, or the role recruits what feeds it, or it is one of the template. Most templates leave ports to the
+components. Where one speaks of them, what is asked of the one end is held against what is asked of the other; whether
+signals match is seen in the widest sense, that of the loaded ontologies.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from selfconf.rdf.vocabulary import ROB, SC
 
 _FEEDS, _NAME, _SIGNAL = URIRef(SC.feeds), URIRef(SC.name), URIRef(SC.signalType)
 _INPUT, _OUTPUT = URIRef(SC.hasInput), URIRef(SC.hasOutput)
-_OPTIONAL, _RECRUITS = URIRef(SC.optional), URIRef(SC.recruits)
+_OPTIONAL, _RECRUITS, _OFFERED = URIRef(SC.optional), URIRef(SC.recruits), URIRef(SC.hasOperation)
 
 
 class RoleLink(NamedTuple):
@@ -52,7 +53,7 @@ def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
     for roles, links in _templates(file):
         for loop in _loops(roles, links):
             inside = [link for link in links if link.source in loop]
-            if all(link.sink in loop for link in inside) and not any(_acts(file, role) for role in loop):
+            if all(link.sink in loop for link in inside) and not any(_comes_out(file, role) for role in loop):
                 names = listed([file.short(str(role)) for role in roles if role in loop])
                 which = (
                     f"The role {names} feeds only itself"
@@ -79,8 +80,8 @@ def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:
     for roles, links in _templates(file):
         normal = {role: NormalForm(file.source, (role,)) for role in roles}
         for sink in roles:
-            if any(not isinstance(shape, Literal) or shape.value for shape in file.graph.objects(sink, _RECRUITS)):
-                continue  # what no role feeds, recruits do
+            if _fed_otherwise(file, sink):
+                continue
             feeding = [link for link in links if link.sink == sink]
             for asked in _asked(normal[sink], _INPUT):
                 if any(_could(file, normal[link.source], link, asked) for link in feeding):
@@ -96,6 +97,18 @@ def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:
                     message = f"This asks for {what}, and no role feeds the role {file.short(str(sink))}."
                     hint = f"Let a role sc:feeds {file.short(str(sink))}."
                 yield at(file.positions, _place(file, asked.statement), "SC-L13", message, hint=hint)
+
+
+def _fed_otherwise(file: LintedFile, role: Node) -> bool:
+    """Whether recruits, or what is outside of the template, feed the players of a role, as other roles may do."""
+    recruits = file.graph.objects(role, _RECRUITS)
+    return any(not isinstance(shape, Literal) or shape.value for shape in recruits) or _outside(file, role, _INPUT)
+
+
+def _outside(file: LintedFile, role: Node, *links: URIRef) -> bool:
+    """Whether a template has a port of a role, to which one of some properties leads, for what is outside."""
+    ports = file.graph.subjects(URIRef(SC.of), role)
+    return any((None, link, port) in file.graph for port in ports for link in links)
 
 
 def _templates(file: LintedFile) -> Iterator[tuple[list[Node], list[RoleLink]]]:
@@ -127,6 +140,11 @@ def _reached(role: Node, feeds: Mapping[Node, set[Node]]) -> set[Node]:
         found |= fed
         waiting += fed
     return found
+
+
+def _comes_out(file: LintedFile, role: Node) -> bool:
+    """Whether something comes of a role but for what it feeds: it may act, or issues or answers for the template."""
+    return _acts(file, role) or _outside(file, role, _OUTPUT, _OFFERED)
 
 
 def _acts(file: LintedFile, role: Node) -> bool:

@@ -29,11 +29,12 @@ def unlisted_roles(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def unjoined_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
-    """Roles that may stay unplayed (`sc:minCount 0`) and that no interaction joins to another."""
+    """Roles that may stay unplayed (`sc:minCount 0`), and that nothing joins to another, or to what is outside."""
     graph = file.graph
+    outside = set(graph.objects(None, URIRef(SC.of)))
     feeding = {*graph.subjects(URIRef(SC.feeds)), *graph.objects(None, URIRef(SC["from"]))}
     fed = {*graph.objects(None, URIRef(SC.feeds)), *graph.objects(None, URIRef(SC.to))}
-    for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - feeding - fed:
+    for role in set(graph.subjects(RDF.type, URIRef(SC.Role))) - feeding - fed - outside:
         for least in graph.objects(role, URIRef(SC.minCount)):
             if isinstance(least, Literal) and least.value == 0:
                 message = "This role may stay unplayed, and what plays it feeds no role and is fed by none."

@@ -49,6 +49,9 @@ def codes(text: str) -> list[str]:
         (":two sc:feeds :one . :three sc:feeds :one .", ["SC-L12"]),
         (":two sc:feeds :three . :three sc:feeds :one .", []),  # the display is an actuator
         (":two sh:class :Oracle ; sc:feeds :one .", []),  # who knows what an oracle does
+        (":two sc:feeds :one . :t sc:hasOutput [ sc:name 'o' ; sc:signalType rob:Image ; sc:of :two ] .", []),
+        (":two sc:feeds :one . :t sc:hasOperation [ sc:name 'o' ; sc:response rob:Image ; sc:of :one ] .", []),
+        (":two sc:feeds :one . :t sc:hasInput [ sc:name 'i' ; sc:signalType rob:Image ; sc:of :one ] .", ["SC-L12"]),
     ],
 )
 def test_a_loop_has_to_act_on_the_world_or_to_feed_a_role(more: str, found: list[str]) -> None:
@@ -82,6 +85,8 @@ def test_a_loop_is_shown_where_it_closes() -> None:
         (WANTS + ":sink sc:recruits true .", []),
         (WANTS + ":sink sc:recruits [ sh:class rob:Camera ] .", []),
         (WANTS + ":sink sc:recruits false .", ["SC-L13"]),
+        (WANTS + ":t sc:hasInput [ sc:name 'i' ; sc:signalType rob:Image ; sc:of :sink ] .", []),
+        (WANTS + ":t sc:hasOutput [ sc:name 'i' ; sc:signalType rob:Image ; sc:of :sink ] .", ["SC-L13"]),
         (asks(":sink", "sc:hasInput", f"{typed('rob:Image')} , {OPTIONAL}"), []),
         (f":sink sh:property [ sh:path sc:hasInput ; sh:minCount 1 ; sh:property {OPTIONAL} ] .", []),
     ],

@@ -127,6 +127,12 @@ def test_a_role_of_which_anything_is_asked_is_left_alone(more: str) -> None:
     assert not lints(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role . {more}")
 
 
+def test_an_optional_role_that_issues_for_the_template_is_joined() -> None:
+    text = TEMPLATE + ":r sc:minCount 0 . "
+    assert only(text).code == "SC-L20"
+    assert not lints(text + ':t sc:hasOutput [ sc:name "o" ; sc:signalType rob:Text ; sc:of :r ] .')
+
+
 def test_a_role_whose_port_an_interaction_names_is_left_alone() -> None:
     roles = ":t a sc:Template ; sc:roles ( :r :s ) . :r a sc:Role . :s a sc:Role ; sh:class rob:Display ."
     assert not lints(f'{roles} [] a sc:Interaction ; sc:from :r ; sc:to :s ; sc:output "text" .')
