@@ -82,6 +82,8 @@ def test_where_no_log_is_kept_there_is_one_sentence(
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
     assert run(capsys, "log").is_one_sentence("no site has kept a log")
     assert run(capsys, "log", "--lines", "x").is_one_sentence("is no number of lines")
+    for pattern in ("*", "**", "/home", ""):
+        assert run(capsys, "log", "--ecology", pattern).is_one_sentence(f"{pattern!r} cannot name an ecology")
 
 
 def test_lines_of_another_day_have_its_date(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

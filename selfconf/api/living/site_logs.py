@@ -16,7 +16,7 @@ from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.errors import AuthorError, NetworkError, PeerError
 from selfconf.model.setting_names import setting
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys, owner_of
+from selfconf.protocol.keys import Keys, checked_name, owner_of
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.site import log_part
 
@@ -28,8 +28,10 @@ def site_logs(ecology: str | None, folder: Path | None = None) -> list[Path]:
     """The logs of the sites of an ecology on this machine, also of those that have ended, sorted.
 
     Without a folder they are where the sites that run keep them, and in the folder that is usual. Raises NetworkError,
-    where there is none, and AuthorError where several ecologies have logs and none is named.
+    where there is none, and AuthorError where several ecologies have logs and none is named, or for what names none.
     """
+    if ecology is not None:
+        checked_name(ecology, "an ecology")
     folders = _folders(ecology) if folder is None else {folder}
     found = sorted(path for one in folders if one.is_dir() for path in one.glob(f"{ecology or '*'}@*.log"))
     if ecology is None:
