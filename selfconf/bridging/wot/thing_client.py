@@ -130,7 +130,7 @@ class ThingClient:
             if line.startswith(b"data:"):
                 lines.append(line[5:].removeprefix(b" "))
             elif not line:
-                if lines:
+                if any(lines):  # an event without data says that the thing is there
                     due = max(due + 1 / MOST_EVENTS, loop.time())
                     await asyncio.sleep(due - loop.time())
                     yield ThingAnswer(_json(form, b"\n".join(lines)))

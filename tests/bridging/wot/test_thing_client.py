@@ -240,7 +240,7 @@ def test_server_sent_events_come_one_by_one(thing_server: Start) -> None:
         begin_stream(handler)
         handler.wfile.write(b": hello\n\nid: 1\nda")
         handler.wfile.flush()
-        handler.wfile.write(b"ta: 1\r\n\r\ndata: {\ndata: }\n\nevent: x\ndata:true\n\n")
+        handler.wfile.write(b"ta: 1\r\n\r\ndata: {\ndata: }\n\nevent: ping\ndata:\n\nevent: x\ndata:true\n\n")
         handler.close_connection = True
 
     server.answers["/on"] = stream
