@@ -228,17 +228,27 @@ def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, 
     """What a node lacks, sorted: of each property shape, and of each constraint on the node itself, one violation."""
     least: dict[tuple[object, ...], ShapeViolated] = {}
     for _, result, triples in results:
-        said: dict[Any, Any] = {}
+        said: dict[Any, list[Any]] = {}
         for subject, predicate, value in triples:
             if subject == result:
-                said.setdefault(predicate, value[1] if isinstance(value, tuple) else value)
-        path = said.get(_SH.resultPath)
-        message = str(said.get(_SH.resultMessage) or "does not conform")
+                said.setdefault(predicate, []).append(value[1] if isinstance(value, tuple) else value)
+        path = next(iter(said.get(_SH.resultPath, ())), None)
+        message = _in_english(said.get(_SH.resultMessage, ())) or "does not conform"
         one = ShapeViolated(message, IRI.unchecked(str(path)) if isinstance(path, rdflib.URIRef) else None)
-        constraint = (said.get(_SH.sourceConstraintComponent), message) if path is None else ()
-        thing = said.get(_SH.sourceShape), *constraint
+        constraint = (*said.get(_SH.sourceConstraintComponent, ()), message) if path is None else ()
+        thing = (*said.get(_SH.sourceShape, ()), *constraint)
         least[thing] = min(one, least.get(thing, one), key=lambda violation: violation.message)
     return sorted(least.values(), key=lambda violation: violation.message) or [ShapeViolated("does not conform")]
+
+
+def _in_english(messages: Iterable[rdflib.term.Node]) -> str:
+    """Of a message in several languages that in none, or in English, as all others are; else the first by language."""
+
+    def rank(message: rdflib.term.Node) -> tuple[bool, str, str]:
+        language = ((message.language if isinstance(message, rdflib.Literal) else None) or "").lower()
+        return language.partition("-")[0] not in ("", "en"), language, str(message)
+
+    return str(min(messages, key=rank, default=""))  # pySHACL hands them on in no order
 
 
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:

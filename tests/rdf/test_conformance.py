@@ -161,6 +161,27 @@ def test_a_value_that_is_a_candidate_is_not_blamed_for_what_links_to_it() -> Non
     assert all("Less than 1 values" in violation.message for (violation,) in found.values())
 
 
+@pytest.mark.parametrize(
+    ("messages", "told"),
+    [
+        ("'zu klein'@de , 'too small'@en-GB", "too small"),
+        ("'too small'@en , 'small'", "small"),
+        ("'zu klein'@de , 'small'", "small"),
+        ("'zu klein'@de , 'trop petit'@fr", "zu klein"),
+    ],
+)
+def test_of_a_message_in_several_languages_that_in_english_is_told(messages: str, told: str) -> None:
+    graphs = [
+        rdflib_terms.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples())
+        for text in (
+            ":good :link :bad .",
+            f":shape sh:property [ sh:path :n ; sh:minCount 1 ; sh:message {messages} ] .",
+        )
+    ]
+    found = violations(graphs[0], graphs[1], IRI("urn:x:shape"), NODES, "a.ttl")
+    assert {violation.message for some in found.values() for violation in some} == {told}
+
+
 def test_a_shape_that_comes_back_to_itself_is_judged_in_silence(capfd: pytest.CaptureFixture[str]) -> None:
     assert outside(":shape sh:node :shape ; sh:property [ sh:path :size ; sh:minCount 1 ] .") == {"bare"}
     assert capfd.readouterr() == ("", "")

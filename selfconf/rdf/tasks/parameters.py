@@ -19,7 +19,7 @@ from selfconf.rdf.tasks.roles import mentions
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
-_WORD = re.compile(r"\S+")
+_WORD = re.compile(r"[^\s=]+")
 
 
 def parameters_of(document: Document, template: IRI, roles: tuple[Role, ...]) -> tuple[Parameter, ...]:
@@ -44,9 +44,8 @@ class _ParameterReader(DocumentReader):
                 raise self.mistake("a parameter of a template needs an IRI", template, SC.parameter, value)
             name = self.only(value, SC.name, f"the parameter {worded(value)} needs exactly one sc:name")
             if not isinstance(name, Literal) or name.datatype != STRING or not _is_word(name.lexical):
-                problem = (
-                    f"the sc:name of the parameter {worded(value)} is one word, a string without control characters"
-                )
+                what = "one word, a string without control characters or ="
+                problem = f"the sc:name of the parameter {worded(value)} is {what}"
                 raise self.mistake(problem, value, SC.name, name)
             if name.lexical in named:
                 raise self.mistake(f"two parameters have the name {name.lexical!r}", value, SC.name, name)
@@ -67,7 +66,7 @@ class _ParameterReader(DocumentReader):
 
 
 def _is_word(text: str) -> bool:
-    """Whether a text can name a parameter; messages hold no name with control characters."""
+    """Whether a text can name a parameter, as in `--bind NAME=TERM`; messages hold no name with control characters."""
     return _WORD.fullmatch(text) is not None and is_one_line(text)
 
 

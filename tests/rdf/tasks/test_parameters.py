@@ -80,6 +80,7 @@ def test_a_default_is_read_as_it_is_written() -> None:
         (':t sc:parameter :p . :p sc:name "goal", "aim" .', "needs exactly one sc:name"),
         (':t sc:parameter :p . :p sc:name "the goal" .', "one word, a string"),
         (':t sc:parameter :p . :p sc:name "Ziel"@de .', "one word, a string"),
+        (':t sc:parameter :p . :p sc:name "goal=" .', "one word, a string without control characters or ="),
         (r':t sc:parameter :p . :p sc:name "go\u202Eal" .', "one word, a string without control characters"),
         (':t sc:parameter :p, :q . :p sc:name "goal" . :q sc:name "goal" .', "two parameters have the name 'goal'"),
         (f"{ONE} sh:defaultValue 1, 2 .", "has several defaults"),
