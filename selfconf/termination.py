@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import FrameType
@@ -141,13 +142,19 @@ class Termination:
         """
         self._bus, self._then, self._told, self._ending = bus, then, told, False
         self._parent = os.getppid()
-        for number in ending_signals():
-            signal.signal(number, self._signalled)
+        self._before = {number: signal.signal(number, self._signalled) for number in ending_signals()}
         if started_by_another():
             bus.wake_up(self._look)
 
     def __call__(self) -> bool:
         return self._ending
+
+    def heed_no_more(self) -> None:
+        """Let signals do again what they did before; on another thread than the main one nothing changes."""
+        if threading.current_thread() is threading.main_thread():
+            for number, handler in self._before.items():
+                if signal.getsignal(number) == self._signalled:  # and no handler of later
+                    signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
     @run_to_its_end
     def _signalled(self, _: int, __: FrameType | None) -> None:

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 
 import pytest
@@ -62,6 +63,22 @@ def test_a_signal_ends_the_program_once_however_often_it_comes(number: signal.Si
     assert network.run(ended, 1.0)
     network.run(lambda: False, 1.0)
     assert said == ["ending"]
+
+
+@pytest.mark.usefixtures("handlers")
+def test_signals_do_again_what_they_did_before_unless_another_handles_them_by_now() -> None:
+    end_as_by_ctrl_c()
+    ended = Termination(Network(0).node())
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    elsewhere = threading.Thread(target=ended.heed_no_more)
+    elsewhere.start()
+    elsewhere.join()
+    assert signal.getsignal(signal.SIGTERM) != signal.default_int_handler  # Python lets the main thread alone do it
+    ended.heed_no_more()
+    signal.raise_signal(signal.SIGHUP)
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGTERM)
+    assert not ended()
 
 
 @pytest.mark.usefixtures("handlers")

@@ -134,7 +134,8 @@ def run(given: argparse.Namespace) -> int:
     if given.detach:
         return _detach(given, task)
     _tell_of_others(given)
-    with _begun(given, task) as (running, site):
+    with _begun(given, task) as (running, site), ExitStack() as at_end:
+        at_end.callback(ignore_from_now_on)  # also while a site of its own ends
         running.stop_on_signals()
         if running.task_name != running.wanted_name:
             complain(f"a task {running.wanted_name!r} lives already, so this one is {running.task_name!r}")
@@ -148,7 +149,6 @@ def run(given: argparse.Namespace) -> int:
                 if event.act in MAY_TAKE_LONG:
                     shown.begin(MAY_TAKE_LONG[event.act])
         printer.end()
-    ignore_from_now_on()
     if site is not None and site.exit_code_before_end is not None:
         raise NetworkError(f"its own site has ended with code {site.exit_code_before_end}; everything is taken down")
     if printer.trouble is not None:

@@ -93,6 +93,8 @@ class Run:
         """The refusal that was explained last, of which ecology, and the explanation."""
         self._work = WorkQueue()
         self._begun: _Begun | None = None
+        self._termination: Termination | None = None
+        """What has signals stop the run, if they do."""
         self._left = self._ended = self._revoked = False
         self._membership = membership
         record = task_record(self.task, method, options)
@@ -166,6 +168,8 @@ class Run:
             self._left = True
             claimed.release()
             bus.close()
+            if self._termination is not None:
+                self._termination.heed_no_more()
 
     def events(self) -> Iterator[AnsweredEvent]:
         """What happens, in order, until the task has ended; does the work of the run while it waits for the next event.
@@ -197,9 +201,10 @@ class Run:
         bus.wake_up(runner.stop)
 
     def stop_on_signals(self) -> None:
-        """From now on SIGINT, SIGTERM and SIGHUP stop the run, instead of ending the program in the middle of it."""
+        """Until the run is left SIGINT, SIGTERM and SIGHUP stop it, and do not end the program in the middle of it."""
         bus, _, runner = self._in_ecology()
-        Termination(bus, runner.stop, told=self._work.abandon)
+        if self._termination is None:
+            self._termination = Termination(bus, runner.stop, told=self._work.abandon)
 
     @property
     def name(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 import time
 from collections.abc import Iterator
@@ -76,6 +77,18 @@ def test_a_run_has_events_in_a_with_statement_alone_and_is_entered_once(
         assert not any(isinstance(event, TaskRunning) for event in left)
         with pytest.raises(ProgrammerError, match="was entered already"), run:
             pytest.fail("it was entered twice")
+
+
+def test_once_it_is_left_signals_do_again_what_they_did_before(served: Home, clock: sc.TaskSpecification) -> None:
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = [signal.getsignal(number) for number in numbers]
+    with sc.join(served.ecology) as living, living.run(clock) as run:
+        run.stop_on_signals()
+        run.stop_on_signals()
+        until(run, TaskRunning)
+        signal.raise_signal(signal.SIGTERM)
+        until(run, TaskStopped)
+    assert [signal.getsignal(number) for number in numbers] == before
 
 
 def test_a_run_that_is_not_entered_holds_nothing(served: Home, clock: sc.TaskSpecification) -> None:
