@@ -96,11 +96,9 @@ class Composites:
     def _become(self, known: Mapping[IRI, Advertisement], found: Mapping[IRI, Inside], why: Mapping[IRI, str]) -> None:
         self._advertisements, self._able = known, found
         for component in [*self.living]:
-            if component in known:
-                self._end_outdated(component)
-            else:
+            self._end_outdated(component)
+            if component not in known:
                 self._pauses.pop(component, None)
-                self._end(component)
         for component in found:
             if component in self.living:
                 self._look_again(component)
@@ -117,7 +115,8 @@ class Composites:
     def _end_outdated(self, component: IRI) -> None:
         """Let a composite live no more, unless it acts, whose inside cannot be configured, or is another by now.
 
-        One that acts finds out by itself what it lacks, and is what it was until it has come to rest.
+        One that acts finds out by itself what it lacks, and is what it was until it has come to rest, also where it is
+        advertised no more: perhaps its file is being saved.
         """
         composite = self.living.get(component)
         if composite is None or composite.runtime.active or composite.runner is not None:

@@ -135,6 +135,23 @@ def test_a_composite_that_acts_no_more_lives_no_more_if_its_inside_cannot_be_con
     assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
 
 
+@pytest.mark.parametrize("comes_back", [True, False])
+def test_a_composite_that_acts_lives_on_while_its_file_is_not_there(tmp_path: Path, comes_back: bool) -> None:
+    lab = eye(tmp_path)
+    low, advertised = looking(lab, "Low", 0), tmp_path / "home" / "eye.ttl"
+    lens, text = list(lab.components["lens"].said), advertised.read_text()
+    advertised.unlink()
+    lab.let_pass(3.0)
+    if comes_back:
+        advertised.write_text(text)
+        lab.let_pass(3.0)
+    assert (low.state.phase, low.losses, lab.components["lens"].said) == (Phase.RUNNING, {}, lens)
+    low.stop()
+    lab.let_pass(3.0)
+    assert low.state.phase is Phase.STOPPED
+    assert list(lab.composites["home"].living) == [iri("eye")] * comes_back
+
+
 @pytest.mark.parametrize("acts", [True, False])
 def test_a_composite_that_is_another_by_now_begins_a_new_life_once_it_is_at_rest(tmp_path: Path, acts: bool) -> None:
     glass = EYE["lens"].replace("lens-1", "glass-1").replace(":Lens", ":Glass")
