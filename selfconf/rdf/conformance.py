@@ -6,6 +6,7 @@ rdflib with literal normalisation off for the whole process, and any other store
 
 from __future__ import annotations
 
+import logging
 import math
 import re
 import time
@@ -54,6 +55,8 @@ SHARE_SECONDS, MOST_SHARE_SECONDS = 0.004, 0.04
 """Processor time that each component may take, as long as none conforms, and at most."""
 LEAST_SECONDS = 0.03
 """Processor time for one more try; clocks of processor time go by milliseconds."""
+_LOGS = tuple(map(logging.getLogger, ("pyshacl.validator", "pyshacl-validate")))
+"""The logs of pySHACL; the second writes to stderr by itself."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 _ASKING = rdflib.URIRef("urn:selfconf:asking")
 _DEEPEST_TRIAL = DEEPEST_SHAPE + 1
@@ -215,13 +218,20 @@ class _Shares:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """No warning that a shape comes back to itself.
+    """No warning that a shape comes back to itself, and no errors in the log, which are raised besides.
 
     SHACL leaves open what such a shape means (3.4.3); pySHACL takes it to hold where it comes back.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ShapeRecursionWarning)
-        yield
+    before = [log.disabled for log in _LOGS]
+    for log in _LOGS:
+        log.disabled = True
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ShapeRecursionWarning)
+            yield
+    finally:
+        for log, disabled in zip(_LOGS, before, strict=True):
+            log.disabled = disabled
 
 
 def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, Any, Any]]]]) -> list[ShapeViolated]:

@@ -12,12 +12,13 @@ import rdflib
 from hypothesis import given
 from hypothesis import strategies as st
 from pyshacl.constraints import constraint_component
+from pyshacl.errors import ConstraintLoadError
 
 from selfconf.errors import TemplateError
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
 from selfconf.rdf import conformance, rdflib_terms
-from selfconf.rdf.conformance import violations
+from selfconf.rdf.conformance import judged, violations
 from selfconf.rdf.deadline import ProcessorTimeUp
 from selfconf.rdf.turtle import document as turtle
 
@@ -185,6 +186,19 @@ def test_of_a_message_in_several_languages_that_in_english_is_told(messages: str
 def test_a_shape_that_comes_back_to_itself_is_judged_in_silence(capfd: pytest.CaptureFixture[str]) -> None:
     assert outside(":shape sh:node :shape ; sh:property [ sh:path :size ; sh:minCount 1 ] .") == {"bare"}
     assert capfd.readouterr() == ("", "")
+
+
+def test_what_is_wrong_with_a_shape_is_raised_and_not_logged_besides(
+    capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    asked = ":shape a sh:NodeShape ; sh:sparql [ sh:message 'no query' ] ."
+    with pytest.raises(TemplateError, match="at least one sh:select"):
+        outside(asked)
+    graph = rdflib_terms.to_rdflib(turtle.parse(HEAD + asked + ":shape sh:targetNode :x .", "a.ttl").triples())
+    with pytest.raises(ConstraintLoadError):
+        judged(graph, graph)
+    assert not caplog.records
+    assert capfd.readouterr().err == ""
 
 
 def test_an_error_without_words_is_at_least_named() -> None:
