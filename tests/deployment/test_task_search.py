@@ -11,6 +11,7 @@ import pytest
 
 from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Improvable
+from selfconf.deployment import TaskRunner
 from selfconf.deployment.retries import LET_GO_OF
 from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
@@ -43,22 +44,8 @@ def test_a_search_that_breaks_ends_the_task_which_says_so(lab: Lab) -> None:
     assert lab.active() == set()
 
 
-def test_a_search_is_abandoned_when_its_task_ends(lab: Lab) -> None:
-    searches, abandoned = list[Callable[[], None]](), list[Callable[[], None]]()
-
-    def aside(work: Callable[[], None]) -> Undo:
-        searches.append(work)
-        return partial(abandoned.append, work)
-
-    agent = lab.agent()
-    agent._search._request = replace(agent.request, aside=aside)
-    assert lab.until(lambda: bool(searches))
-    agent.stop()
-    assert lab.until(lambda: bool(lab.ended))
-    assert abandoned == searches
-
-
-def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> None:
+def searching_aside(lab: Lab) -> tuple[TaskRunner, list[Callable[[], None]], list[Callable[[], None]]]:
+    """A task, the searches that it begins, each to be made by calling it, and those of them that it abandons."""
     searches, abandoned = list[Callable[[], None]](), list[Callable[[], None]]()
 
     def aside(work: Callable[[], None]) -> Undo:
@@ -67,6 +54,19 @@ def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> No
 
     agent = lab.agent()
     agent._search._request = replace(agent.request, aside=aside)  # of the search alone
+    return agent, searches, abandoned
+
+
+def test_a_search_is_abandoned_when_its_task_ends(lab: Lab) -> None:
+    agent, searches, abandoned = searching_aside(lab)
+    assert lab.until(lambda: bool(searches))
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    assert abandoned == searches
+
+
+def test_a_search_is_abandoned_when_another_begins_and_no_sooner(lab: Lab) -> None:
+    agent, searches, abandoned = searching_aside(lab)
     assert lab.until(lambda: len(searches) == 1)
     searches[0]()
     assert lab.running(agent)
