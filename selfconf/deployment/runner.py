@@ -48,7 +48,17 @@ from selfconf.configurator import (
     Watch,
     step,
 )
-from selfconf.deployment.components import Calls, ComponentMessages, HeldLives, Liveness, PortEnds, Waking
+from selfconf.deployment.components import (
+    Audits,
+    Calls,
+    ComponentMessages,
+    HeldLives,
+    Liveness,
+    LivingSites,
+    PortEnds,
+    Reachability,
+    Waking,
+)
 from selfconf.deployment.lasting_losses import LastingLosses
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.record import DeploymentRecord
@@ -134,7 +144,10 @@ class TaskRunner:
         self._waking = Waking(context, self._lives)
         self._ends = PortEnds(self.ecology, request.outside)
         self._calls = Calls(context, self.identity, self.supervisor, self._lives, self._waking, self._ends)
-        self._liveness = Liveness(context, self._calls, self._waking)
+        sites = LivingSites(context, self._waking)
+        self._reachability = Reachability(context, self._calls, sites)
+        self._liveness = Liveness(context, self._calls, self._waking, sites, self._reachability)
+        self._audits = Audits(context, self._calls, self._reachability)
         self._discovery = TaskDiscovery(context, self.name, self._liveness, request.without_configurator)
         self._search = TaskSearch(context, request, self._liveness, self._give_up)
         self._lasting_losses = LastingLosses(context)
@@ -154,13 +167,13 @@ class TaskRunner:
         self._subscriptions = [
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
             bus.subscribe(
-                self.keys.reopens(), lambda sample: self._liveness.reopens(site_of(sample.key)), Urgency.EVENT
+                self.keys.reopens(), lambda sample: self._reachability.reopens(site_of(sample.key)), Urgency.EVENT
             ),
         ]
 
     def start(self) -> None:
         """Begin with act 1."""
-        self._liveness.audit()
+        self._audits.go_on()
         self._pulse()
         self._step(Accepted(int(self.clock() * 1000)))
 
@@ -169,7 +182,7 @@ class TaskRunner:
 
         That had lost some components, as `recorded_losses` of its runner said.
         """
-        self._liveness.audit()
+        self._audits.go_on()
         self._pulse()
         self._step(Adopted(epoch, configuration, lost))
 
@@ -289,12 +302,12 @@ class TaskRunner:
         late, self._last_pulse = now - self._last_pulse - PULSE, now
         if late > SUSPENDED:
             log.warning("this program was suspended for %.1f s; looking at what has become of the ecology", late)
-            self._liveness.suspended()
+            self._reachability.suspended()
 
     def _heed(self, failed: Failed) -> None:
         """Take in a failure that was heard of, perhaps before the first pulse after a suspension."""
         self._look_whether_suspended()
-        self._liveness.heed(failed)
+        self._reachability.heed(failed)
 
     def _stand_by_anew(self) -> None:
         """Be ready for a failure with all that has appeared for a while, as a process may hold many components."""
@@ -311,7 +324,7 @@ class TaskRunner:
             standby = self.request.standby(configuration, lost)
 
             def send() -> None:
-                if self.state.epoch == epoch and self.state.phase is Phase.RUNNING and not self._liveness.unsure:
+                if self.state.epoch == epoch and self.state.phase is Phase.RUNNING and not self._reachability.unsure:
                     self._calls.stand_by(configuration, standby)
                     sources = {wire.component for some in standby.values() for wires in some.values() for wire in wires}
                     self._liveness.select(sources, lambda: None)
@@ -420,12 +433,12 @@ class TaskRunner:
 
     def _apply(self, effect: ApplyTo) -> None:
         """Apply to a component, unless what feeds it may act no more since a pause: all is applied to anew soon."""
-        if effect.rests or not self._liveness.unsure:
+        if effect.rests or not self._reachability.unsure:
             self._calls.apply(effect)
 
     def _stayed_away(self, attempt: int) -> None:
         """End the wait of a search that has found nothing; if this node is cut off, it will be made anew."""
-        if not self._liveness.cut_off:
+        if not self._reachability.cut_off:
             self._step(StayedAway(attempt))
 
     def _finish(self, effect: Finish) -> None:
@@ -465,7 +478,7 @@ class TaskRunner:
             priority=self.identity.priority,
             beginning=self.identity.beginning,
             owed=self._out_of_control,
-            dropped={one: count for one, count in self._liveness.dropped.items() if count and one in self.state.held},
+            dropped={one: count for one, count in self._audits.dropped.items() if count and one in self.state.held},
             outside=None if self.request.outside is None else self.request.outside.composite,
             wants={one: wants for one in self.state.held if (wants := self._wants(one)) != Wants()},
         )

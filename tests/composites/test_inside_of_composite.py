@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.api.task import template
 from selfconf.composites import InsideOfComposite
-from selfconf.deployment.components.liveness import AUDIT
+from selfconf.deployment.components.audits import AUDIT
 from selfconf.discovery import EcologyView
 from selfconf.model.run_event import ComponentActivated, ComponentLost, InputConnected
 from selfconf.model.term import IRI

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.configurator.state import Phase
-from selfconf.deployment.components.liveness import AUDIT
+from selfconf.deployment.components.audits import AUDIT
 from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal

@@ -10,5 +10,13 @@ def test_every_part_sees_the_state_as_it_is_now_and_not_as_it_was_when_the_task_
     agent = lab.agent()
     assert agent._liveness._state().phase is not Phase.RUNNING
     assert lab.running(agent)
-    for part in (agent._liveness, agent._calls, agent._search, agent._retries, agent._discovery):
+    for part in (
+        agent._liveness,
+        agent._audits,
+        agent._reachability,
+        agent._calls,
+        agent._search,
+        agent._retries,
+        agent._discovery,
+    ):
         assert part._state() is agent.state

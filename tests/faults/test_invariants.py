@@ -113,7 +113,9 @@ class Mutation(NamedTuple):
 
 
 INPUTS = "selfconf.sdk.inputs.Inputs"
-CALLING, CALLS, LIVENESS = (f"selfconf.deployment.components.{name}" for name in ("calling", "calls", "liveness"))
+AUDITS, CALLING, CALLS, LIVENESS = (
+    f"selfconf.deployment.components.{name}" for name in ("audits", "calling", "calls", "liveness")
+)
 RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
 GRACE = "selfconf.sdk.runtime.supervision.GRACE"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
@@ -121,7 +123,7 @@ SHARES_ALL = {
     "selfconf.protocol.activation._blocked": lambda *_: False,
     "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered, kept: answered({}),
 }
-SILENT = {f"{LIVENESS}.Liveness.audit": nothing, f"{RUNTIME}._let_go": lets_go_silently}
+SILENT = {f"{AUDITS}.Audits.go_on": nothing, f"{RUNTIME}._let_go": lets_go_silently}
 """Nobody tells, and nobody asks, whether a component has let go."""
 LETS_GO_SILENTLY = Mutation(
     {
@@ -154,7 +156,7 @@ MUTATIONS = {
         {"selfconf.sdk.component_code.TOLERATES": 1e9}, (Action(2.0, "mute", "control", "drive"), LATER)
     ),
     "who hangs has failed": Mutation({f"{RUNTIME}.hung": nothing}, (Action(0.0, "slow", "drive", "", 12.0),)),
-    "what waits is bounded": Mutation({f"{LIVENESS}.AUDIT": 0.05, f"{CALLING}.CALL": 100.0}),
+    "what waits is bounded": Mutation({f"{AUDITS}.AUDIT": 0.05, f"{CALLING}.CALL": 100.0}),
     "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
     "nobody waits in vain": Mutation(
         {

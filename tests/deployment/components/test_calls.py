@@ -11,7 +11,7 @@ from selfconf.bus.port import Request
 from selfconf.configurator.state import Phase
 from selfconf.deployment.components.calling import CALL, STARTING
 from selfconf.deployment.components.calls import SITE_ENDS
-from selfconf.deployment.components.liveness import SETTLING
+from selfconf.deployment.components.reachability import SETTLING
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import End, Page, Release, Wake
 from selfconf.sdk.runtime.runtime import LIFE_ENDS
