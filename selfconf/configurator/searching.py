@@ -44,7 +44,9 @@ def heed_discovery(state: State, event: Discovered) -> Reaction:
     known = replace(
         state, taken=taken, sharers=sharers, lost=lost, unseen=event.unseen, free=frozenset(), improving=False
     )
-    return phases.compose(known) if state.phase is Phase.DISCOVERING else _improve(known)
+    if state.phase is Phase.DISCOVERING:
+        return phases.compose(known)
+    return _improve(replace(known, news=known.news or known.heeds_others))
 
 
 def _avoid(state: State, configuration: Configuration) -> tuple[State, Avoided]:

@@ -165,7 +165,8 @@ class State:
     unseen: bool = False
     """Whether something that was held was not advertised when the ecology was last asked."""
     news: bool = False
-    """Whether something has appeared since the ecology was last asked."""
+    """Whether something has appeared since the ecology was last asked, or the task has run, and others may have ended.
+    """
     improving: bool = False
     """Whether the ecology was asked for what the strategy would rather have than what runs."""
     awaits_return: bool = False
@@ -181,6 +182,11 @@ class State:
         """
         others = {c: one for c, one in self.sharers.items() if c not in self.held or self.phase is Phase.RUNNING}
         return contested_by(others, configuration)
+
+    @property
+    def heeds_others(self) -> bool:
+        """Whether searches leave something out as another task held it, or may, when the ecology was last asked."""
+        return bool(self.taken or self.sharers or any(loss.busy for loss in self.lost.values()))
 
     @property
     def left_to_others(self) -> bool:

@@ -108,6 +108,23 @@ def test_a_refusal_that_nobody_else_is_to_blame_for_names_nobody() -> None:
     assert not history.state.lost
 
 
+@pytest.mark.parametrize("looks_for_better", [False, True])
+def test_what_others_held_when_a_task_began_to_run_is_asked_for_once_more_before_it_is_refused(
+    looks_for_better: bool,
+) -> None:
+    history = History(TASK)
+    held = Discovered({ODOMETRY: OTHERS})
+    history.hear(Accepted(100), Discovered() if looks_for_better else held)
+    history.composed(navigation())
+    history.all_answer()
+    if looks_for_better:
+        history.hear(Improvable(), held)
+        assert history.composed(navigation()) == []
+    history.hear(Failed(TRACKER, "1", Cause.FAIL))
+    assert history.composed(REFUSAL) == [Discover()]
+    assert history.hear(Discovered()) == [Compose(history.state.attempt, frozenset({TRACKER}), navigation())]
+
+
 def sharers(configuration: Configuration) -> dict[IRI, Holder]:
     """Another task that holds the controller, which it would share, as in a configuration of its own."""
     return {CONTROL: replace(OTHERS, wants=configuration.wants(CONTROL))}
