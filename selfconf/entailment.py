@@ -22,6 +22,7 @@ from selfconf.errors import AuthorError
 from selfconf.model.seconds import LIMIT_IN_WORDS, is_limit
 from selfconf.model.setting_names import setting
 from selfconf.model.term import BlankNode, Term
+from selfconf.module_command import module_command
 from selfconf.rdf import reasoning, turtle
 from selfconf.rdf.turtle import Triple, ntriples
 
@@ -88,7 +89,7 @@ def _limit() -> float:
 
 def _computed(lines: bytes) -> bytes:
     seconds = _limit()
-    command = [sys.executable, "-m", "selfconf.entailment"]
+    command = module_command("selfconf.entailment")
     try:
         done = subprocess.run(command, input=lines, capture_output=True, timeout=seconds, check=True)
     except subprocess.TimeoutExpired:

@@ -23,6 +23,7 @@ import pyoxigraph as ox
 from selfconf.errors import NetworkError, ProgrammerError, QueryError, SelfconfError
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import in_command, options_named, setting
+from selfconf.module_command import module_command
 from selfconf.query.limits import ENGINE_DOWN, too_large, too_slow
 from selfconf.query.results import shown
 from selfconf.rdf.sparql import QUERY_PREFIXES, Dataset, QueryAnswer, declared_prefixes, only_reads, says
@@ -61,7 +62,7 @@ class Shown(NamedTuple):
 
 def answer(dataset: Dataset, question: Question) -> Shown:
     """The answer as text. Raises QueryError, also when a limit is reached, and NetworkError."""
-    command = [sys.executable, "-m", "selfconf.query"]
+    command = module_command("selfconf.query")
     given = json.dumps([asdict(question), in_command()]).encode() + b"\n" + dataset.dump()
     try:
         done = subprocess.run(command, input=given, capture_output=True, timeout=question.seconds, check=False)

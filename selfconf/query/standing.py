@@ -9,13 +9,13 @@ import contextlib
 import json
 import socket
 import subprocess
-import sys
 import threading
 from collections.abc import Sequence
 from dataclasses import asdict
 
 from selfconf.errors import NetworkError, NotAcceptableError, ProgrammerError, QueryError, QueryTimeoutError
 from selfconf.model.immutable import immutable
+from selfconf.module_command import module_command
 from selfconf.query import standing_process as endings
 from selfconf.query.limits import ENGINE_DOWN, too_large, too_slow
 
@@ -103,7 +103,7 @@ class StandingDataset:
         if self._control is not None:
             return
         self._control, other = socket.socketpair()
-        command = [sys.executable, "-m", "selfconf.query", str(other.fileno())]
+        command = module_command("selfconf.query", str(other.fileno()))
         with other:
             # A group of its own: Ctrl-C is for the program that serves, which ends this one.
             self._process = subprocess.Popen(command, pass_fds=[other.fileno()], start_new_session=True)

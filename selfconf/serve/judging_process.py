@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
-import sys
 from collections.abc import Mapping
 from typing import Any
+
+from selfconf.module_command import module_command
 
 
 async def judged_apart(module: str, question: Mapping[str, object], seconds: float) -> Any:
@@ -15,7 +16,7 @@ async def judged_apart(module: str, question: Mapping[str, object], seconds: flo
     Raises asyncio.TimeoutError when its time is over, and ValueError when it does not answer.
     """
     process = await asyncio.create_subprocess_exec(
-        *(sys.executable, "-m", module),
+        *module_command(module),
         stdin=asyncio.subprocess.PIPE,
         stdout=asyncio.subprocess.PIPE,
         stderr=asyncio.subprocess.DEVNULL,

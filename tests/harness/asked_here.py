@@ -14,12 +14,13 @@ from typing import Any
 
 import pytest
 
+from selfconf.module_command import module_command
 from selfconf.query import process
 
 
 def _answered(command: Sequence[str], input: bytes, **_: Any) -> subprocess.CompletedProcess[bytes]:
     """What the process would answer that reads these bytes."""
-    assert list(command) == [sys.executable, "-m", "selfconf.query"]
+    assert list(command) == module_command("selfconf.query")
     streams = {name: io.TextIOWrapper(io.BytesIO(b"" if name != "stdin" else input)) for name in ("stdin", *SAID)}
     with pytest.MonkeyPatch.context() as patch:
         for name, stream in streams.items():

@@ -16,6 +16,7 @@ from selfconf.api.arguments import checked_text
 from selfconf.errors import AuthorError, NetworkError, SiteMisusedError
 from selfconf.files import STDIN
 from selfconf.model.setting_names import setting
+from selfconf.module_command import module_command
 from selfconf.protocol.keys import checked_name
 from selfconf.termination import parent_environment
 from selfconf.this_machine import LocalSite
@@ -77,7 +78,7 @@ class SiteProcess:
         if self._keys is not None:
             names += ["--keys", str(self._keys)]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "selfconf", "site", *map(str, self.paths), *names, *where],
+            module_command("selfconf", "site", *map(str, self.paths), *names, *where),
             stdin=subprocess.DEVNULL,
             stdout=sys.stderr,
             start_new_session=True,  # Ctrl-C is for the program that owns the site, which ends it in its own time
