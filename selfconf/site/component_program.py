@@ -15,16 +15,16 @@ leave no pauses. What still runs of the process is ended first: there is never m
 from __future__ import annotations
 
 import logging
-import math
 import os
 import secrets
 import shlex
 import sys
 import threading
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.errors import AuthorError, PeerError, reason
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
@@ -32,7 +32,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Cause, Fail
 from selfconf.rendezvous import KEYS_VARIABLE, LIFE_VARIABLE
-from selfconf.site.life_watch import LifeWatch
+from selfconf.site.component_process import ComponentProcess
 from selfconf.site.printed_lines import PrintedLines
 from selfconf.site.process_group import ProcessGroup
 from selfconf.site.restart_limit import CRASH_WINDOW, DEFAULT_RESTARTS, RestartLimit
@@ -52,16 +52,28 @@ TERMINATION = 2.0
 """Seconds that a process may take to end before it is killed."""
 UNKILLABLE = 3.0
 """Seconds after which a process counts as gone even so: it is killed, and its parent may not have waited for it."""
-MOST_WATCHED = 8
-"""Of how many components of a process the lives are followed: they share a process, and if that hangs, they all do."""
 NAMED_IN_LOG = 32
 """How many components of a process each line of the log names, so that names are not most of the log."""
 NO_CRASH = (0, 2)
 """The codes of processes that have wanted to end, and of those that have said why they cannot run."""
 
 
+@dataclass
+class _Ending:
+    """How a process is being ended."""
+
+    since: float
+    """When it was asked to end."""
+    again: bool
+    """Whether the program is to be started again once it is gone."""
+    when_gone: list[Callable[[], None]] = field(default_factory=list)
+
+
 class ComponentProgram:
-    """One command in one folder, and the components that share it."""
+    """One command in one folder, and the components that share it.
+
+    There is a process while it is running or ending, and a timer while it is pausing; it is idle without either.
+    """
 
     def __init__(
         self,
@@ -83,33 +95,30 @@ class ComponentProgram:
         self._profiles: dict[IRI, Profile] = {}
         self._asked: set[IRI] = set()
         """The components that it was started for."""
-        self._watches: dict[IRI, LifeWatch] = {}
-        """Of some components, whether they live, as long as there is a process."""
         self._limit = RestartLimit()
-        self._counted = False
-        """Whether the end of the present process, or else of the last one, was counted as a crash."""
-        self._last_watches: tuple[LifeWatch, ...] = ()
-        """The watches over the lives of the process that has ended last."""
-        self._life = ""
-        self.group: ProcessGroup | None = None
+        self._process: ComponentProcess | None = None
         """The process, while there is anything left of it."""
+        self._last: ComponentProcess | None = None
+        """The process that is gone, until there is another one."""
+        self._ending: _Ending | None = None
+        """Of a process that is to end."""
+        self._pause: Undo | None = None
+        """Of a program that is to be started again after a while: ends that."""
         self._closed = False
         self._launching = threading.RLock()
         """Held while the process is started: `close`, which any thread may call, waits until it is known."""
-        self._ending_since: float | None = None
-        self._silent_since = -math.inf
-        """When a pipe of the process has ended; long ago as long as none has."""
-        self._again = False
-        """Whether it is to be started again once it is gone."""
-        self._when_gone: list[Callable[[], None]] = []
-        self._undo_check: Callable[[], None] = lambda: None
-        self._pause: Callable[[], None] | None = None
-        """Ends the pause after a crash; None if there is none."""
+        self._undo_check: Undo = lambda: None
+
+    @property
+    def group(self) -> ProcessGroup | None:
+        """The process with all that it has started, while there is anything left of them."""
+        process = self._process
+        return None if process is None else process.group
 
     @property
     def running(self) -> bool:
         """Whether there is a process that is not to end."""
-        return self.group is not None and self._ending_since is None
+        return self._process is not None and self._ending is None
 
     def start(self, profile: Profile, sharing: Iterable[Profile], after: str = "") -> None:
         """Start the process for one of its components, unless it runs. Raises PeerError if that cannot be done.
@@ -119,20 +128,20 @@ class ComponentProgram:
         self._asked.add(profile.component)
         self._profiles = {one.component: one for one in (profile, *sharing)}
         self._asked.intersection_update(self._profiles)  # one may have been given another command since
-        if self.running:
-            self._follow_lives()
+        if self._process is not None and self._ending is None:
+            self._process.follow(self._profiles.values())
             return
         self._count_lost(after)
         wait = self._limit.wait(self._bus.now(), self._restarts())
         if wait > 0:
             crashed = f"has ended more than {self._restarts()} times within {CRASH_WINDOW:.0f} s"
             raise PeerError(f"the command of {profile.component} {crashed}; it can be started in {wait:.0f} s")
-        if self.group is not None:
-            self._again = True  # one process at a time; the end of this one is near
+        if self._ending is not None:
+            self._ending.again = True  # one process at a time; the end of this one is near
         elif self._limit.first(self._bus.now()):
             self._launch()
         elif self._pause is None:
-            if self._counted:
+            if self._last is not None and self._last.crash_counted:
                 self._start_again()
             else:
                 self._launch()
@@ -143,37 +152,37 @@ class ComponentProgram:
         Where it is being ended already, what has been asked to follow stays: a start, after which it is waited for.
         """
         self._end_pause()
-        if self.group is None:
+        if self._process is None:
             gone()
-            return
-        self._when_gone.append(gone)
-        if self._ending_since is None:
-            self._again = again
-            self._ending_since = self._bus.now()
-            if self.group.frozen():
-                self.group.kill()  # it would have to go on, and might act, before it could end by itself
+        elif self._ending is not None:
+            self._ending.when_gone.append(gone)
+        else:
+            self._ending = _Ending(self._bus.now(), again, [gone])
+            if self._process.group.frozen():
+                self._process.group.kill()  # it would have to go on, and might act, before it could end by itself
             else:
-                self.group.terminate()
+                self._process.group.terminate()
             self._check_in(ENDING_CHECK)
 
     def give_up(self) -> None:
         """Start it again no more by itself: no component has its command any more."""
         self._end_pause()
-        self._again = False
+        if self._ending is not None:
+            self._ending.again = False
 
     def is_life(self, component: IRI, life: str) -> bool:
         """Whether a life of a component is that of the present process, as far as is known."""
-        watch = self._watches.get(component)
-        return life == self._life or (watch is not None and watch.is_life(life))
+        process = self._process or self._last
+        return process is not None and process.is_life(component, life)
 
     def _count_lost(self, life: str) -> None:
         """Count the end of the process in which a task has lost a life, unless it has counted."""
-        watches = (*self._watches.values(), *self._last_watches)
-        if life and not self._counted and any(watch.was_life(life) for watch in watches):
-            self._count_crash()
+        process = self._process or self._last
+        if life and process is not None and not process.crash_counted and process.was_life(life):
+            self._count_crash(process)
 
-    def _count_crash(self) -> None:
-        self._counted = True
+    def _count_crash(self, process: ComponentProcess) -> None:
+        process.crash_counted = True
         self._limit.crashed(self._bus.now())
 
     def close(self) -> None:
@@ -184,14 +193,14 @@ class ComponentProgram:
     def _launch(self) -> None:
         """Start the process. Raises PeerError."""
         self._end_pause()
-        self._life = secrets.token_hex(4)
-        self._counted, self._last_watches = False, ()
+        self._last = None
+        life = secrets.token_hex(4)
         environment = {
             **os.environ,
             **self._environment,
             **self._keys_environment(),
             **parent_environment(),
-            LIFE_VARIABLE: self._life,
+            LIFE_VARIABLE: life,
             "PATH": _path(),
             "PYTHONUNBUFFERED": "1",
         }
@@ -201,19 +210,19 @@ class ComponentProgram:
             with self._launching:
                 if self._closed:
                     raise PeerError("this site is ending")
-                self.group = ProcessGroup(words, self._folder, environment)
+                group = ProcessGroup(words, self._folder, environment)
+                process = self._process = ComponentProcess(self._bus, self._keys, group, life)
                 if self._closed:  # by a signal to this very thread, which the lock does not keep out
-                    self.group.kill()
+                    group.kill()
         except OSError as error:
             raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
         except ValueError as error:
             raise PeerError(f"the command of {first} cannot be read: {error}") from None
-        self._silent_since = -math.inf
-        printed, group = self._printed(), self.group
+        printed = self._printed()
         for stream, pipe in group.pipes():
-            printed.follow(pipe, stream, self._source(), lambda: self._bus.wake_up(lambda: self._look(group)))
+            printed.follow(pipe, stream, self._source(), lambda: self._bus.wake_up(lambda: self._look(process)))
         self._note(f"started as process {group.number}: {self.command}")
-        self._follow_lives()
+        process.follow(self._profiles.values())
         self._check_in(PROCESS_CHECK)
 
     def _keys_environment(self) -> dict[str, str]:
@@ -225,88 +234,66 @@ class ComponentProgram:
         except AuthorError as error:
             raise PeerError(f"there is no certificate for {min(self._profiles)}: {error}") from None
 
-    def _follow_lives(self) -> None:
-        for component, profile in self._profiles.items():
-            if component not in self._watches and len(self._watches) < MOST_WATCHED:
-                self._watches[component] = LifeWatch(self._bus, self._keys, profile, self._life)
-
-    def _unwatch(self) -> None:
-        self._last_watches = tuple(self._watches.values())
-        for watch in self._watches.values():
-            watch.close()
-        self._watches.clear()
-
     def _check_in(self, seconds: float) -> None:
         self._undo_check()
         self._undo_check = self._bus.later(seconds, self._check)
 
-    def _look(self, group: ProcessGroup) -> None:
+    def _look(self, process: ComponentProcess) -> None:
         """A pipe of a process has ended: mostly the process has too, or does in a moment."""
-        if group is self.group:
-            self._silent_since = self._bus.now()
+        if process is self._process:
+            process.silent_since = self._bus.now()
             self._check()
 
     def _check(self) -> None:
         """See how it is with the process."""
-        if self.group is None or self._closed:
+        process = self._process
+        if process is None or self._closed:
             return
-        if self._ending_since is not None:
-            self._check_ending(self.group, self._ending_since)
+        if self._ending is not None:
+            self._check_ending(process, self._ending)
             return
-        code = self.group.code()
+        code = process.group.code()
         if code is not None:
-            self._ended(code)
+            self._ended(process, code)
             return
-        trouble = self._trouble(self.group)
+        trouble = process.trouble()
         if trouble is None:
-            self._check_in(max(ENDING_CHECK, min(self._bus.now() - self._silent_since, PROCESS_CHECK)))
+            self._check_in(max(ENDING_CHECK, min(self._bus.now() - process.silent_since, PROCESS_CHECK)))
         else:
-            self._end_for(*trouble)
+            self._end_for(process, *trouble)
 
-    def _trouble(self, group: ProcessGroup) -> tuple[Cause, str] | None:
-        """Why the process has to be ended, also in words: a component of it hangs, or none of them lives."""
-        living = [watch for watch in self._watches.values() if watch.alive]
-        if living:
-            return next(((Cause.HUNG, found) for watch in living if (found := watch.hanging())), None)
-        frozen, watches = group.frozen(), self._watches.values()
-        return next(((Cause.CRASH, found) for watch in watches if (found := watch.lifeless(frozen))), None)
-
-    def _check_ending(self, group: ProcessGroup, since: float) -> None:
-        waited = self._bus.now() - since
+    def _check_ending(self, process: ComponentProcess, ending: _Ending) -> None:
+        waited = self._bus.now() - ending.since
         if waited >= TERMINATION:
-            group.kill()
-        if not group.gone() and waited < UNKILLABLE:
+            process.group.kill()
+        if not process.group.gone() and waited < UNKILLABLE:
             self._check_in(_next_ending_check(waited))
             return
-        self._gone()
-        if self._again:
-            self._again = False
-            self._start_again()
-
-    def _gone(self) -> None:
-        """There is nothing left of the process."""
         self._undo_check()
-        self.group, self._ending_since = None, None
-        self._unwatch()
-        waiting, self._when_gone = self._when_gone, []
-        for gone in waiting:
+        process.close()
+        self._process, self._last, self._ending = None, process, None
+        if ending.again:
+            self._start_again()
+        for gone in ending.when_gone:
             gone()
 
-    def _ended(self, code: int) -> None:
+    def _ended(self, process: ComponentProcess, code: int) -> None:
         """The process has ended by itself."""
         again = code not in NO_CRASH
         # One that ends before it lives is not started again, but what asks for it may not ask without a limit.
-        if again or not any(watch.lived for watch in self._watches.values()):
-            self._count_crash()
+        if again or not process.lived:
+            self._count_crash(process)
         outlook = self._outlook() if again else ""
-        self._report(Cause.CRASH, f"the process that its site started for it has ended with code {code}{outlook}")
+        self._report(
+            process, Cause.CRASH, f"the process that its site started for it has ended with code {code}{outlook}"
+        )
         self.end(lambda: None, again)  # what it has started may still run
         self._check()
 
-    def _end_for(self, cause: Cause, trouble: str) -> None:
+    def _end_for(self, process: ComponentProcess, cause: Cause, trouble: str) -> None:
         """End a process that cannot say itself that something is wrong with it."""
-        self._count_crash()
-        self._report(cause, f"its process {trouble}; its site ends it{self._outlook()}")
+        self._count_crash(process)
+        self._report(process, cause, f"its process {trouble}; its site ends it{self._outlook()}")
         self.end(lambda: None, again=True)
 
     def _start_again(self) -> None:
@@ -322,7 +309,7 @@ class ComponentProgram:
 
     def _launch_again(self) -> None:
         self._pause = None
-        if self.group is None and not self._closed:
+        if not self._closed:
             try:
                 self._launch()
             except PeerError as error:
@@ -341,13 +328,12 @@ class ComponentProgram:
             return "; it is started again"
         return f", for the {self._restarts() + 1}. time within {CRASH_WINDOW:.0f} s; it is not started again"
 
-    def _report(self, cause: Cause, detail: str) -> None:
+    def _report(self, process: ComponentProcess, cause: Cause, detail: str) -> None:
         """Raise FAIL for what the process was started for: a configurator may wait for one that has no life yet."""
         self._note(detail)
         for component in sorted(self._asked):
-            watch = self._watches.get(component)
             notice = self._bus.publisher(self._keys.fail(component), Urgency.EVENT)
-            notice.put(encode(Fail(component, "" if watch is None else watch.last_life, 0, cause, detail)))
+            notice.put(encode(Fail(component, process.last_life(component), 0, cause, detail)))
             notice.undeclare()
 
     def _note(self, text: str) -> None:

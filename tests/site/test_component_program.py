@@ -71,6 +71,13 @@ def program(site: Site) -> ComponentProgram:
     return site.processes.by_component[SLEEPER]
 
 
+def given_life(site: Site) -> str:
+    """The name of a life that the process of the sleeper was given."""
+    process = program(site)._process
+    assert process is not None
+    return process.life
+
+
 def test_a_command_that_two_components_share_is_started_once(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:
@@ -225,7 +232,7 @@ def lost_lives(network: Network, tmp_path: Path, made: Site, number: int, told: 
     for run in range(1, number + 1):
         made.start(SLEEPER, life if told else "")
         assert live(network, lambda run=run: len(runs(tmp_path)) == run)
-        life = program(made)._life
+        life = given_life(made)
         leave = network.node().announce(KEYS.life(SLEEPER, life))
         network.run(lambda: False, 0.1)
         leave()
@@ -273,7 +280,7 @@ def test_what_a_site_has_ended_for_a_task_counts_as_a_crash_when_that_task_asks_
     made = site(python(NUMBERED), more="; sc:restarts 0 ")
     made.start(SLEEPER)
     assert live(network, lambda: len(runs(tmp_path)) == 1)
-    life, ended = program(made)._life, list[bool]()
+    life, ended = given_life(made), list[bool]()
     made.processes.end(SLEEPER, life, lambda: ended.append(True))
     with pytest.raises(PeerError, match="has ended more than 0 times"):
         made.start(SLEEPER, life)

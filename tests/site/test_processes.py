@@ -192,8 +192,7 @@ def test_a_process_that_goes_just_while_its_site_ends_is_no_trouble(
     site.start(SLEEPER)
     group = group_of(site)
     looks = iter([group])
-    taken_away = property(lambda _: next(looks, None), lambda *_: None)
-    monkeypatch.setattr(ComponentProgram, "group", taken_away, raising=False)
+    monkeypatch.setattr(ComponentProgram, "group", property(lambda _: next(looks, None)))
     site.close()
     assert group.code() is not None
 
