@@ -73,7 +73,7 @@ def json_notation(value: object) -> object:
 
 
 def read_text(value: object) -> str:
-    """JSON can write half a surrogate pair, which no key and no file can hold: that is no text."""
+    """A text; JSON can write half a surrogate pair, which no key and no file can hold: that is none."""
     if not isinstance(value, str):
         raise PeerError("a text was expected")
     if value.isascii():
@@ -86,7 +86,7 @@ def read_text(value: object) -> str:
 
 
 def read_label(value: object) -> str:
-    """A text that names something: it stands in keys and in lines for people, so it steers nothing and ends no line."""
+    """A `Label`, on one line."""
     label = read_text(value)
     if not is_one_line(label):
         raise PeerError(f"{one_line(label, _QUOTED)!r} holds control characters, and can name nothing")
@@ -94,7 +94,7 @@ def read_label(value: object) -> str:
 
 
 def read_remark(value: object) -> str:
-    """A text for people, of which nothing else depends: on one line, whatever was said."""
+    """A `Remark`, of which one line is made."""
     return one_line(read_text(value))
 
 
@@ -107,7 +107,7 @@ def read_name(value: object) -> str:
 
 
 def read_task_identity(value: object) -> str:
-    """The identity of a task that sites keep: it becomes the name of a file there, and a chunk of keys."""
+    """An `Identity`, with its two parts."""
     identity = read_label(value)
     if not is_task_identity(identity):
         raise PeerError(f"{identity[:_QUOTED]!r} is no identity of a task: NAME~TOKEN was expected")
@@ -235,14 +235,9 @@ def _read_wants(value: object) -> Wants:
     )
 
 
-def read_revisions(value: object) -> dict[str, int]:
-    """The revision of what each site advertises."""
-    return {read_name(site): read_whole(revision) for site, revision in _read_object(value).items()}
-
-
-def read_counts(value: object) -> dict[str, int]:
-    """How often something has happened to each port."""
-    return {read_text(port): read_whole(count) for port, count in _read_object(value).items()}
+def read_numbers(value: object) -> dict[str, int]:
+    """Whole numbers by name."""
+    return {read_name(name): read_whole(number) for name, number in _read_object(value).items()}
 
 
 def read_iris(value: object) -> tuple[IRI, ...]:

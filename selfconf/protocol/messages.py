@@ -1,4 +1,4 @@
-"""The messages of the control plane, as values.
+"""The messages of the control plane, as values; the type of each field is what `selfconf.protocol.codec` reads it by.
 
 Everything that can be stale carries a *life* (which incarnation of a component) or an *epoch* (which deployment of a
 task). Of the calls of one task a component obeys the newest epoch that it knows of and refuses an older one.
@@ -16,6 +16,13 @@ from selfconf.model.immutable import immutable
 from selfconf.model.log_line import LogLine
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.keys import task_name
+
+Label = str
+"""A text that names something: it stands in keys and in lines for people, so it steers nothing and ends no line."""
+Remark = str
+"""A text for people, of which nothing else depends: on one line, whatever was said."""
+Identity = str
+"""The identity of a task that sites keep: it becomes the name of a file there, and a chunk of keys."""
 
 
 class Cause(str, Enum):
@@ -53,11 +60,11 @@ class Claim:
     """What every call says of the task that makes it, and of the component that it means."""
 
     epoch: int
-    supervisor: str
+    supervisor: Label
     """The liveliness key of the configurator that supervises the configuration now."""
-    task: str = ""
+    task: Label = ""
     """The identity of the task, which stays when another configurator goes on with it; empty from an older peer."""
-    life: str = ""
+    life: Label = ""
     """Which life of the component is meant; empty for whichever answers, as an older peer has it."""
     priority: int = 0
     beginning: float = 0.0
@@ -104,7 +111,7 @@ class Release(Claim):
 class StateOf:
     """What goes with a question for a component's state: of which task it is."""
 
-    task: str
+    task: Label
 
 
 class Verdict(str, Enum):
@@ -129,17 +136,17 @@ class CallAnswer:
 
     verdict: Verdict
     component: IRI
-    life: str
+    life: Label
     epoch: int = 0
     active: bool = False
-    detail: str = ""
-    supervisor: str = ""
+    detail: Remark = ""
+    supervisor: Label = ""
     """The liveliness key of the configurator that holds the component; empty if none does, or if it is left out."""
-    task: str = ""
+    task: Label = ""
     """The identity of the task that holds the component, of the highest priority if there are several."""
     priority: int = 0
     beginning: float = 0.0
-    place: str = ""
+    place: Remark = ""
     """The process and the host of the component, for people."""
     dropped: int = 0
     """How many signals the component has passed over since it lives, because its code was too slow."""
@@ -167,7 +174,7 @@ class Moved:
     """The outputs of a composite are issued by others inside of it than before, or others call what it needs."""
 
     component: IRI
-    life: str
+    life: Label
     outputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
     callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
 
@@ -177,11 +184,11 @@ class Fail:
     """FAIL, the special output that every component has."""
 
     component: IRI
-    life: str
+    life: Label
     epoch: int
     cause: Cause = Cause.FAIL
-    detail: str = ""
-    task: str = ""
+    detail: Remark = ""
+    task: Label = ""
     """The identity of the task that it is put for; empty: every task that the component acts for."""
     sequence: int = 0
     """The number of the last signal that this life has issued: what comes of it later, up to that, is no news.
@@ -198,8 +205,8 @@ class Free:
     """
 
     component: IRI
-    life: str
-    task: str = ""
+    life: Label
+    task: Label = ""
 
 
 @immutable
@@ -207,7 +214,7 @@ class Wake:
     """Start the process of a dormant component."""
 
     component: IRI
-    after: str = ""
+    after: Label = ""
     """The life that has ended while the task held it; empty: none has, as far as the task knows."""
 
 
@@ -216,7 +223,7 @@ class End:
     """End the process of a component that does not obey."""
 
     component: IRI
-    life: str = ""
+    life: Label = ""
     """The life that is meant; empty: whichever the site has started."""
 
 
@@ -224,11 +231,11 @@ class End:
 class LogQuestion:
     """What goes with the question for the log of a site: whose lines, how many of before, and from where on."""
 
-    component: str = ""
+    component: Label = ""
     """An IRI or a local name: only the lines of the processes of this component; empty: all."""
     lines: int = 0
     """How many of the latest lines, where there is no position."""
-    position: str = ""
+    position: Label = ""
     """That of an earlier answer: only what was added since is asked for."""
 
 
@@ -237,7 +244,7 @@ class LogPart:
     """The answer to a question for the log of a site, in the order in which the lines were printed."""
 
     lines: tuple[LogLine, ...] = ()
-    position: str = ""
+    position: Label = ""
     """Where the answer ends; only its site can read it."""
     more: bool = False
     """Whether more has been added already than one answer holds."""
@@ -251,13 +258,13 @@ class Page:
     total: int
     revision: int
     component: IRI | None = None
-    source: str = ""
+    source: Remark = ""
     startable: bool = False
-    life: str = ""
+    life: Label = ""
     """Which life of the site replies: another one may have its name."""
     insecure: bool = False
     """Whether the site listens beyond its host without keys."""
-    unable: str = ""
+    unable: Remark = ""
     """Why the component, a composite, cannot act now, in a sentence; empty if it can, or if that is not known yet."""
 
 
@@ -269,7 +276,7 @@ class Introduction:
     """The certificate, as PEM. It is no secret: it is of no use without its key."""
     known: bool = False
     """In an answer: whether the site knew the one that asks, so that its rules stay as they are."""
-    beside: tuple[str, ...] = ()
+    beside: tuple[Label, ...] = ()
     """In an answer: the sites of its host. One that does not answer has lost its hub for a moment, or hangs."""
 
 
@@ -277,18 +284,18 @@ class Introduction:
 class Access:
     """What a holder may do at the hubs of a site, as keys, and as a sentence that says it."""
 
-    principal: str
+    principal: Remark
     """A common name; empty for every holder of a certificate of the authority."""
-    sentence: str
-    says: tuple[str, ...] = ()
+    sentence: Remark
+    says: tuple[Label, ...] = ()
     """Under which keys it may say something."""
-    asked: tuple[str, ...] = ()
+    asked: tuple[Label, ...] = ()
     """As which keys, besides, others may ask for that or listen to it: they know it by wider ones."""
-    hears: tuple[str, ...] = ()
+    hears: tuple[Label, ...] = ()
     """Under which keys it may ask and listen."""
-    about: tuple[str, ...] = ()
+    about: tuple[Label, ...] = ()
     """The components that it speaks for, by their chunks."""
-    told: tuple[str, ...] = ()
+    told: tuple[Label, ...] = ()
     """What reaches it of what it hears; empty: all of it. Another site hears from each host what is said there."""
 
 
@@ -296,11 +303,11 @@ class Access:
 class RefusedAttempt:
     """What a client has tried, and may not."""
 
-    principal: str
+    principal: Remark
     """A common name; empty for a client that has shown no trusted certificate."""
-    attempt: str
+    attempt: Remark
     """What was tried, such as `Query`, or why the certificate is not believed."""
-    key: str
+    key: Remark
     """Under which key; empty where there was no link."""
     number: int
     """How often."""
@@ -337,7 +344,7 @@ class Stamp:
     """What goes with each signal: its source, in which life, its number there, its time in seconds, its encoding."""
 
     component: IRI
-    life: str
+    life: Label
     sequence: int
     time: float
     encoding: SignalEncoding = SignalEncoding()
@@ -347,16 +354,16 @@ class Stamp:
 class Status:
     """What a configurator has deployed, and for which task."""
 
-    configurator: str
-    phase: str
+    configurator: Label
+    phase: Remark
     template: IRI
     epoch: int
     since: float
-    host: str = ""
+    host: Remark = ""
     process: int = 0
     components: tuple[IRI, ...] = ()
     lost: Mapping[str, Any] = field(default_factory=dict)
-    task: str = ""
+    task: Label = ""
     """The identity of the task."""
     priority: int = 0
     beginning: float = 0.0
@@ -379,10 +386,10 @@ class Status:
 class Notice:
     """An event of a run, for observers: nothing depends on its arrival."""
 
-    configurator: str
+    configurator: Label
     sequence: int
     """Grows by one with each event of the configurator; a gap tells that one was lost."""
-    task: str
+    task: Label
     event: Mapping[str, Any]
     """The event as `selfconf run --format json` prints it."""
 
@@ -392,16 +399,16 @@ class RecordedLoss:
     """A component that a task has lost and that lives on: in which life, and why."""
 
     component: IRI
-    life: str
+    life: Label
     cause: Cause
-    detail: str = ""
+    detail: Remark = ""
 
 
 @immutable
 class TaskRecord:
     """A task that lives in the ecology: what the sites keep of it, and by which one of them goes on with it."""
 
-    task: str
+    task: Identity
     """Its identity."""
     revision: int
     """Of two records of a task that has not ended, the one with the higher revision counts."""
@@ -411,9 +418,9 @@ class TaskRecord:
     beginning: float = 0.0
     document: str = ""
     """The Turtle document that holds its template."""
-    source: str = ""
+    source: Remark = ""
     """Where the document was read from, for people."""
-    wanted: str = ""
+    wanted: Label = ""
     """The IRI of the template or task, in case the document holds several."""
     bindings: Mapping[str, Term] = field(default_factory=dict)
     ontologies: tuple[str, ...] = ()
@@ -426,7 +433,7 @@ class TaskRecord:
     """What is deployed, as `selfconf configure --format json` prints it; empty if nothing is."""
     lost: tuple[RecordedLoss, ...] = ()
     """What has failed and lives on: a site that goes on with the task does without it, until it lives anew."""
-    keeper: str = ""
+    keeper: Label = ""
     """The site that begins to run the task, by which the one that runs it may let go; empty: none does now."""
 
     @property
