@@ -17,11 +17,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from selfconf.atomic_write import write_atomically
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf.validation import CheckEach, FileChecker, UnclearedFile
+
+if TYPE_CHECKING:
+    from multiprocessing.pool import Pool
 
 WORTH = 16
 """Full checks that take about as long as starting a process."""
@@ -36,11 +39,20 @@ def shared(checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[
         yield from map(checker, suspects)
         return
     yield checker(suspects[0])  # loads what each process will need
-    with multiprocessing.get_context("fork").Pool(processes, _begin, (checker,)) as pool:
+    with _pool(processes, checker) as pool:
         yield from pool.imap(_checked, suspects[1:], chunksize=4)
         # They end by themselves: a program may have a handler of SIGTERM, which they have, too, until they begin.
         pool.close()
         pool.join()
+
+
+def _pool(processes: int, checker: FileChecker) -> Pool:
+    """Processes that check files. Ctrl-C does not reach them: it is for this program, which ends them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        return multiprocessing.get_context("fork").Pool(processes, _begin, (checker,))
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _threads() -> int:

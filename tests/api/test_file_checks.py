@@ -84,6 +84,39 @@ def test_processes_give_the_verdicts_of_one_and_are_forked_where_there_are_no_th
     assert int(forked) == forks
 
 
+INTERRUPTED = """
+import os, signal, time
+from selfconf.api import file_checks
+
+def check(suspect):
+    if suspect == "last":
+        os.killpg(0, signal.SIGINT)  # as the terminal does at Ctrl-C
+        time.sleep(30)  # the signal ends it at once, unless it is not heard
+    return []
+
+file_checks.WORTH = 1
+os.cpu_count = lambda: 4
+try:
+    list(file_checks.shared(check, ["first", *["next"] * 8, "last"]))
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+"""Is interrupted, with all its processes, while these check files."""
+
+
+@pytest.mark.slow
+def test_the_processes_say_nothing_when_all_are_interrupted() -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+        start_new_session=True,
+    )
+    assert (ended.stdout, ended.stderr) == ("interrupted\n", "")
+
+
 @pytest.mark.slow
 def test_memory_gives_the_same_verdicts_and_looks_at_nothing_twice(files: Path, tmp_path: Path) -> None:
     plain, counting = check([str(files)]), Counting()
