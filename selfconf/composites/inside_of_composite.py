@@ -141,7 +141,7 @@ class InsideOfComposite:
             self._again, self.settled = message, False  # the newest call counts, also while the last inside ends
             self.runner.stop()
         elif other_inputs:
-            self.runner.reconsider()
+            self.runner.reconsider(rests)
         elif changed:
             self.runner.rewire(rests)
 

@@ -213,9 +213,11 @@ class TaskRunner:
         if self.request.outside is not None:
             self._step(Rewired(self.request.outside.composite, rests))
 
-    def reconsider(self) -> None:
-        """Search again beside what runs, as other inputs than before are fed from outside."""
+    def reconsider(self, rests: bool = False) -> None:
+        """Search again beside what runs, as other inputs than before are fed from outside; `rests` as in `rewire`."""
         self._step(Reconnected())
+        if rests != self.state.rests:
+            self.rewire(rests)
 
     def rank(self, priority: int, beginning: float) -> None:
         """Give the task another rank, and claim what it holds with that; what runs runs on."""

@@ -9,19 +9,22 @@ import pytest
 
 from selfconf.model.term import Literal, Term
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Apply, Release, Reserve
+from selfconf.protocol.messages import Apply, Release, Reserve, Wire
 from tests.lab import Lab, iri
 from tests.sdk.stage import KEYS, THEM, US, apply, release, reserve
 
 BASE = {
     "base": """:base a sc:Component, :Base ; sc:shareable true ; sc:grounding [ sc:template :driving ] ;
+        sc:hasInput [ sc:name "goal" ; sc:signalType :Goal ; sc:optional true ] ;
         sc:hasParameter [ sc:name "speed" ; sc:parameterType :Speed ] .
-        :driving a sc:Template ; sc:parameter :speed ; sc:roles ( :pilot :motor ) .
+        :driving a sc:Template ; sc:parameter :speed ; sc:roles ( :pilot :motor ) ;
+            sc:hasInput [ sc:name "goal" ; sc:signalType :Goal ; sc:of :pilot ] .
         :speed a sc:Parameter ; sc:name "speed" .
         :pilot a sc:Role ; sh:class :Pilot ; sc:feeds :motor ;
             sc:sets [ sc:parameterType :Speed ; sc:value :speed ] .
         :motor a sc:Role ; sh:class :Motor .""",
     "pilot": ':pilot-1 a sc:Component, :Pilot ; sc:hasOutput [ sc:name "turn" ; sc:signalType :Turn ] ;'
+    ' sc:hasInput [ sc:name "goal" ; sc:signalType :Goal ; sc:optional true ] ;'
     ' sc:hasParameter [ sc:name "rate" ; sc:parameterType :Speed ] .',
     "motor": ':motor-1 a sc:Component, :Motor ; sc:hasInput [ sc:name "turn" ; sc:signalType :Turn ] .',
 }
@@ -88,4 +91,14 @@ def test_the_inside_rests_on_when_it_begins_anew(motor: Motor) -> None:
     assert ("rate", "fast") in motor.lab.components["pilot"].said
     assert not motor.turns
     motor.call(apply(3, THEM, values=FAST))
+    assert motor.turns
+
+
+def test_the_inside_rests_and_acts_again_also_where_another_optional_input_is_fed_than_before(motor: Motor) -> None:
+    fed = {"goal": (Wire(iri("planner"), "goal"),)}
+    motor.call(release(2, US), apply(2, THEM, values=SLOW, inputs=fed))
+    assert motor.turns
+    motor.call(apply(3, THEM, values=SLOW, rests=True))
+    assert not motor.turns
+    motor.call(apply(4, THEM, values=SLOW, inputs=fed))
     assert motor.turns
