@@ -57,13 +57,13 @@ class SignalOrder:
 
     def is_past(self, last: SignalNumber) -> bool:
         """Whether something was delivered that its source has issued after a signal; number 0 says nothing of that."""
-        return last.sequence > 0 and self.newest.life == last.life and not last.covers(self.newest)
+        return self.newest.life == last.life and 0 < last.sequence < self.newest.sequence
 
     def settle(self, stamp: Stamp, lives: Callable[[str], bool]) -> None:
         """Doubt the source no more if a signal is newer: of the life in doubt, or of another that `lives`."""
         doubted = self.doubted
         if doubted is not None:
-            newer = not doubted.covers(stamp) if stamp.life == doubted.life else lives(stamp.life)
+            newer = stamp.sequence > doubted.sequence if stamp.life == doubted.life else lives(stamp.life)
             if newer:
                 self.doubted = None
 

@@ -64,6 +64,7 @@ def test_what_was_issued_before_a_failure_is_over_however_late_it_comes() -> Non
     ("signal", "living", "doubted"),
     [
         (stamp(5), (), True),
+        (stamp(5 - LATE), (), True),  # the component has other outputs, which issue more
         (stamp(6), (), False),
         (stamp(1, "u"), (), True),
         (stamp(1, "u"), ("u",), False),
@@ -83,6 +84,7 @@ def test_a_doubt_is_settled_by_what_is_newer(signal: Stamp, living: tuple[str, .
         (SignalNumber("t", 4), True),
         (SignalNumber("t", 5), False),
         (SignalNumber("t", 6), False),
+        (SignalNumber("t", 5 + LATE), False),  # the component has other outputs, which issue more
         (SignalNumber("u", 4), False),
         (SignalNumber("t", 0), False),
     ],
