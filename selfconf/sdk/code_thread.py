@@ -88,11 +88,17 @@ class CodeThread:
         return running if running is not None and time.monotonic() - running.began > running.limit else None
 
     def poll(self, seconds: float = 0.0) -> None:
-        """Run all that waits; if nothing does, wait up to that long for the first."""
-        action = self._next(seconds)
-        while action is not None or self._calls or self._signals:
-            if action is not None:
-                action()
+        """Run all that waits; if nothing does, wait up to that long for the first.
+
+        Signals that come while these run wait for the next time: those that go in a circle would have no end.
+        """
+        action, left = self._next(seconds), len(self._signals)
+        while action is not None:
+            action()
+            if not self._calls:
+                left -= 1
+                if left < 0:
+                    return
             action = self._next(0.0)
 
     def run(self, until: Callable[[], bool]) -> None:

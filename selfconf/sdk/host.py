@@ -61,6 +61,8 @@ class Host:
         """
         self.bus, self.keys = bus, Keys(ecology)
         self.runtimes: list[ComponentRuntime] = []
+        self._leaving: set[ComponentRuntime] = set()
+        """Those that leave the ecology, and whose code has not come to rest yet."""
         self.superseded: str | None = None
         """Why a component had to leave, where another process is the same one."""
         self.code = CodeThread(inline=not bus.run_aside())
@@ -105,8 +107,12 @@ class Host:
     def remove(self, component: Component) -> None:
         """Turn a component off and let it leave the ecology; nothing happens if it has left already."""
         for runtime in [one for one in self.runtimes if one.component is component]:
-            self.runtimes.remove(runtime)
-            self.bus.wake_up(runtime.close)
+            self._let_leave(runtime)
+
+    def _let_leave(self, runtime: ComponentRuntime) -> None:
+        self.runtimes.remove(runtime)
+        self._leaving.add(runtime)
+        self.bus.wake_up(partial(runtime.close, partial(self._leaving.discard, runtime)))
 
     def poll(self, seconds: float = 0.0) -> None:
         """Let the components hear everything there is to hear; wait up to that long if there is nothing."""
@@ -128,13 +134,11 @@ class Host:
             raise NetworkError(self.superseded)
 
     def close(self) -> None:
-        """Turn every component off and leave the ecology."""
-        closed: list[ComponentRuntime] = []
-        for runtime in self.runtimes:
-            self.bus.wake_up(partial(runtime.close, partial(closed.append, runtime)))
+        """Turn every component off and leave the ecology, once all are at rest, those that were removed as well."""
+        for runtime in list(self.runtimes):
+            self._let_leave(runtime)
         deadline = self.bus.now() + LEAVING
-        self._poll_until(lambda: len(closed) == len(self.runtimes) or self.bus.now() > deadline)
-        self.runtimes.clear()
+        self._poll_until(lambda: not self._leaving or self.bus.now() > deadline)
         self.bus.close()
 
     def _poll_until(self, until: Callable[[], bool]) -> None:
@@ -213,7 +217,7 @@ class Host:
         if overdue is None or overdue is self._overdue:
             return
         self._overdue = overdue
-        for runtime in self.runtimes:
+        for runtime in (*self.runtimes, *self._leaving):
             if runtime.code is overdue.owner:
                 runtime.hung(overdue.what, overdue.limit)
                 self._hung(f"{runtime.profile.component}: `{overdue.what}` has not returned within {overdue.limit:g} s")

@@ -37,6 +37,22 @@ def test_a_call_that_comes_while_signals_run_is_next() -> None:
     assert ran == ["first", "call", "second"]
 
 
+def test_a_poll_runs_what_waits_and_not_what_that_hands_over_again() -> None:
+    thread, ran = CodeThread(inline=False), list[str]()
+
+    def go_on() -> None:
+        ran.append("signal")
+        if len(ran) < 10:
+            thread.signal(go_on)
+
+    thread.signal(go_on)
+    thread.call(lambda: ran.append("call"))
+    thread.poll()
+    assert ran == ["call", "signal"]
+    thread.poll(1.0)
+    assert ran == ["call", "signal", "signal"]
+
+
 def test_it_waits_for_the_first_thing_to_do_and_may_be_woken() -> None:
     code = CodeThread(inline=False)
     ran, ended = threading.Event(), threading.Event()

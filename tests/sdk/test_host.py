@@ -184,7 +184,8 @@ def test_a_host_of_which_a_component_is_superseded_ends_with_an_error(living: Li
         host.close()
 
 
-def test_closing_a_host_waits_until_its_components_are_at_rest(living: LivingStage) -> None:
+@pytest.mark.parametrize("removed", [False, True])
+def test_closing_a_host_waits_until_its_components_are_at_rest(living: LivingStage, removed: bool) -> None:
     class Lamp(Component):
         component = "urn:c:lamp"
         lit = False
@@ -199,9 +200,30 @@ def test_closing_a_host_waits_until_its_components_are_at_rest(living: LivingSta
     lamp = host.add(living.advertised(Lamp, LAMP)())
     living.apply("urn:c:lamp")
     host.run(lambda: lamp.lit)
+    if removed:
+        host.remove(lamp)
     host.close()
     assert not lamp.lit
     assert not lamp.active
+
+
+def test_a_component_that_is_removed_and_hangs_as_it_is_to_rest_is_noticed(living: LivingStage) -> None:
+    class Lamp(Component):
+        component = "urn:c:lamp"
+
+        def stopped(self) -> None:
+            living.release_code.wait()
+
+    host = living.host()
+    lamp = host.add(
+        living.advertised(Lamp, LAMP.removesuffix(".") + " ; sc:deadline [ sc:value 0.1 ; sc:unit unit:SEC ] .")()
+    )
+    living.apply("urn:c:lamp")
+    host.run(lambda: lamp.active)
+    host.remove(lamp)
+    living.run(host)
+    assert until(lambda: living.hangs)
+    assert living.hangs == ["urn:c:lamp: `stopped` has not returned within 0.1 s"]
 
 
 def test_one_class_may_stand_for_several_things(tmp_path: Path) -> None:
