@@ -17,7 +17,7 @@ import keyword
 import os
 import re
 import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -163,7 +163,7 @@ def learn(folders: Sequence[Path]) -> list[AuthorError]:
         else:
             types.update(found)
             files.update(dict.fromkeys(found, definition.file))
-    for cached in (_stores, _store, service_parts):
+    for cached in (_stores, _store, _read_fields, service_parts):
         cached.cache_clear()
     stores, missing = _stores_with({**_known_types(), **types}) if types else ((), {})
     _learned[:] = stores
@@ -258,9 +258,28 @@ def usual_type(name: str) -> MessageType | None:
 def _plain(store: Any, value: Any) -> Any:
     """A message as an object, with those that it holds; the constants of its type are no fields."""
     if hasattr(value, "__msgtype__"):
-        names = (name for name, _ in _definitions(store, value.__msgtype__) if name != _NO_FIELD)
-        return {name: _plain(store, getattr(value, _attribute(name))) for name in names}
+        fields = _read_fields(store, value.__msgtype__)
+        return {name: plain(store, getattr(value, attribute)) for name, attribute, plain in fields}
     return [_plain(store, each) for each in value] if isinstance(value, list) else value
+
+
+@lru_cache(maxsize=1024)
+def _read_fields(store: Any, name: str) -> Sequence[tuple[str, str, Callable[[Any, Any], Any]]]:
+    """The fields of a type that are read, each with its attribute in the class of messages, and what makes it plain."""
+    from rosbags.interfaces import Nodetype
+
+    byte = Nodetype.BASE, ("byte", 0)
+    found = []
+    for field, definition in _definitions(store, name):
+        of_bytes = definition == byte or (isinstance(definition[1], tuple) and definition[1][0] == byte)
+        if field != _NO_FIELD:
+            found.append((field, _attribute(field), _unsigned if of_bytes else _plain))
+    return found
+
+
+def _unsigned(_: Any, value: Any) -> Any:
+    """A `byte`, or an array, as ROS 2 means it, from 0 to 255; rosbags reads and writes it with a sign."""
+    return value % 256 if isinstance(value, int) else value.view("uint8")
 
 
 def _attribute(field: str) -> str:
@@ -293,7 +312,8 @@ def _value(store: Any, definition: Any, given: Any) -> Any:
     if kind == Nodetype.NAME:
         return _built(store, detail, {} if given is None else given)
     if kind == Nodetype.BASE:
-        return _base(detail[0], given)
+        value = _base(detail[0], given)
+        return value - 256 if detail[0] == "byte" and value in range(128, 256) else value
     element, count = detail
     if given is None:
         given = [None] * (count if kind == Nodetype.ARRAY else 0)
@@ -308,7 +328,7 @@ def _value(store: Any, definition: Any, given: Any) -> Any:
 def _base(datatype: str, given: Any) -> Any:
     if given is not None:
         if datatype == "bool" and given not in (True, False):  # of a text Python would make true, whatever it says
-            raise MessageError(f"has {given!r}, where a bool is true or false")
+            raise MessageError(f"has {repr(given)[:40]}, where a bool is true or false")
         return given
     if datatype in ("string", "wstring"):
         return ""

@@ -79,6 +79,14 @@ def test_what_is_read_of_a_message_of_any_type_can_be_written_again() -> None:
         assert messages.message(messages.message_fields(payload, kind), kind) == payload, name
 
 
+def test_a_byte_has_no_sign() -> None:
+    one, several = usual("std_msgs/msg/Byte"), usual("std_msgs/msg/ByteMultiArray")
+    assert messages.message_fields(messages.message({"data": 200}, one), one) == {"data": 200}
+    payload = messages.message({"data": [0, 200, 255]}, several)
+    assert payload.endswith(b"\x00\xc8\xff")
+    assert messages.message_fields(payload, several)["data"].tolist() == [0, 200, 255]
+
+
 def test_a_type_is_known_by_its_hash() -> None:
     assert messages.is_known(STRING)
     assert not messages.is_known(STRING._replace(hash="RIHS01_" + "0" * 64))

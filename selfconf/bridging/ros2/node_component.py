@@ -281,6 +281,6 @@ def written(signal: Signal, kind: MessageType) -> bytes:
     if translation is not None and translation.write is not None and translation.is_signal(fields):
         try:
             fields = translation.write(fields, signal.time)
-        except (TypeError, OverflowError) as error:
+        except (TypeError, ValueError, OverflowError) as error:  # of an infinite angle there is no sine: ValueError
             raise ros2.MessageError(f"is no {translation.name}: {error}") from None
     return ros2.message(fields, kind)

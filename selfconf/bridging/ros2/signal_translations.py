@@ -6,8 +6,8 @@ more in it is left out. In the other direction what a signal does not say is zer
 (`ros2:readAs`, `ros2:writtenFrom`).
 
 Units need no factor: both sides use metres, radians, seconds and degrees Celsius (REP 103, `sensor_msgs`). What ROS 2
-measures at no distance (NaN, infinity) is `max_range` in a `rob:RangeScan`. A message without a header has no frame: it
-is said to be empty.
+measures at no distance (NaN, infinity) is `max_range` in a `rob:RangeScan`, and what is too near to be measured (minus
+infinity, REP 117) the least range. A message without a header has no frame: it is said to be empty.
 """
 
 from __future__ import annotations
@@ -88,17 +88,28 @@ def _twist(signal: Fields) -> dict[str, Any]:
 
 
 def _scan(message: Fields) -> dict[str, Any]:
-    farthest = float(message["range_max"])
+    nearest, farthest = float(message["range_min"]), float(message["range_max"])
     first, step = float(message["angle_min"]), float(message["angle_increment"])
-    ranges = [each if math.isfinite(each) else farthest for each in message["ranges"].tolist()]
+    ranges = [_measured(each, nearest, farthest) for each in message["ranges"].tolist()]
     return {"angles": [first + step * index for index in range(len(ranges))], "ranges": ranges, "max_range": farthest}
 
 
 def _distance(message: Fields) -> dict[str, Any]:
-    farthest, found = float(message["max_range"]), float(message["range"])
-    return {"angles": [0.0], "ranges": [found if math.isfinite(found) else farthest], "max_range": farthest}
+    nearest, farthest = float(message["min_range"]), float(message["max_range"])
+    return {"angles": [0.0], "ranges": [_measured(message["range"], nearest, farthest)], "max_range": farthest}
 
 
+def _measured(distance: float, nearest: float, farthest: float) -> float:
+    """A distance that ROS 2 has measured, minus infinity for something too near, which is not to look like nothing."""
+    return distance if math.isfinite(distance) else nearest if distance == -math.inf else farthest
+
+
+def _temperature(signal: Fields, moment: float) -> dict[str, Any]:
+    """A signal has a field of the message itself, so an object that has the others too is the message."""
+    return {"header": _header(moment), **{name: signal[name] for name in _OF_TEMPERATURE if name in signal}}
+
+
+_OF_TEMPERATURE = ("header", "temperature", "variance")
 _POSE, _MOTION, _SCAN = ("x", "y", "theta", "frame"), ("linear", "angular"), ("angles", "ranges", "max_range")
 SIGNAL_TRANSLATIONS = (
     SignalTranslation(
@@ -149,7 +160,7 @@ SIGNAL_TRANSLATIONS = (
         ROB.Temperature,
         ("temperature",),
         lambda message: {"temperature": message["temperature"]},
-        lambda signal, moment: {"header": _header(moment), "temperature": signal["temperature"]},
+        _temperature,
     ),
     SignalTranslation(
         "std_msgs/msg/Bool",

@@ -155,7 +155,7 @@ def test_an_object_that_cannot_be_a_message_is_a_sentence(living: LivingStage, t
         assert sum("has words" in one for one in found.complaints) == 1
 
 
-@pytest.mark.parametrize("heading", [None, "north", 10**400])
+@pytest.mark.parametrize("heading", [None, "north", 10**400, math.inf])
 def test_an_object_that_cannot_be_translated_is_a_sentence(heading: object) -> None:
     kind = ros2.usual_type("geometry_msgs/msg/PoseStamped")
     assert kind is not None

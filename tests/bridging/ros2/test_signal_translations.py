@@ -58,6 +58,22 @@ def test_a_scan_has_its_directions_one_by_one_and_nothing_seen_is_the_greatest_r
     assert read("sensor_msgs/msg/Range", max_range=4.0, range=math.nan)["ranges"] == [4.0]
 
 
+def test_what_is_too_near_to_be_measured_is_not_what_is_not_there() -> None:
+    scan = read("sensor_msgs/msg/LaserScan", range_min=0.25, range_max=8.0, ranges=[-math.inf, math.nan])
+    assert scan["ranges"] == [0.25, 8.0]
+    assert read("sensor_msgs/msg/Range", min_range=0.5, max_range=4.0, range=-math.inf)["ranges"] == [0.5]
+
+
+def test_a_temperature_that_is_received_as_a_message_goes_on_as_that_message() -> None:
+    kind, translation = ros2.usual_type("sensor_msgs/msg/Temperature"), translation_of("sensor_msgs/msg/Temperature")
+    assert kind is not None
+    assert translation is not None
+    assert translation.write is not None
+    stated = {"header": {"stamp": {"sec": 5, "nanosec": 6}, "frame_id": "oven"}, "temperature": 180.0, "variance": 0.5}
+    assert ros2.message_fields(ros2.message(translation.write(stated, 7.0), kind), kind) == stated
+    assert "colour" not in translation.write({"temperature": 180.0, "colour": "red"}, 7.0)
+
+
 def test_an_object_with_the_fields_of_the_message_is_no_signal() -> None:
     twist = translation_of("geometry_msgs/msg/Twist")
     assert twist is not None
