@@ -35,7 +35,6 @@ from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
 from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
-from selfconf.rdf.library_patches import one_at_a_time
 from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
@@ -264,7 +263,7 @@ def _in_english(messages: Iterable[rdflib.term.Node]) -> str:
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
     """The report of pySHACL and its text."""
     index_constraints()
-    with one_at_a_time, _silent():
+    with linear_patterns(), _silent():
         _, report, text = validate(
             subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST_TRIAL
         )

@@ -5,11 +5,11 @@ makes tests of the constraints that can be; two `exclude` each other if no value
 `of_values`, `said_twice`, `said_alone`, `LISTS`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
 `ILL_FORMED` say what may stand as a value of SHACL's own properties. `component_parameters` are the predicates by which
 a document constrains by components of its own. `pattern` is a regular expression that a text cannot make expensive
-(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL. Judging by
-pySHACL is `selfconf.rdf.conformance`, which loads it.
+(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL, and
+`pattern_fault` why a text is none. Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
-from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, shacl_pattern
+from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, pattern_fault, shacl_pattern
 from selfconf.rdf.shacl.shape_syntax import (
     BESIDES,
     COUNTS,
@@ -46,6 +46,7 @@ __all__ = [
     "misfit",
     "of_values",
     "pattern",
+    "pattern_fault",
     "said_alone",
     "said_twice",
     "shacl_pattern",

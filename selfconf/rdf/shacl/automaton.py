@@ -106,7 +106,9 @@ class _Builder:
             for _ in range(int(most) - least):
                 after = self._add(_State(after=[end, self.sequence(inner, flags, after)]))
         for _ in range(least):
-            after = self.sequence(inner, flags, after)
+            before, after = after, self.sequence(inner, flags, after)
+            if after == before:  # what says nothing, as `()`, says nothing any number of times
+                break
         return after
 
     def _reads(self, operator: Any, argument: Any, flags: int) -> _CharacterTest:

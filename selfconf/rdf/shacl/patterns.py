@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import re
 import time
+import warnings
 from functools import lru_cache
 from typing import Any
 
@@ -47,22 +48,26 @@ class Pattern:
     def __init__(self, pattern: str, flags: int) -> None:
         """Raises re.error."""
         self.pattern, self.flags = pattern, flags
-        self._expression = re.compile(pattern, flags)
-        self._tree = parsed(pattern, flags)
-        self._short = self._length_for(CHEAP)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", FutureWarning)  # that `[[a]` may mean something else one day
+                self._expression, self._tree = re.compile(pattern, flags), parsed(pattern, flags)
+            self._short = self._length_for(CHEAP)
+        except (OverflowError, RecursionError):
+            raise re.error("it repeats something too often, or nests too deeply") from None
         self._automaton: Automaton | None = None
         self._regular = True
         self._left = PATTERN_SECONDS
 
     def _length_for(self, steps: int) -> int:
-        """The length of the texts, to a power of two, that cannot cost more steps of backtracking."""
+        """The length of the texts, to a power of two, that cannot cost more steps of backtracking; -1 if all may."""
         anchored = _anchored(self._tree) and not self.flags & re.MULTILINE
-        lengths = (1 << power for power in range(21))
-        return max((one for one in lengths if (1 if anchored else one) * _ways(self._tree, one) <= steps), default=0)
+        lengths = (0, *(1 << power for power in range(21)))
+        return max((n for n in lengths if (n or 1) ** (not anchored) * _ways(self._tree, n) <= steps), default=-1)
 
     def finds(self, text: str) -> bool:
         """Whether the pattern is found in a text. Raises MatchTooCostly."""
-        if len(text) <= self._short or not text:
+        if len(text) <= self._short:
             return self._expression.search(text) is not None
         automaton = self._made() if len(text) <= LONGEST_TEXT else None
         return self._tried(text) if automaton is None else automaton.finds(text)
@@ -71,7 +76,7 @@ class Pattern:
         if self._automaton is None and self._regular:
             try:
                 self._automaton = Automaton(self.pattern, self.flags)
-            except NotRegular:
+            except (NotRegular, RecursionError):
                 self._regular = False
                 self._short = self._length_for(CHEAP_ENOUGH)
         return self._automaton
@@ -117,6 +122,15 @@ def shacl_pattern(expression: str, flags: str) -> Pattern:
     return pattern(expression, int(options))
 
 
+def pattern_fault(expression: str, flags: str) -> re.error | None:
+    """Why a text, with its `sh:flags`, is no regular expression; None if it is one."""
+    try:
+        shacl_pattern(expression, flags)
+    except re.error as error:
+        return error
+    return None
+
+
 def _anchored(tree: Any) -> bool:
     """Whether a match can only begin where the text does."""
     first = (str(tree[0][0]), str(tree[0][1])) if len(tree) else ("", "")
@@ -138,7 +152,9 @@ def _ways_of(operator: str, argument: Any, length: int) -> float:
         return _ways(argument[3], length)
     if operator in ("MAX_REPEAT", "MIN_REPEAT"):
         least, most, inner = argument
-        return _repeated(int(least), min(int(most), length + 1), _ways(inner, length), length)
+        ways = _repeated(int(least), min(int(most), length + 1), _ways(inner, length), length)
+        # The text bounds how often something is repeated that takes a character of it, and `()` takes none.
+        return ways if inner.getwidth()[0] else max(ways, float(least))
     if operator in ("ASSERT", "ASSERT_NOT"):
         return _ways(argument[1], length)
     return math.inf

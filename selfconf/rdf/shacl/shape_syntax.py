@@ -9,12 +9,12 @@ Constraint components that a document brings along (section 6) are predicates of
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES
+from selfconf.rdf.shacl.patterns import pattern_fault
 from selfconf.rdf.sparql import why_not_asked
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import FIRST, NIL, SH, XSD
@@ -93,7 +93,7 @@ def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[T
         refused = _refused(document, value) if predicate == SH.sparql else None
         if refused is not None:
             return refused
-        if predicate in WANTED and not _fits(document, predicate, value):
+        if predicate in WANTED and not _fits(document, triple):
             return triple, unfit(predicate).rstrip(".")
         lacking = _lacking(document, shape, predicate)
         if lacking is not None:
@@ -129,8 +129,9 @@ def _lacking(document: Document, shape: Node, predicate: IRI) -> str | None:
     return None
 
 
-def _fits(document: Document, predicate: IRI, value: Term) -> bool:
-    """Whether a value may be that of one of SHACL's properties."""
+def _fits(document: Document, triple: Triple) -> bool:
+    """Whether the value of a statement may be that of its property, one of SHACL's."""
+    shape, predicate, value = triple
     literal = value if isinstance(value, Literal) else None
     if predicate in COUNTS:
         return natural_number(value) is not None
@@ -145,7 +146,8 @@ def _fits(document: Document, predicate: IRI, value: Term) -> bool:
     if predicate == SH.nodeKind:
         return value in NODE_KINDS
     if predicate == SH.pattern:
-        return literal is not None and literal.datatype == XSD.string and _compiles(literal.lexical)
+        flags = str(document.value(shape, SH.flags) or "")
+        return literal is not None and literal.datatype == XSD.string and pattern_fault(literal.lexical, flags) is None
     return literal is None and _fitting_node(document, predicate, value)
 
 
@@ -190,14 +192,6 @@ def _paths(document: Document, head: Term, depth: int) -> bool:
         and document.list_fault(head) is None
         and all(is_path(document, member, depth + 1) for member in members)
     )
-
-
-def _compiles(pattern: str) -> bool:
-    try:
-        re.compile(pattern)
-    except re.error:
-        return False
-    return True
 
 
 def _refused(document: Document, constraint: Term) -> tuple[Triple, str] | None:

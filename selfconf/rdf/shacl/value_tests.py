@@ -8,7 +8,6 @@ remembered, as values recur.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from types import ModuleType
@@ -16,7 +15,7 @@ from types import ModuleType
 from selfconf.model.immutable import immutable
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
-from selfconf.rdf.shacl.patterns import shacl_pattern
+from selfconf.rdf.shacl.patterns import pattern_fault, shacl_pattern
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
 
 _KINDS: Mapping[IRI, tuple[type, ...]] = {
@@ -149,11 +148,7 @@ def _compiles(test: ValueTest) -> bool:
         return bool(_literals().has_value(wanted))
     if test.constraint != SH.pattern or wanted.datatype != XSD.string:
         return False
-    try:
-        shacl_pattern(wanted.lexical, test.flags)
-    except re.error:
-        return False
-    return True
+    return pattern_fault(wanted.lexical, test.flags) is None
 
 
 @lru_cache(maxsize=1 << 16)

@@ -38,6 +38,7 @@ from selfconf.rdf.shacl import (
     ONLY_WITH_A_PATH,
     STATED_ONCE,
     of_values,
+    pattern_fault,
     said_alone,
     said_twice,
     unfit,
@@ -192,9 +193,9 @@ def _alone(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
 def _patterns(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     """Values of sh:pattern that are no regular expressions."""
     for shape, pattern in graph.subject_objects(SH.pattern):
-        try:
-            re.compile(str(pattern) if isinstance(pattern, Literal) else "")
-        except re.error as error:
+        flags = str(graph.value(shape, SH.flags) or "")
+        error = pattern_fault(str(pattern) if isinstance(pattern, Literal) else "", flags)
+        if error is not None:
             offset = positions.triples[shape, SH.pattern, pattern].object
             advice = _INSTEAD_OF_CATEGORIES if re.match(r"bad escape \\[pP]", error.msg) else ""
             yield at(positions, offset, "SC-T13", f"This is no regular expression: {error}.{advice}")

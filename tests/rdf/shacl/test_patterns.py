@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import time
+import warnings
 
 import pytest
 
-from selfconf.rdf.shacl.patterns import LONGEST_TEXT, PATTERN_SECONDS, MatchTooCostly, Pattern
+from selfconf.rdf.shacl.patterns import LONGEST_TEXT, PATTERN_SECONDS, MatchTooCostly, Pattern, pattern_fault
 
 LETTERS = "a" * 60
 SLOW = [
@@ -48,3 +50,25 @@ def test_beyond_regular_languages_a_harmless_text_is_decided_whatever_came_befor
     pattern._left = 0.0
     assert pattern.finds("Password1 and more")
     assert not pattern.finds("password1 and more")
+
+
+@pytest.mark.parametrize("text", ["", "a"])
+def test_what_takes_no_character_costs_as_often_as_it_is_repeated(text: str) -> None:
+    with pytest.raises(MatchTooCostly, match="takes too long"):
+        Pattern("(?:(?:^){3000}){3000}", 0).finds(text)  # with 60000 in their place `re` takes all memory
+    with_automaton = Pattern("(?:(){60000}){60000}b?$", 0)
+    assert with_automaton.finds(text)
+    assert with_automaton._automaton is not None
+
+
+@pytest.mark.parametrize("expression", ["a{99999999999}", f"{'(' * 9000}a{')' * 9000}", "(a"])
+def test_what_re_cannot_take_is_no_expression(expression: str) -> None:
+    assert isinstance(pattern_fault(expression, ""), re.error)
+    assert pattern_fault(expression, "q") is None
+
+
+def test_what_re_warns_of_is_an_expression_without_a_word() -> None:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        assert pattern_fault("[[:alpha:]]", "") is None
+    assert told == []

@@ -26,6 +26,7 @@ from tests.lab import PREFIXES, iri
         ("sh:nodeKind :Kind", "nodeKind"),
         ("sh:property [ sh:class :A ]", "property"),
         ("sh:pattern '('", "pattern"),
+        ("sh:pattern 'a{99999999999}'", "pattern"),
         ("sh:pattern 3", "pattern"),
         ("sh:or ( )", "or"),
         ("sh:languageIn ( :en )", "languageIn"),

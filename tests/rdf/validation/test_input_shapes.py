@@ -15,6 +15,7 @@ from tests.lab import PREFIXES
         ("[ sh:property [ sh:path sc:unit ; sh:minCount 1 ] ]", []),
         ("[ sh:targetNode :a ]", ["1:45"]),
         ('[ sh:property [ sh:path :p ; sh:pattern "(" ] ]', ["1:69"]),
+        ("[ sh:property [ sh:path :p ; sh:pattern 'a{99999999999}' ] ]", ["1:69"]),
         ("[ sh:property [ sh:path :p ; sh:pattern 3 ] ]", ["1:69"]),
         ("[ sh:minCount 1 ]", ["1:43"]),
         ("[ sh:or ( ) ]", ["1:37"]),

@@ -40,6 +40,7 @@ def places(text: str) -> list[tuple[int, int]]:
         "sh:property [ sh:path :p ; sh:minCount +1 ; sh:maxCount 02 ; sh:minLength -0 ]",
         "sh:or ( [ sh:class :A ] [ sh:class :B ] )",
         "sh:property [ sh:path ( :p :q ) ; sh:pattern '^a+$' ]",
+        "sh:property [ sh:path ( :p :q ) ; sh:pattern 'a(b' ; sh:flags 'q' ]",
         "sh:sparql [ sh:select 'SELECT $this WHERE { $this a ?type }' ]",
         "sh:or ( [ sh:path [ sh:alternativePath ( :p ( :q :p ) ) ] ; sh:minCount 1 ] [ sh:class :K ] )",
     ],
@@ -64,6 +65,7 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:property [ sh:path :p ; sh:qualifiedValueShape [ ] ; sh:qualifiedMaxCount -1 ]", 93, "a whole number"),
         ("sh:property [ sh:path :p ; sh:minCount 1 , 2 ]", 59, "A shape has one sh:minCount at most."),
         ("sh:property [ sh:path :p ; sh:pattern '(' ]", 54, "This is no regular expression"),
+        ("sh:property [ sh:path :p ; sh:pattern 'a{99999999999}' ]", 54, "it repeats something too often"),
         ("sh:qualifiedMaxCount 1", 16, "Beside sh:qualifiedMaxCount stands sh:qualifiedValueShape."),
         (
             "sh:property [ sh:path :p ; sh:node [ sh:ignoredProperties ( :p ) ] ]",
