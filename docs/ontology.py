@@ -51,6 +51,8 @@ PREFIXES = {
     "xsd": "http://www.w3.org/2001/XMLSchema#",
     "unit": "http://qudt.org/vocab/unit/",
 }
+ON_THE_PAGE = tuple(f"{prefix}:" for prefix, base in PREFIXES.items() if base.startswith(PREFIXES["sc"][:-1]))
+"""The prefixes of the terms that have an article on the page."""
 STYLE = """
 :root { color-scheme: light dark; --ink: #1c2430; --soft: #5b6675; --paper: #fbfaf7; --card: #fff; --line: #e2dfd8;
   --mark: #b4541a; --link: #1f5f99; }
@@ -196,7 +198,7 @@ class _Writer:
     def link(self, term: Node) -> str:
         if isinstance(term, Literal):
             return escape(str(term))
-        target = f"#{anchor_of(term)}" if short(term).startswith(("sc:", "rob:", "home:")) else escape(str(term))
+        target = f"#{anchor_of(term)}" if short(term).startswith(ON_THE_PAGE) else escape(str(term))
         return f'<a href="{target}"><code>{escape(short(term))}</code></a>'
 
     def fields(self, head: Node) -> str:

@@ -124,6 +124,8 @@ def test_the_page_has_an_anchor_for_every_term_and_no_link_leads_nowhere() -> No
     assert len(anchors) == len(set(anchors))
     assert {ontology.anchor_of(URIRef(term)) for term in released.terms()} <= set(anchors)
     assert set(re.findall(r'href="#([^"]+)"', page)) <= set(anchors)
+    leading_away = {link for link in re.findall(r'href="([^#"]+#[^"]+)"', page) if link.startswith(OURS)}
+    assert leading_away == set(), "a term that has its place on the page"
     root = Path(released.__file__).parents[1]
     assert all((root / link).exists() for link in re.findall(r'href="\.\./([^"]+)"', page))
 
