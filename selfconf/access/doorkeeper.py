@@ -191,8 +191,11 @@ class Doorkeeper:
             mine = self._credentials.certificate.read_text()
             beside = tuple(sorted(self._hub.sites()))
             request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known, beside)))
-        except SelfconfError as error:
+        except PeerError as error:
             request.refuse(str(error))
+        except SelfconfError as error:
+            self._tell_fault(str(error))
+            request.refuse(f"site {self._name}: {error}")
         except OSError as error:
             request.refuse(f"site {self._name} cannot read its certificate: {error.strerror}")
         finally:
@@ -201,7 +204,8 @@ class Doorkeeper:
     def _admit(self, pem: str) -> bool:
         """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good.
 
-        One that is shown again within moments is not looked at again: it takes a site milliseconds each time.
+        AuthorError is raised for what is wrong with the folder of keys. One that is shown again within moments is not
+        looked at again: it takes a site milliseconds each time.
         """
         now = self._bus.now()
         if now - self._admitted_at > LOOK:
@@ -241,9 +245,12 @@ class Doorkeeper:
                 answer = decode(sample.payload, Introduction)
                 all_know &= answer.known
                 known &= self._admit(answer.certificate)
-            except SelfconfError as error:
+            except PeerError as error:
                 all_know = False
                 self._reports.tell("", str(error), sample.key)
+            except SelfconfError as error:
+                all_know = False
+                self._tell_fault(str(error))
         self._known_for = KNOWN_FOR - 1 if all_know and known else 0
         if not known:
             self._renew_rules()
@@ -388,13 +395,12 @@ class Doorkeeper:
         try:
             left = read_certificate(self._credentials.certificate).seconds_left()
             self._look_at_all = min(self._look_at_all, self._bus.now() + left / 4)
+            if self._stamps[self._credentials.certificate] != self._shown:
+                self._shown = self._stamps[self._credentials.certificate]
+                self._open_anew()
             HostAuthority(self._folder).renew_components()
         except SelfconfError as error:
             self._tell_fault(str(error))
-            return
-        if self._stamps[self._credentials.certificate] != self._shown:
-            self._shown = self._stamps[self._credentials.certificate]
-            self._open_anew()
 
     # Reports.
 

@@ -147,7 +147,10 @@ class KeysFolder:
         return map(read_certificate, self._admitted(ecology).glob("*.pem"))
 
     def admit(self, ecology: str, pem: bytes) -> Certificate:
-        """Keep a certificate that a client has shown to a site. Raises PeerError for one that is not good."""
+        """Keep a certificate that a client has shown to a site. Raises PeerError for one that is not good.
+
+        AuthorError is raised where the folder cannot be read, or not be written.
+        """
         certificate = Certificate.read(pem)
         fault = certificate.fault(self._authorities_for(certificate))
         if fault:
@@ -156,8 +159,11 @@ class KeysFolder:
             raise PeerError(f"the certificate of {certificate.common_name} was revoked")
         path = self._admitted(ecology) / f"{holder_name(certificate.principals)}.pem"
         if not self._has_later(path, certificate):
-            make_private_folder(path.parent)
-            write_atomically(path, certificate.pem)
+            try:
+                make_private_folder(path.parent)
+                write_atomically(path, certificate.pem)
+            except OSError as error:
+                raise AuthorError(f"cannot be written: {error.strerror}", file=str(path)) from None
         return certificate
 
     def _has_later(self, path: Path, certificate: Certificate) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from datetime import timedelta
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from selfconf.access import (
     Certificate,
     Doorkeeper,
     GuardedHub,
+    HostAuthority,
     KeysFolder,
     Principal,
     PrincipalKind,
@@ -20,6 +22,7 @@ from selfconf.access import (
     believe,
     certificates,
     first_rules,
+    keys_folder,
 )
 from selfconf.access.doorkeeper import (
     ASK_SITES_AGAIN,
@@ -32,7 +35,7 @@ from selfconf.access.doorkeeper import (
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
-from selfconf.errors import NetworkError
+from selfconf.errors import AuthorError, NetworkError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
@@ -154,6 +157,30 @@ def test_who_shows_nonsense_is_refused(certificate: str, door: Door) -> None:
     assert replies.errors
     assert not replies.samples
     assert door.enforced == []
+
+
+def test_a_full_disk_keeps_who_is_new_out_and_is_told_as_what_it_is(
+    door: Door, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    cellar = door.network.node()
+    mine = door.folder.credentials((PrincipalKind.SITE,), "cellar").certificate.read_text()
+
+    def introduced(request: Request) -> None:
+        request.reply(KEYS.introduce("cellar"), encode(Introduction(mine)))
+        request.finish()
+
+    def no_room(path: Path, content: bytes) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    alice = door.folder.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice").pem.decode()
+    monkeypatch.setattr(keys_folder, "write_atomically", no_room)
+    why = f"{door.folder.path}/admitted/lab/{{}}.pem: cannot be written: No space left on device"
+    assert door.introduce(alice).errors == (f"site home: {why.format('read.alice')}",)
+    cellar.serve(KEYS.introduce("cellar"), introduced)
+    cellar.announce(KEYS.site_life("cellar", "1"))
+    door.pass_time(10.0)
+    assert door.said == [why.format(one) for one in ("read.alice", "site.home", "site.cellar")]
+    assert not caplog.records
 
 
 class LookedAt(Authority):
@@ -349,6 +376,20 @@ def test_a_renewed_certificate_is_shown_by_the_hub(door: Door, tmp_path: Path) -
     assert certificate.stat().st_mtime_ns != before.st_mtime_ns
     door.pass_time(1.5)
     assert len(door.enforced) == 1
+
+
+def test_a_renewed_certificate_is_shown_though_those_of_components_cannot_be_renewed(
+    door: Door, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def not_renewed(authority: HostAuthority) -> None:
+        raise AuthorError("holds no private key in PEM")
+
+    monkeypatch.setattr(HostAuthority, "renew_components", not_renewed)
+    certificate = door.folder.path / "own/site.home/certificate.pem"
+    certificate.write_bytes(certificate.read_bytes())
+    door.pass_time(1.5)
+    assert len(door.enforced) == 1
+    assert door.said == ["holds no private key in PEM"]
 
 
 def test_who_is_revoked_is_out(door: Door, tmp_path: Path) -> None:
