@@ -41,10 +41,17 @@ class ThingForm:
     url: str
     method: str
     media: str = JSON
-    """The media type of what is sent and of what is answered."""
+    """The media type of what is sent, and of what is answered where `response` is none."""
     subprotocol: str = ""
+    response: str = ""
+    """The media type of what is answered, if it is another."""
     headers: Mapping[str, str] = field(default_factory=dict, repr=False)
     query: tuple[tuple[str, str], ...] = field(default=(), repr=False)
+
+    @property
+    def answered(self) -> str:
+        """The media type of what is answered."""
+        return self.response or self.media
 
     def __str__(self) -> str:
         return f"{self.method} {self.url}"
@@ -72,6 +79,8 @@ class ThingForms:
         self._credentials, self._reachable = credentials, reachable
         self.problems: dict[str, None] = {}
         """Why forms cannot be used: sentences, each once, in order."""
+        self.tried = 0
+        """How many forms were looked at: of those that cannot be used a sentence says why."""
 
     def find(
         self, affordance: Mapping[str, Any], operation: str, subprotocols: Iterable[str] = ("",)
@@ -82,6 +91,7 @@ class ThingForms:
         for subprotocol in subprotocols:
             for form in forms:
                 if form.get("subprotocol", "") == subprotocol:
+                    self.tried += 1
                     try:
                         return self._form(form, operation)
                     except UnusableFormError as error:
@@ -97,12 +107,13 @@ class ThingForms:
         names = one_or_several(form.get("security", self._security))
         found = [proof_of_identity(str(name), self._definitions.get(str(name)), told, where) for name in names]
         proofs = [proof for proof in found if proof is not None]
-        media = form.get("contentType", JSON)
+        response = form.get("response")
         return ThingForm(
             url,
             method,
-            media if isinstance(media, str) and media.isascii() and media.isprintable() else JSON,
+            _media(form, JSON),
             str(form.get("subprotocol", "")),
+            _media(response, "") if isinstance(response, dict) else "",
             dict(proof.header for proof in proofs if proof.header is not None),
             tuple((proof.name, proof.text) for proof in proofs if proof.header is None),
         )
@@ -125,6 +136,12 @@ class ThingForms:
                 f" {setting('host', host)}"
             )
         return url
+
+
+def _media(holder: Mapping[str, Any], usual: str) -> str:
+    """The media type that a form, or what it says of the response, states."""
+    media = holder.get("contentType", usual)
+    return media if isinstance(media, str) and media.isascii() and media.isprintable() else usual
 
 
 def _plain(url: str) -> str:

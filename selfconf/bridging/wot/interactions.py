@@ -111,9 +111,22 @@ def interactions(
     """
     component, affordances = thing.component, _Affordances(thing.description)
     fields = _fields(component, ontologies, forms)
-    outputs = _usable(component.outputs, lambda port: _output(port, affordances, forms, fields))
-    inputs = _usable(component.inputs, lambda port: _write(port, affordances, forms, fields))
-    operations = _usable(component.operations, lambda operation: _action(operation, affordances, forms, fields))
+
+    def usable(imported: Iterable[_Imported], interaction: Callable[..., _Done | None]) -> dict[_Imported, _Done]:
+        """What is done with each port or operation with which anything can be done."""
+        found = {}
+        for each in imported:
+            tried = forms.tried
+            done = interaction(each, affordances, forms, fields)
+            if done is not None:
+                found[each] = done
+            elif forms.tried == tried and affordances.have(each.name):
+                forms.problems[f"no form of {each.name[:80]!r} is by HTTP, plain or by {' or '.join(FOLLOWED)}"] = None
+        return found
+
+    outputs = usable(component.outputs, _output)
+    inputs = usable(component.inputs, _write)
+    operations = usable(component.operations, _action)
     inputs |= _commands(operations, {port.name for port in inputs})
     bridged = replace(
         component,
@@ -138,18 +151,16 @@ def interactions(
     )
 
 
-def _usable(imported: Iterable[_Imported], interaction: Callable[[_Imported], _Done | None]) -> dict[_Imported, _Done]:
-    """What is done with each port or operation with which anything can be done."""
-    found = ((each, interaction(each)) for each in imported)
-    return {each: done for each, done in found if done is not None}
-
-
 class _Affordances:
     """The affordances of a description, by the names of their ports and operations."""
 
     def __init__(self, description: Mapping[str, Any]) -> None:
         self._kinds = {kind: description.get(kind) for kind in ("properties", "events", "actions")}
         self._events = {port: event for event, port in event_ports(description).items()}
+
+    def have(self, name: str) -> bool:
+        """Whether there is an affordance of a name; a port or operation may be said in our own terms alone."""
+        return any(self.find(kind, name) for kind in self._kinds)
 
     def find(self, kind: str, name: str) -> Mapping[str, Any]:
         """An affordance; an empty one if there is none."""
@@ -179,7 +190,7 @@ def _write(
     port: ImportedPort, affordances: _Affordances, forms: ThingForms, fields: Mapping[IRI, SignalFields]
 ) -> ThingInput | None:
     affordance = affordances.find("properties", port.name)
-    form = forms.find(affordance, "writeproperty") if affordance else None  # it may be said in our own terms alone
+    form = forms.find(affordance, "writeproperty")
     if form is None:
         return None
     return ThingInput(port.name, form, False, _plain_field(affordance, port.types, fields))
@@ -189,7 +200,7 @@ def _action(
     operation: ImportedOperation, affordances: _Affordances, forms: ThingForms, fields: Mapping[IRI, SignalFields]
 ) -> ThingOperation | None:
     affordance = affordances.find("actions", operation.name)
-    form = forms.find(affordance, "invokeaction") if affordance else None  # as an input
+    form = forms.find(affordance, "invokeaction")
     if form is None:
         return None
     asked, answered = (

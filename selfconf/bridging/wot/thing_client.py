@@ -46,6 +46,10 @@ class ThingRefusal(ThingError):
     """A thing has answered that it does not, or cannot, do what it was asked: by a status of HTTP from 400 on."""
 
 
+class UnsendableValueError(ThingError):
+    """What was to be sent is nothing that a thing takes; it was asked nothing, and is not to blame."""
+
+
 class ThingAnswer(NamedTuple):
     """A value with the media type of what carried it; that is empty for JSON."""
 
@@ -163,7 +167,7 @@ class ThingClient:
 
         Without `seconds` something is followed: it may take as long as it wants.
         """
-        media = "text/event-stream" if form.subprotocol == "sse" else form.media
+        media = "text/event-stream" if form.subprotocol == "sse" else form.answered
         headers = {"Accept": media, **form.headers, **(more or {})}
         time = aiohttp.ClientTimeout(total=seconds, sock_connect=self._limits.answer)
         try:
@@ -224,11 +228,12 @@ _REASONS: dict[type[Exception], str] = {
 
 def _value(form: ThingForm, answer: aiohttp.ClientResponse, body: bytes) -> ThingAnswer:
     """What a body says, by the media type that it has, or else by that of the form. Raises ThingError."""
-    media = answer.content_type if "Content-Type" in answer.headers else _bare(form.media)
+    wanted = _bare(form.answered)
+    media = answer.content_type if "Content-Type" in answer.headers else wanted
     if _is_json(media):
         return ThingAnswer(_json(form, body))
-    if media != _bare(form.media):
-        raise ThingError(f"{form} answers {media}, where {_bare(form.media)} is expected")
+    if media != wanted:
+        raise ThingError(f"{form} answers {media}, where {wanted} is expected")
     return ThingAnswer(body, media)
 
 
@@ -243,7 +248,7 @@ def _json(form: ThingForm, body: bytes) -> Any:
 
 
 def _encoded(form: ThingForm, value: Any, media: str) -> bytes | None:
-    """A value as a body. Raises ThingError where the form asks for something else."""
+    """A value as a body. Raises UnsendableValueError where the form asks for something else."""
     if value is None:
         return None
     if isinstance(value, bytes):
@@ -252,10 +257,10 @@ def _encoded(form: ThingForm, value: Any, media: str) -> bytes | None:
         try:
             return json.dumps(value, separators=(",", ":"), allow_nan=False, default=_elements).encode()
         except (AttributeError, ValueError):  # an array that is no list either, NaN and infinity
-            raise ThingError(f"{form} takes JSON, which cannot say what was received") from None
+            raise UnsendableValueError(f"{form} takes JSON, which cannot say what was received") from None
     if form.media.startswith("text/") and not isinstance(value, dict | list):
         return (value if isinstance(value, str) else json.dumps(value)).encode()
-    raise ThingError(f"{form} takes {form.media}, which cannot be made of a value of JSON")
+    raise UnsendableValueError(f"{form} takes {form.media}, which cannot be made of a value of JSON")
 
 
 def _elements(array: Any) -> Any:

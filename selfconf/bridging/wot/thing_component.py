@@ -2,7 +2,8 @@
 
 The code of the component itself only hands over: requests are made on the event loop of the world, so that a thing that
 takes its time holds up no other. A request that goes wrong is FAIL, with its sentence as the reason. A call that the
-thing answers with an error of HTTP is refused, and no more: the thing is there, and does what its description says.
+thing answers with an error of HTTP is refused, and no more: the thing is there, and does what its description says. Nor
+is it to blame for what cannot be sent to it, as where a form takes bytes and an object was received.
 """
 
 from __future__ import annotations
@@ -14,7 +15,13 @@ from concurrent.futures import Future
 from typing import Any
 
 from selfconf.bridging.wot.interactions import ThingInput, ThingInteractions, ThingOperation, ThingOutput
-from selfconf.bridging.wot.thing_client import ThingAnswer, ThingClient, ThingError, ThingRefusal
+from selfconf.bridging.wot.thing_client import (
+    ThingAnswer,
+    ThingClient,
+    ThingError,
+    ThingRefusal,
+    UnsendableValueError,
+)
 from selfconf.sdk import Component, Refused, Signal
 
 log = logging.getLogger(__name__)
@@ -37,9 +44,14 @@ class ThingComponent(Component):
         loop: asyncio.AbstractEventLoop,
         rate: float,
         lost: Callable[[str], None],
+        tell: Callable[[str], None],
     ) -> None:
-        """`lost` is called on the loop, with a sentence, when the thing has not done what its description says."""
-        self._thing, self._client, self._loop, self._rate, self._lost = thing, client, loop, rate, lost
+        """`lost` is called on the loop, with a sentence, when the thing has not done what its description says.
+
+        `tell` hears there of what could not be sent to it.
+        """
+        self._thing, self._client, self._loop, self._rate = thing, client, loop, rate
+        self._lost, self._tell = lost, tell
         self._work: list[asyncio.Task[None]] = []
         self._waiting: dict[str, asyncio.Queue[Signal]] = {}
         """The signals that are to be sent, for each input; replaced with each activation."""
@@ -149,7 +161,10 @@ class ThingComponent(Component):
         while True:
             signal = await queue.get()
             value = None if taken.empty else _unwrapped(signal.value, taken.field)
-            await self._client.send(taken.form, value, signal.media, taken.action)
+            try:
+                await self._client.send(taken.form, value, signal.media, taken.action)
+            except UnsendableValueError as error:
+                self._tell(f"what {signal.source.short} issues is not sent to {taken.name!r}: {error}")
 
     async def _call(self, called: ThingOperation, request: Signal) -> Any:
         """What an action answers. Raises Refused."""
@@ -159,7 +174,7 @@ class ThingComponent(Component):
                 return _wrapped(await self._client.call(called.form, value), called.response_field)
             await self._client.send(called.form, value, action=True)
         except ThingError as error:
-            if not isinstance(error, ThingRefusal):
+            if not isinstance(error, ThingRefusal | UnsendableValueError):
                 self._lose(error)
             raise Refused(str(error)) from None
         return None

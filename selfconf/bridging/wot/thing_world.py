@@ -248,7 +248,7 @@ class ThingWatch:
         return None
 
     async def _begin(self, loop: asyncio.AbstractEventLoop) -> None:
-        code = ThingComponent(self.found, self._client, loop, self._settings.rate, self._lose)
+        code = ThingComponent(self.found, self._client, loop, self._settings.rate, self._lose, self._tell)
         self._code, self._since = code, loop.time()  # before it lives: it may be held, and lost, at once
         trouble = await asyncio.wrap_future(self._bridge.begin_life(self._iri, code))
         self._tell(trouble or "")

@@ -28,6 +28,13 @@ def test_a_form_has_the_method_of_its_operation() -> None:
     assert one({"href": "on", "htv:methodName": "PATCH"}, "writeproperty").method == "PATCH"
 
 
+def test_what_is_answered_may_be_of_another_media_type_than_what_is_sent() -> None:
+    found = one({"href": "snap", "response": {"contentType": "image/jpeg"}}, "invokeaction")
+    assert (found.media, found.answered) == ("application/json", "image/jpeg")
+    for nothing in ({}, {"contentType": 7}, "image/jpeg"):
+        assert one({"href": "on", "contentType": "text/plain", "response": nothing}).answered == "text/plain"
+
+
 def test_a_form_that_does_not_say_its_operation_observes_nothing() -> None:
     assert one({"href": "on"}, "observeproperty") is None
     assert one({"href": "on", "op": "observeproperty", "subprotocol": "sse"}, "observeproperty").subprotocol == "sse"

@@ -144,7 +144,9 @@ def test_what_has_no_form_that_can_be_used_is_not_advertised_and_named() -> None
         properties={
             "on": {**SWITCH, "forms": [{"href": "coap://192.0.2.7/on"}]},
             "off": {**SWITCH},
+            "level": {"readOnly": True, "forms": [{"href": "level", "op": "observeproperty"}]},
         },
+        events={"pressed": {"forms": [{"href": "pressed", "subprotocol": "websub"}]}},
         actions={"blink": {"forms": [{"href": "mqtt://192.0.2.7/x"}]}},
     )
     assert thing.component.inputs == thing.component.outputs == ()
@@ -152,6 +154,9 @@ def test_what_has_no_form_that_can_be_used_is_not_advertised_and_named() -> None
     assert thing.probe is None
     assert thing.problems == (
         "the form 'coap://192.0.2.7/on' leads to no http or https URL",
+        "no form of 'off' is by HTTP, plain or by sse or longpoll",
+        "no form of 'level' is by HTTP, plain or by sse or longpoll",
+        "no form of 'pressed' is by HTTP, plain or by sse or longpoll",
         "the form 'mqtt://192.0.2.7/x' leads to no http or https URL",
     )
 

@@ -115,6 +115,15 @@ def test_bytes_and_arrays_travel_too(thing_server: Start) -> None:
     assert server.sent("POST") == [b"\x89PNG", b"good evening", b"[1.0,2.5]"]
 
 
+def test_an_answer_is_of_the_media_type_of_the_response(thing_server: Start) -> None:
+    server = thing_server()
+    server.posts["/snap"] = lambda handler: reply(handler, b"\xff\xd8", media="image/jpeg")
+    snap = ThingForm(server.url + "/snap", "POST", response="image/jpeg")
+    assert asked(lambda client: client.call(snap, {"zoom": 2})) == ThingAnswer(b"\xff\xd8", "image/jpeg")
+    (post,) = server.received
+    assert (post.headers["Content-Type"], post.headers["Accept"]) == ("application/json", "image/jpeg")
+
+
 @pytest.mark.parametrize(
     ("value", "media", "words"),
     [

@@ -13,7 +13,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.messages import Reserve, Wire
 from selfconf.sdk import Component, Response
 from tests.bridging.thing_server import ROB, ThingServer, reply
-from tests.bridging.wot.bridged import HASTY, active, bridging, button, written
+from tests.bridging.wot.bridged import HASTY, Bridged, active, bridging, button, written
 from tests.sdk.living import PATIENCE, LivingStage, until
 
 Start = Callable[[], ThingServer]
@@ -114,6 +114,23 @@ def test_a_signal_writes_a_property_and_calls_an_action(
     assert server.sent("POST") == [b""]
 
 
+def test_a_thing_is_not_to_blame_for_a_signal_that_cannot_be_sent_to_it(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    show = {"@type": "rob:Switch", "forms": [{"href": "show", "contentType": "application/octet-stream"}]}
+    description = server.describe(actions={"show": {**show, "input": {"type": "object"}}})
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        source = button(living)
+        active(found, on=WIRE, show=WIRE)
+        source.emit("on", {"on": True})
+        assert until(lambda: server.sent("PUT"))
+        assert until(lambda: found.complained("what button issues is not sent to 'show': "))
+        assert found.causes() == []
+    assert server.sent("POST") == []
+
+
 class Caller(Component):
     """Calls the action of the lamp."""
 
@@ -135,24 +152,44 @@ FADE = {
 }
 
 
-def test_an_action_is_called_as_an_operation_and_each_way_to_fail_is_a_sentence(
-    thing_server: Start, living: LivingStage, tmp_path: Path
-) -> None:
-    server, name = thing_server(), "fade()"
-    server.posts["/fade"] = lambda handler: reply(handler, b"21.5")
+def calling(found: Bridged) -> Caller:
+    """A component that may call the action of the lamp, both of them active."""
+    living, name = found.stage, "fade()"
     switch, heat = f"sc:request <{ROB}Switch>", f"sc:response <{ROB}Temperature>"
     kind = living.advertised(
         Caller, f'<urn:c:caller> a sc:Component, :Caller ; sc:needsOperation [ sc:name "fade" ; {switch} ; {heat} ] .'
     )
+    active(found, callers={name: (IRI("urn:c:caller"),)})
+    caller = living.component(kind())
+    held = living.call("urn:c:caller", "reserve", Reserve(1, living.supervisor, "task~1"))
+    assert until(lambda: held)
+    answers = living.apply("urn:c:caller", inputs={name: (Wire(IRI("urn:thing:lamp"), name),)})
+    assert until(lambda: answers)
+    assert answers[0].active, answers
+    return caller
+
+
+def test_a_call_that_cannot_be_sent_is_refused_and_no_failure_of_the_thing(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    raw = {**FADE, "input": {"type": "object"}, "forms": [{"href": "fade", "contentType": "application/octet-stream"}]}
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe(actions={"fade": raw}))) as found:
+        answer = calling(found).ask({"on": True})
+        assert answer.detail.endswith("takes application/octet-stream, which cannot be made of a value of JSON")
+        assert found.lives("lamp")
+        assert found.causes() == []
+
+
+def test_an_action_is_called_as_an_operation_and_each_way_to_fail_is_a_sentence(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    server.posts["/fade"] = lambda handler: reply(handler, b"21.5")
     with bridging(living, tmp_path / "ads", written(tmp_path, server.describe(actions={"fade": FADE}))) as found:
-        server.values["/on"] = False
-        active(found, callers={name: (IRI("urn:c:caller"),)})
-        caller = living.component(kind())
-        held = living.call("urn:c:caller", "reserve", Reserve(1, living.supervisor, "task~1"))
-        assert until(lambda: held)
-        answers = living.apply("urn:c:caller", inputs={name: (Wire(IRI("urn:thing:lamp"), name),)})
-        assert until(lambda: answers)
-        assert answers[0].active, answers
+        caller = calling(found)
         assert caller.ask({"on": True}).value == {"temperature": 21.5}
         assert server.sent("POST") == [b"true"]
         server.posts["/fade"] = lambda handler: reply(handler, b"too hot", 503)
