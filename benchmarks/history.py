@@ -140,7 +140,9 @@ def kill(restless: Restless, serve: Callable[[], subprocess.Popen[str]], folder:
         if "http://" not in said:
             raise RuntimeError(f"the server does not serve: {said}{server.communicate()[1]}")
         known, deadline = len(restless.told), time.monotonic() + PATIENCE
-        while len(restless.told) == known and time.monotonic() < deadline:
+        while len(restless.told) == known:
+            if time.monotonic() > deadline:
+                raise RuntimeError("the server does not follow the configurator, and so writes nothing")
             time.sleep(0.01)  # until it follows the configurator
         time.sleep(seconds)  # the moment of the kill is random
     finally:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
-from benchmarks.history import ALLOWED, Killed, kills, report
+from benchmarks import history
+from benchmarks.history import ALLOWED, Killed, kill, kills, report
 
 KILLED = Killed(3, 0.02, (), ())
 
@@ -19,6 +26,20 @@ def test_the_history_opens_is_whole_and_lacks_at_most_the_last_second(monkeypatc
     assert max(one.lacks for one in found) <= ALLOWED
     assert [one.kept for one in found] == sorted(one.kept for one in found)
     assert found[-1].kept > 5
+
+
+@pytest.mark.process
+def test_a_server_that_follows_nothing_is_no_success(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "PATIENCE", 0.05)
+    monkeypatch.setattr(history, "past_graphs", lambda folder: {})
+    restless: Any = SimpleNamespace(told={}, sizes={})
+    program = "import time; print('http://127.0.0.1/', flush=True); time.sleep(60)"  # until it is killed
+
+    def serve() -> subprocess.Popen[str]:
+        return subprocess.Popen([sys.executable, "-c", program], stdout=-1, stderr=-1, text=True)
+
+    with pytest.raises(RuntimeError, match="does not follow"):
+        kill(restless, serve, tmp_path, 0.0)
 
 
 def test_the_report_tells_what_is_torn_and_what_is_missing() -> None:
