@@ -783,6 +783,23 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L29", "No class lies below itself by way of others, and no property.",
+        "A circle of rdfs:subClassOf makes its classes one: each matches where another is wanted. Mostly one of the "
+        "statements is the wrong way round.",
+        ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf rob:Tuner .\n'
+        "rob:Tuner rdfs:subClassOf :Jukebox .",
+        ':Jukebox a owl:Class ; rdfs:label "jukebox"@en ; rdfs:subClassOf rob:Tuner .',
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L30", "Classes lie below classes, and properties below properties.",
+        "Matching follows rdfs:subClassOf between classes and rdfs:subPropertyOf between properties; "
+        "by a property among classes nothing is matched.",
+        ':room a owl:ObjectProperty ; rdfs:label "room"@en ; rdfs:subClassOf rob:place .',
+        ':room a owl:ObjectProperty ; rdfs:label "room"@en ; rdfs:subPropertyOf rob:place .',
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

@@ -82,8 +82,10 @@ class FileChecker:
     def knowledge(self) -> bytes:
         """A digest of the shapes and of the terms that are known."""
         ranges = (" ".join((one, *sorted(kinds))) for one, kinds in self.index.ranges.items())
-        known = (self.index.terms, self.index.object_properties, self.index.covered)
-        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, map(" ".join, self.index.above), ranges))
+        index = self.index
+        known = (index.terms, index.classes, index.properties, index.object_properties, index.covered)
+        pairs = (map(" ".join, said) for said in (index.above, index.equal))
+        words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, *pairs, ranges))
         return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
 
     def key(self, suspect: UnclearedFile) -> str:

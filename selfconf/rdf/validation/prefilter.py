@@ -39,19 +39,23 @@ _PARTS = frozenset(subject.type for subject in _SUBJECTS if subject.type is not 
 _MISPLACED = {link: foreign_terms(subject) for link, subject in LINKED.items()}
 _MISPLACED_AT_COMPONENT = foreign_terms(COMPONENT)
 _PLAIN = frozenset((RDFS.label, RDFS.comment, RDFS.seeAlso, RDFS.isDefinedBy))
-_SCHEMA = frozenset((OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, RDFS.Class, RDF.Property))
+_CLASSES = frozenset((OWL.Class, RDFS.Class))
+_PROPERTIES = frozenset((OWL.ObjectProperty, OWL.DatatypeProperty, RDF.Property))
+_SCHEMA = _CLASSES | _PROPERTIES
 _STRINGS = frozenset((XSD.string, RDF.langString))
-_PLACING = frozenset((RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty))
+_EQUIVALENCES = (OWL.equivalentClass, OWL.equivalentProperty)
+_PLACING = frozenset((RDFS.subClassOf, RDFS.subPropertyOf, *_EQUIVALENCES))
 """What gives its subject a place in a hierarchy."""
 _REFERRING = (SC.template, SC.component, SC.recruited, SC["from"], SC.to)
 """How tasks and configurations name their templates and components."""
 TERM_POSITIONS = (
-    frozenset((TYPE, SC.signalType, SC.parameterType, SC.request, SC.response, ROB.datatype))
+    frozenset((TYPE, SC.signalType, SC.parameterType, SC.request, SC.response, SC.property, ROB.datatype))
     | {RDFS[name] for name in ("subClassOf", "subPropertyOf", "domain", "range")}
-    | {OWL[name] for name in ("equivalentClass", "equivalentProperty", "disjointWith", "inverseOf")}
+    | {OWL[name] for name in ("equivalentClass", "equivalentProperty", "disjointWith", "inverseOf", "onProperty")}
+    | {OWL[name] for name in ("onClass", "someValuesFrom", "allValuesFrom")}
     | {SH[name] for name in ("class", "datatype", "nodeKind", "targetClass", "equals", "disjoint", "lessThan")}
     | {SH[name] for name in ("lessThanOrEquals", "path", "inversePath", "zeroOrMorePath", "oneOrMorePath")}
-    | {SH.zeroOrOnePath}
+    | {SH[name] for name in ("zeroOrOnePath", "targetSubjectsOf", "targetObjectsOf")}
 )
 """Where an object is a term of some vocabulary, not a thing in the world."""
 
@@ -110,13 +114,19 @@ class Prefiltered:
     """What the file says something of."""
     terms: set[str] = field(default_factory=set)
     """The classes and properties that the file declares."""
+    classes: set[str] = field(default_factory=set)
+    """The classes among them."""
+    properties: set[str] = field(default_factory=set)
+    """The properties among them; one IRI may be both."""
     object_properties: set[str] = field(default_factory=set)
     ranges: set[tuple[str, str]] = field(default_factory=set)
     """The properties of others that the file declares to have literals, each with the datatype of these."""
     placed: set[str] = field(default_factory=set)
     """What the file gives a place in a hierarchy, which it may have declared or not."""
     above: set[tuple[str, str]] = field(default_factory=set)
-    """Each class that the file places, with the one right above it; equal ones are above each other."""
+    """Each class or property that the file places, with the one right above it; equal ones are above each other."""
+    equal: set[tuple[str, str]] = field(default_factory=set)
+    """Those of `above` that the file says are equal."""
     prefixes: set[tuple[str, str]] = field(default_factory=set)
 
 
@@ -193,9 +203,15 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     types = properties.get(TYPE, {})
     if not _PLACING.isdisjoint(properties):
         found.placed.add(subject)
-        found.above.update(_above(subject, properties))
+        equal = set(_equal(subject, properties))
+        found.equal |= equal
+        found.above |= equal.union(_below(subject, properties))
     if not _SCHEMA.isdisjoint(types):
         found.terms.add(subject)
+        if not _CLASSES.isdisjoint(types):
+            found.classes.add(subject)
+        if not _PROPERTIES.isdisjoint(types):
+            found.properties.add(subject)
         if OWL.ObjectProperty in types:
             found.object_properties.add(subject)
         if OWL.DatatypeProperty in types and subject not in SC and subject not in _FIELDS:
@@ -212,14 +228,19 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     found.relevant = found.relevant or any(_validated(term) for term in (*properties, *types))
 
 
-def _above(subject: str, properties: Properties) -> Iterator[tuple[str, str]]:
-    """A class with each class right above it; equal ones are above each other."""
-    for predicate in (RDFS.subClassOf, OWL.equivalentClass):
+def _below(subject: str, properties: Properties) -> Iterator[tuple[str, str]]:
+    """A class or property with each that the file puts right above it."""
+    for predicate in (RDFS.subClassOf, RDFS.subPropertyOf):
+        yield from ((subject, value) for value in properties.get(predicate, ()) if isinstance(value, str))
+
+
+def _equal(subject: str, properties: Properties) -> Iterator[tuple[str, str]]:
+    """A class or property with each that the file calls equal, both ways."""
+    for predicate in _EQUIVALENCES:
         for value in properties.get(predicate, ()):
             if isinstance(value, str):
                 yield subject, value
-                if predicate == OWL.equivalentClass:
-                    yield value, subject
+                yield value, subject
 
 
 def _validated(term: FileTerm) -> bool:

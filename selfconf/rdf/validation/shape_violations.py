@@ -46,6 +46,10 @@ _MADE_DISTINCT_BY: dict[Node, URIRef] = {
     _SHAPES.ComponentPlaysOnce: _SC.component,
 }
 """Shapes that want values to differ, and the property in which they have to."""
+_COMPARED_BY: dict[Node, frozenset[Node]] = {
+    _SHAPES.CountOrder: frozenset((_SHAPES.MinCount, _SHAPES.MaxCount)),
+}
+"""Shapes that compare values, and the shapes of these values: what breaks one of those is nothing to compare."""
 
 
 @immutable
@@ -219,7 +223,12 @@ def shape_violations(
         *reported_violations(graph, shapes.read, needed - shapes.answers),
         *judge.violations(graph, shapes.read, needed & shapes.answers),
     ]
-    found = [(places.offset(violation), violation) for violation in reported]
+    broken = {(violation.shape, violation.focus) for violation in reported}
+    found = [
+        (places.offset(violation), violation)
+        for violation in reported
+        if not any((shape, violation.focus) in broken for shape in _COMPARED_BY.get(violation.shape, ()))
+    ]
     return [
         at(
             positions,

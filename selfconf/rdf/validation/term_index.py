@@ -11,7 +11,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import chain
 
+from selfconf.model.hierarchy import Upward
 from selfconf.model.literal_values import of_range
+from selfconf.model.term import IRI
 from selfconf.rdf.validation.prefilter import Prefiltered
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, XSD
 
@@ -56,8 +58,14 @@ class TermIndex:
     ranges: dict[str, set[str]] = field(default_factory=dict)
     """The datatypes of the values of properties, as far as they are stated."""
     covered: set[str] = field(default_factory=lambda: {SC.base})
+    classes: set[str] = field(default_factory=set)
+    properties: set[str] = field(default_factory=set)
     above: set[tuple[str, str]] = field(default_factory=set)
-    """What the files say of the hierarchy of classes: a class, and one right above it."""
+    """What the files say of the hierarchies of classes and properties: one of them, and one right above it."""
+    equal: set[tuple[str, str]] = field(default_factory=set)
+    """Those of `above` that are said to be equal."""
+    _upward: tuple[Upward, Upward] | None = None
+    """The closures of `above` and of `equal`."""
     _strange: dict[str, bool] = field(default_factory=dict)
     _confused: dict[str, str | None] = field(default_factory=dict)
 
@@ -69,13 +77,17 @@ class TermIndex:
         self.object_properties |= seen.object_properties
         for one, datatype in seen.ranges:
             self.ranges.setdefault(one, set()).add(datatype)
+        self.classes |= seen.classes
+        self.properties |= seen.properties
         self.above |= seen.above
+        self.equal |= seen.equal
         self.terms |= seen.placed
         if seen.terms:
             self.terms |= seen.terms | seen.subjects
             self.covered |= {namespace(term) for term in seen.terms} - {""}  # as of urn:x
         self._strange.clear()
         self._confused.clear()
+        self._upward = None
 
     def strange(self, iri: str) -> bool:
         """Whether an IRI lies in a covered or standard namespace, but is not known there at first sight."""
@@ -104,15 +116,24 @@ class TermIndex:
         """Whether a class is another or lies below it, by what the loaded ontologies say."""
         return wanted in self.at_or_above(offered)
 
-    def at_or_above(self, offered: str) -> set[str]:
-        """A class with all that the loaded ontologies put above it."""
-        found, waiting = {offered}, [offered]
-        while waiting:
-            lower = waiting.pop()
-            higher = {upper for one, upper in self.above if one == lower} - found
-            found |= higher
-            waiting += higher
-        return found
+    def at_or_above(self, offered: str) -> frozenset[str]:
+        """A class or property with all that the loaded ontologies put above it."""
+        return self._closures()[0].above(IRI.unchecked(offered))
+
+    def closes_a_circle(self, lower: str, upper: str) -> bool:
+        """Whether one lies above another as well as below it, though the two are not said to be equal."""
+        placed, equal = self._closures()
+        below, above = IRI.unchecked(lower), IRI.unchecked(upper)
+        return below in placed.above(above) and below not in equal.above(above)
+
+    def _closures(self) -> tuple[Upward, Upward]:
+        if self._upward is None:
+            placed, equal = (
+                Upward((IRI.unchecked(one), IRI.unchecked(upper)) for one, upper in pairs)
+                for pairs in (self.above, self.equal)
+            )
+            self._upward = placed, equal
+        return self._upward
 
     def confused(self, iri: str) -> str | None:
         """The known namespace that this one is easily confused with, if it is another.

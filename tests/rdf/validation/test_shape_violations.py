@@ -56,6 +56,19 @@ def test_brackets_that_stand_for_a_number_are_a_violation(counts: str) -> None:
     assert {"MinCount", "MaxCount"} & {shape for _, _, shape in told(f":r a sc:Role ; {counts} .")}
 
 
+@pytest.mark.parametrize(
+    ("counts", "shapes"),
+    [
+        ('sc:minCount "1" ; sc:maxCount 2', ["MinCount"]),
+        ("sc:minCount 1 ; sc:maxCount :few", ["MaxCount"]),
+        ("sc:minCount 2, 3 ; sc:maxCount 1", ["MinCount"]),
+        ("sc:minCount 2 ; sc:maxCount 1", ["CountOrder"]),
+    ],
+)
+def test_counts_that_are_none_are_not_compared(counts: str, shapes: list[str]) -> None:
+    assert [shape for _, _, shape in told(f":r a sc:Role ; {counts} .")] == shapes
+
+
 def test_of_three_equal_names_the_first_is_not_to_blame() -> None:
     ports = " , ".join(PORT.format("a") for _ in range(3))
     assert [shape for _, _, shape in told(f"{LAMP}:lamp sc:hasInput {ports} .")] == ["PortNamesDistinct"] * 2

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
+from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies
 from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
 from selfconf.rdf.validation.lints.templates import (
     impossible_roles,
@@ -56,6 +57,8 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unfit_literals,
     local_components,
     misnamed_units,
+    circular_hierarchies,
+    mixed_hierarchies,
 )
 """The lints that run on every file."""
 TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (

@@ -44,6 +44,11 @@ EXAMPLES = {
     }.items()
 }
 """A literal of each datatype of short texts."""
+_LISTS_OF_TERMS = (
+    *(SH.path, SH.alternativePath, SH.ignoredProperties),
+    *(OWL.unionOf, OWL.intersectionOf, OWL.disjointUnionOf, OWL.propertyChainAxiom),
+)
+"""What has a list of terms, or a path, which may be one."""
 VALUES = frozenset((SH.hasValue, SH.minInclusive, SH.minExclusive, SH.maxInclusive, SH.maxExclusive))
 """What shapes compare values with."""
 _MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
@@ -52,18 +57,52 @@ _MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
 def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
     """Terms of a known namespace that no ontology declares."""
     meant: dict[str, str | None] = {}  # a term that is misspelt once is often misspelt everywhere
-    for (_, predicate, value), offsets in file.positions.triples.items():
-        used: list[tuple[Node | None, int]] = [(predicate, offsets.predicate)]
+    for iri, offset in _used_terms(file):
+        if not _known(iri, file.index):
+            if iri not in meant:
+                meant[iri] = _meant(file, iri)
+            yield _unknown(file, iri, offset, meant[iri])
+
+
+def _used_terms(file: LintedFile) -> Iterator[tuple[str, int]]:
+    """The terms of vocabularies that a file uses, each with its place; a parameter stands for one, and is none."""
+    holders = _holders_of_terms(file)
+    for (subject, predicate, value), offsets in file.positions.triples.items():
+        yield str(predicate), offsets.predicate
         if isinstance(value, Literal):
-            used.append((value.datatype, offsets.object))
-        elif str(predicate) in TERM_POSITIONS or str(value) in _SC or str(value) in _SH:
-            used.append((value, offsets.object))
-        for term, offset in used:
-            if isinstance(term, URIRef) and not _known(str(term), file.index):
-                iri = str(term)
-                if iri not in meant:
-                    meant[iri] = _meant(file, iri)
-                yield _unknown(file, iri, offset, meant[iri])
+            if value.datatype is not None:
+                yield str(value.datatype), offsets.object
+        elif (
+            isinstance(value, URIRef)
+            and value not in file.source.parameters
+            and (
+                str(predicate) in TERM_POSITIONS
+                or str(value) in _SC
+                or str(value) in _SH
+                or (subject in holders and predicate in (RDF.first, SH.hasValue))
+            )
+        ):
+            yield str(value), offsets.object
+
+
+def _holders_of_terms(file: LintedFile) -> set[Node]:
+    """The shapes whose values are terms, as those of `rdf:type` are, and the cells of lists whose members are."""
+    graph = file.graph
+    shapes = {shape for shape, path in graph.subject_objects(SH.path) if _last_step(file, path) in TERM_POSITIONS}
+    waiting = [head for shape in shapes for head in graph.objects(shape, SH["in"])]
+    waiting += [head for predicate in _LISTS_OF_TERMS for head in graph.objects(None, predicate)]
+    cells: set[Node] = set()
+    while waiting:
+        for cell in file.cells(waiting.pop()):
+            if cell not in cells:
+                cells.add(cell)
+                waiting += graph.objects(cell, RDF.first)  # a path may be a list in a list
+    return shapes | cells
+
+
+def _last_step(file: LintedFile, path: Node) -> str:
+    """The property that a path ends with."""
+    return str([path, *file.items(path)][-1])
 
 
 def _known(iri: str, index: TermIndex) -> bool:
@@ -152,15 +191,12 @@ def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
 def undeclared_prefixes(file: LintedFile) -> Iterator[Diagnostic]:
     """Namespaces that are nearly known ones and have no prefix: told where the first of their terms stands."""
     told = {iri for _, iri, _ in file.positions.prefixes}
-    for (_, predicate, value), offsets in file.positions.triples.items():
-        for term, offset in ((predicate, offsets.predicate), (value, offsets.object)):
-            if not isinstance(term, URIRef) or (term is value and str(predicate) not in TERM_POSITIONS):
-                continue
-            home = namespace(str(term))
-            meant = None if home in told else file.index.confused(home)
-            told.add(home)
-            if meant is not None:
-                yield _confused(file, home, meant, offset)
+    for term, offset in _used_terms(file):
+        home = namespace(term)
+        meant = None if home in told else file.index.confused(home)
+        told.add(home)
+        if meant is not None:
+            yield _confused(file, home, meant, offset)
 
 
 def _confused(file: LintedFile, iri: str, meant: str, offset: int) -> Diagnostic:

@@ -103,7 +103,7 @@ def test_a_closed_role_that_does_not_let_a_component_have_a_type_is_told_how_to(
         " ; sh:nodeKind sh:IRI",
         " ; sh:property [ sh:path rob:place ]",
         " ; sh:property [ sh:path rob:place ; sh:minCount 0 ]",
-        " ; sh:property [ sh:path ( rob:place rob:part ) ; sh:minCount 0 ]",
+        " ; sh:property [ sh:path ( rob:place :part ) ; sh:minCount 0 ]",
     ],
 )
 def test_a_role_that_every_component_meets_is_noticed(role: str) -> None:

@@ -58,11 +58,44 @@ def test_a_misspelt_term_of_selfconf_or_shacl_is_an_error(text: str, meant: str)
         (":a a sc:Component, :A ; sc:hasOperation [ sc:name 'x' ; sc:request rob:Imge ] .", "rob:Image"),
         (":a a sc:Component, :A ; sc:hasOperation [ sc:name 'x' ; sc:response rob:Imge ] .", "rob:Image"),
         (":A a owl:Class ; rdfs:label 'a' ; owl:equivalentClass rob:Lmap .", "rob:Lamp"),
+        (":A a owl:Class ; rdfs:label 'a' ; owl:equivalentClass [ owl:unionOf ( rob:Lmap ) ] .", "rob:Lamp"),
+        (":A a owl:Class ; rdfs:label 'a' ; rdfs:subClassOf [ owl:onProperty rob:palce ] .", "rob:place"),
+        (TEMPLATE + ":t sc:cost ( [ sc:term [ sc:property rob:palce ] ] ) .", "rob:place"),
+        (TEMPLATE + ":r sh:property [ sh:path ( rob:suport rob:place ) ; sh:minCount 1 ] .", "rob:support"),
+        (
+            TEMPLATE + ":r sh:property [ sh:path [ sh:alternativePath ( rob:place rob:suport ) ] ; sh:minCount 1 ] .",
+            "rob:support",
+        ),
+        (
+            TEMPLATE + ":r sh:property [ sh:path [ sh:alternativePath ( rob:place ( rob:suport :in ) ) ] ] .",
+            "rob:support",
+        ),
+        (TEMPLATE + ":r sh:closed true ; sh:ignoredProperties ( rdf:type rob:palce ) .", "rob:place"),
+        (TEMPLATE + ":r sh:property [ sh:path rdf:type ; sh:hasValue rob:Lmap ] .", "rob:Lamp"),
+        (TEMPLATE + ":r sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:in ( rob:Imge ) ] .", "rob:Image"),
     ],
 )
 def test_a_misspelt_term_of_a_loaded_ontology_is_a_warning(text: str, meant: str) -> None:
     found = only(text)
     assert (found.code, found.severity, found.hint) == ("SC-L02", Severity.WARNING, f"Did you mean {meant}?")
+
+
+def test_a_value_that_a_role_asks_for_is_no_term_of_a_vocabulary() -> None:
+    assert not lints(
+        TEMPLATE + ":r sh:property [ sh:path rob:place ; sh:in ( rob:kitchen rob:hall ) ; sh:hasValue rob:hall ] ."
+    )
+
+
+def test_a_parameter_that_stands_for_a_class_is_no_misspelt_class() -> None:
+    ontology = SourceText("home.ttl", (PREAMBLE + ":Home a owl:Class ; rdfs:label 'home' .").encode())
+    text = TEMPLATE + ":t sc:parameter :kind . :kind a sc:Parameter ; sc:name 'kind' . :r sh:class :kind ."
+    files = [SourceText("a.ttl", (PREAMBLE + text).encode())]
+    assert not validate_texts(files, SHAPES, [*ONTOLOGIES, ontology]).diagnostics
+
+
+def test_the_namespace_of_a_datatype_without_a_prefix_may_be_nearly_right() -> None:
+    found = only(":a a sc:Component, rob:Tuner ; :bands '5'^^<https://www.w3.org/2001/XMLSchema#integer> .")
+    assert (found.code, found.hint) == ("SC-L06", "Did you mean <http://www.w3.org/2001/XMLSchema#>?")
 
 
 @pytest.mark.parametrize("prefix", ["rdf", "rdfs", "owl", "xsd", "rob"])

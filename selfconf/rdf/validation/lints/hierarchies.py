@@ -1,0 +1,71 @@
+"""Hierarchies that match more than was meant, or nothing: circles, and classes in the place of properties.
+
+A circle of classes, each below the next, makes them one class wherever the hierarchy is followed: what offers one
+serves where any other is wanted. RDFS allows it; where that is meant, an equivalence says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rdflib import OWL, RDFS, URIRef
+from rdflib.term import Node
+
+from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.wording import listed
+from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.term_index import TermIndex
+
+_CLASSES, _PROPERTIES = "classes", "properties"
+_BETWEEN: dict[Node, tuple[str, URIRef]] = {
+    RDFS.subClassOf: (_CLASSES, RDFS.subPropertyOf),
+    OWL.equivalentClass: (_CLASSES, OWL.equivalentProperty),
+    RDFS.subPropertyOf: (_PROPERTIES, RDFS.subClassOf),
+    OWL.equivalentProperty: (_PROPERTIES, OWL.equivalentClass),
+}
+"""Between what each word of a hierarchy stands, and the word that stands between the others."""
+
+
+def circular_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
+    """Classes, or properties, each of which lies below the next, and the last below the first: once for each circle."""
+    index = file.index
+    circles: dict[str, frozenset[str]] = {}
+    last: dict[frozenset[str], tuple[int, bool]] = {}
+    for (lower, predicate, upper), offsets in file.positions.triples.items():
+        if predicate != RDFS.subClassOf and predicate != RDFS.subPropertyOf:
+            continue
+        below, above = str(lower), str(upper)
+        if below != above and isinstance(upper, URIRef) and index.closes_a_circle(below, above):
+            if below not in circles:
+                circle = frozenset(one for one in index.at_or_above(below) if below in index.at_or_above(one))
+                circles |= dict.fromkeys(circle, circle)
+            found = offsets.object, predicate == RDFS.subClassOf
+            last[circles[below]] = max(last.get(circles[below], found), found)
+    for circle, (offset, classes) in last.items():
+        names = listed(sorted(file.short(one) for one in circle if not one.startswith("_:")))
+        kind, word = (_CLASSES, "owl:equivalentClass") if classes else (_PROPERTIES, "owl:equivalentProperty")
+        message = f"The {kind} {names} lie below each other, so that each matches where another is wanted."
+        yield at(file.positions, offset, "SC-L29", message, hint=f"If that is meant, say so by {word}.")
+
+
+def mixed_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
+    """Properties in a hierarchy of classes, and classes in one of properties: nothing is matched along them."""
+    for (lower, predicate, upper), offsets in file.positions.triples.items():
+        if predicate not in _BETWEEN:
+            continue
+        wanted, other_word = _BETWEEN[predicate]
+        kinds = [_kind(file.index, str(one)) for one in (lower, upper)]
+        stray = next((one for one, kind in zip((lower, upper), kinds, strict=True) if kind not in (None, wanted)), None)
+        if stray is not None:
+            offset = offsets.predicate if stray == lower else offsets.object
+            what = "a property" if wanted == _CLASSES else "a class"
+            message = f"{file.short(str(predicate))} stands between {wanted}, and {file.short(str(stray))} is {what}."
+            hint = None if wanted in kinds else f"Did you mean {file.short(str(other_word))}?"
+            yield at(file.positions, offset, "SC-L30", message, hint=hint)
+
+
+def _kind(index: TermIndex, term: str) -> str | None:
+    """What a term is declared as, if it is one of the two alone."""
+    kinds = [kind for kind, known in ((_CLASSES, index.classes), (_PROPERTIES, index.properties)) if term in known]
+    return kinds[0] if len(kinds) == 1 else None
