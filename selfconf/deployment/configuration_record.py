@@ -7,8 +7,7 @@ from typing import Any
 
 from selfconf.errors import PeerError
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
-from selfconf.model.term import IRI
-from selfconf.protocol.json_values import decode_term, encode_term
+from selfconf.protocol.json_values import decode_term, encode_term, read_iri, read_iris, read_name, read_values
 
 
 def configuration_record(configuration: Configuration) -> dict[str, Any]:
@@ -27,20 +26,18 @@ def recorded_configuration(record: Mapping[str, Any]) -> Configuration:
     """The configuration that a record speaks of. Raises PeerError for what is none."""
     try:
         return Configuration(
-            IRI.unchecked(record["template"]),
+            read_iri(record["template"]),
+            tuple(Assignment(read_iri(role), read_iris(components)) for role, components in record["roles"]),
             tuple(
-                Assignment(IRI.unchecked(role), tuple(map(IRI.unchecked, components)))
-                for role, components in record["roles"]
+                Connection(read_iri(source), read_name(output), read_iri(sink), read_name(port))
+                for source, output, sink, port in record["connections"]
             ),
             tuple(
-                Connection(IRI.unchecked(a), output, IRI.unchecked(b), port)
-                for a, output, b, port in record["connections"]
+                ParameterSetting(read_iri(component), read_name(name), decode_term(value))
+                for component, name, value in record["parameters"]
             ),
-            tuple(
-                ParameterSetting(IRI.unchecked(c), name, decode_term(value)) for c, name, value in record["parameters"]
-            ),
-            {name: decode_term(value) for name, value in record["bindings"].items()},
-            tuple(map(IRI.unchecked, record.get("recruits", ()))),
+            read_values(record["bindings"]),
+            read_iris(record.get("recruits", [])),
         )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         raise PeerError(f"not the record of a configuration: {error!r}") from None

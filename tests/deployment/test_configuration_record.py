@@ -48,7 +48,11 @@ def test_a_record_without_one_of_its_members_is_none(member: str) -> None:
     [
         ("roles", None),
         ("roles", [[iri("eye")]]),
+        ("roles", [[iri("eye"), "left"]]),
         ("connections", [[iri("left"), "image", iri("cap")]]),
+        ("connections", [[iri("left"), ["image"], iri("cap"), "view"]]),
+        ("connections", [[iri("left"), "image", {"iri": iri("cap")}, "view"]]),
+        ("parameters", [[iri("cap"), ["speed"], {"literal": "0.5"}]]),
         ("parameters", [[iri("cap"), "speed", "fast"]]),
         ("bindings", [["robot", "Astrid"]]),
     ],

@@ -307,3 +307,20 @@ def test_a_task_whose_configuration_cannot_be_read_begins_anew_and_that_is_said(
         keepers.hand_over(replace(RECORD, configuration={"nonsense": 1}, epoch=3))
         assert keepers.lab.until(lambda: len(keepers.running()) == 1)
     assert "the task patrol~1 begins anew, as its configuration is not to be read" in caplog.text
+
+
+def test_a_task_whose_configuration_is_nonsense_keeps_no_other_from_being_adopted(keepers: Keepers) -> None:
+    first = keepers.settled()
+    acting = [name for name, component in keepers.lab.components.items() if component.active]
+    nonsense = {"template": "urn:t", "roles": [["urn:r", ["urn:b"]]], "parameters": [], "bindings": {}}
+    connections = [["urn:a", ["out"], "urn:b", "in"]]
+    keepers.hand_over(
+        replace(RECORD, task="nonsense~1", priority=0, epoch=3, configuration={**nonsense, "connections": connections})
+    )
+    keepers.lab.let_pass(5.0)
+    keepers.end(first)
+    for name in acting:
+        keepers.lab.components[name].said.clear()
+    keepers.lab.let_pass(5.0)
+    assert keepers.running()
+    assert {name for name in acting if ("stopped",) in keepers.lab.components[name].said} == set()
