@@ -121,4 +121,6 @@ def _body(url: str, reply: HTTPResponse, deadline: float) -> bytes:
         if monotonic() > deadline:
             raise AuthorError(f"{url} has not answered in full within {FETCH_SECONDS:.0f} s")
         pieces.append(piece)
+    if reply.length:  # the library says so of no piece, and half a model may read well
+        raise AuthorError(f"the answer of {url} breaks off {reply.length} bytes before its end")
     return b"".join(pieces)

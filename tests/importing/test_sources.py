@@ -26,6 +26,11 @@ class Things(BaseHTTPRequestHandler):
             self.send_response(200)
             self.end_headers()
             self.wfile.write(b"{}")
+        elif self.path == "/half.json":
+            self.send_response(200)
+            self.send_header("Content-Length", "9")
+            self.end_headers()
+            self.wfile.write(b"[]")
         elif self.path == "/endless":
             self.send_response(200)
             self.end_headers()
@@ -97,7 +102,14 @@ def test_a_url_is_fetched_and_named_after_its_last_part(server: str) -> None:
     assert (found.name, found.octets, errors) == ("lamp.json", b"{}", [])
 
 
-@pytest.mark.parametrize(("path", "words"), [("moved", "no redirect is followed"), ("gone", "answers 404")])
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("moved", "no redirect is followed"),
+        ("gone", "answers 404"),
+        ("half.json", "breaks off 7 bytes before its end"),
+    ],
+)
 def test_a_url_that_answers_otherwise_is_named(server: str, path: str, words: str) -> None:
     found, errors = gathered(f"{server}/{path}")
     assert found == []
