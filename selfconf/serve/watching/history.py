@@ -137,11 +137,12 @@ class History:
         if name == before:
             return {}
         over: dict[str, bytes] = {}
-        if name is not None and self._has_ended(name):
-            if before is not None:
-                return {}  # told late: another has taken its place already
-            self._forget(self._generated(name), name)  # only the way to its configurator was gone, or another goes on
-            over = {name: b""}
+        if name is not None and self._is_kept(name):
+            if self._has_ended(name):
+                if before is not None:
+                    return {}  # told late: another has taken its place already
+                self._forget(self._generated(name), name)
+            over = {name: b""}  # it counts as past no more: the way to its configurator was gone, or another goes on
         added = self._added(name, quads)
         ends = before is not None and list(self._current.values()).count(before) == 1
         if before is not None and ends:
@@ -155,7 +156,7 @@ class History:
 
     def _added(self, name: str | None, quads: Iterable[ox.Quad]) -> list[ox.Quad]:
         """What is to be kept of a configuration of which nothing is; nothing of one that is, or is none."""
-        if name is None or any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name))):
+        if name is None or self._is_kept(name):
             return []
         return [ox.Quad(q.subject, q.predicate, q.object, ox.NamedNode(name)) for q in quads]
 
@@ -215,6 +216,9 @@ class History:
     def _generated(self, name: str) -> str:
         node = ox.NamedNode(name)
         return next((str(q.object) for q in self._store.quads_for_pattern(node, _GENERATED, None, node)), "")
+
+    def _is_kept(self, name: str) -> bool:
+        return any(self._store.quads_for_pattern(None, None, None, ox.NamedNode(name)))
 
     def _has_ended(self, name: str) -> bool:
         node = ox.NamedNode(name)

@@ -95,6 +95,15 @@ def test_it_is_there_for_the_next_server(tmp_path: Path) -> None:
     assert set(second.note({GRAPH: b""})) == {"urn:c:3"}
 
 
+def test_what_runs_on_is_none_of_the_past_however_late_the_next_server_hears_of_it(tmp_path: Path) -> None:
+    first = History(tmp_path)
+    first.note({GRAPH: told(1)})
+    first.close()
+    second = History(tmp_path)
+    assert set(second.settle()) == {"urn:c:1"}
+    assert second.note({GRAPH: told(1)}) == {"urn:c:1": b""}
+
+
 def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(history, "MOST_KEPT", 3)
     kept = History(tmp_path)
