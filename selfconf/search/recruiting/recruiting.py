@@ -69,7 +69,8 @@ def first_recruited(
     """Return the configuration of the first players that recruits can feed, or None.
 
     For when the first solution is not one of them: recruits may need what a player issues, or play a role themselves.
-    With a configuration that runs they are the first of those that keep the most of its players in their roles.
+    With a configuration that runs they are the first of those that keep the most of its players in their roles; or,
+    where the steps end before that is known, those that keep the most of those met.
     """
     search = _by_clauses if solver_available() else _by_enumeration
     playing = None if problem.valueless else search(problem, Budget(steps), running)
@@ -105,12 +106,17 @@ def _by_clauses(
     """Return the first players that recruits can feed, by clause learning."""
     with founded(problem, pruned(with_recruits(problem, () if running is None else running.players))) as clauses:
         found = clauses.solve((), budget)
-        if isinstance(found, Undecided) or not found:
-            return found or None
+        if isinstance(found, Undecided):
+            return found
+        if not found:
+            return None
         if running is not None:
             clauses.maximise(_staying(clauses, running), budget)
             clauses.solve((), budget)
         chosen = least_of_clauses(clauses, budget)
+        if isinstance(chosen, Undecided) and running is not None:
+            # What runs is not given up for want of the steps to name the first: these are known to have recruits.
+            chosen = [option for option in clauses.chosen() if option.kind.role < len(problem.roles)]
         return chosen if isinstance(chosen, Undecided) else assigned(problem, chosen)
 
 

@@ -14,7 +14,7 @@ from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration
 from selfconf.model.partition import Candidate, Recruit
 from selfconf.model.profile import Profile, WantedSignal
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting.recruiting import first_recruited, recruited
 from selfconf.search.strategies import first
@@ -290,6 +290,28 @@ def test_of_players_with_recruits_those_that_run_come_first() -> None:
     kept = first_recruited(helped, running=running)
     assert isinstance(kept, Configuration)
     assert [a.components[0].short for a in kept.assignments] == ["plain", "supplier", "idle0-3", "idle1-0"]
+
+
+def test_steps_that_end_before_players_have_recruits_are_no_refusal() -> None:
+    own = component("own", "s:S", "s:S")
+    user = problem({"user": [component("a", "s:S"), own, component("b", "p:S")]}, "user>user")
+    helped = with_recruits(user, own)
+    assert isinstance(first_recruited(helped, steps=1), Undecided)
+    found = first_recruited(helped)
+    assert isinstance(found, Configuration)
+    assert found.players == (iri("own"),)
+
+
+def test_what_runs_is_kept_where_the_steps_end_before_the_first_players_are_known() -> None:
+    pytest.importorskip("pysat")
+    helped = busy(8)
+    fresh = first_recruited(helped)
+    assert isinstance(fresh, Configuration)
+    last = [replace(a, components=(iri(f"idle{k}-4"),)) for k, a in enumerate(fresh.assignments[2:])]
+    running = replace(fresh, assignments=(*fresh.assignments[:2], *last))
+    kept = first_recruited(helped, steps=10, running=running)
+    assert isinstance(kept, Configuration)
+    assert not broken_conditions(helped.task, helped.partition, kept)
 
 
 @pytest.mark.parametrize(
