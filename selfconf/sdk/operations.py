@@ -30,6 +30,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -66,6 +67,15 @@ class OperationFields:
     response: SignalFields | None = None
 
 
+@dataclass(slots=True, eq=False)
+class _Promise:
+    """A future that the code has returned in the place of an answer to one request; it may be that of others, too."""
+
+    future: Future[Any]
+    operation: str
+    caller: IRI
+
+
 class Operations:
     """The operations of one component in one life."""
 
@@ -98,8 +108,7 @@ class Operations:
         """The latest requests, by caller, its life, and the number of the stamp: one that is doubled is not served."""
         self._requests = self._calls = 0
         """How many requests wait for the code, and how many calls for their answers."""
-        self._promised: dict[Future[Any], tuple[str, IRI]] = {}
-        """The futures that the code has returned in the place of answers: of which operation, and to which caller."""
+        self._promised: set[_Promise] = set()
         self._served = bus.serve(keys.operations(profile.component), self._asked) if self._offered else lambda: None
 
     def follow(self, message: Apply) -> None:
@@ -117,15 +126,15 @@ class Operations:
 
     def callers_changed(self) -> None:
         """Cancel what was promised to components that are connected no more."""
-        for promise, (name, caller) in list(self._promised.items()):
-            if caller not in self._callers(name + CALL_MARK):
-                promise.cancel()
+        for promise in list(self._promised):
+            if promise.caller not in self._callers(promise.operation + CALL_MARK):
+                self._abandon(promise)
 
     def end(self) -> None:
         """Call nothing, and wait for no answer that the code has promised."""
         self._wires = {}
         for promise in list(self._promised):
-            promise.cancel()
+            promise.future.cancel()
 
     def close(self) -> None:
         """Serve nothing any more."""
@@ -185,29 +194,33 @@ class Operations:
             turn = self._code.turn
             answer = self._code.serve(name, replace(signal, value=value))
             if isinstance(answer, Future):
-                self._promised[answer] = name, signal.source
-                answer.add_done_callback(partial(self._kept, request, name, turn))
+                promise = _Promise(answer, name, signal.source)
+                self._promised.add(promise)
+                answer.add_done_callback(lambda _: self._kept(request, promise, turn))
                 if patience < math.inf:
-                    self._then(self._limit, answer, max(0.0, waits_until - self._bus.now()))
+                    self._then(self._limit, promise, max(0.0, waits_until - self._bus.now()))
                 if not self._code.active:  # it was stopped while it returned the future
                     answer.cancel()
             return answer
 
         self._answer(request, name, served)
 
-    def _limit(self, promise: Future[Any], seconds: float) -> None:
-        """Cancel a future after a time, if it has come to nothing until then."""
+    def _limit(self, promise: _Promise, seconds: float) -> None:
+        """Wait for a future no longer than for a time."""
+        undo = self._bus.later(seconds, partial(self._abandon, promise))
+        promise.future.add_done_callback(lambda _: self._then(undo))
 
-        def cancel() -> None:
-            promise.cancel()
+    def _abandon(self, promise: _Promise) -> None:
+        """Wait for a future no more; it is cancelled, unless another request waits for it as well."""
+        self._promised.discard(promise)
+        if all(other.future is not promise.future for other in list(self._promised)):
+            promise.future.cancel()
 
-        undo = self._bus.later(seconds, cancel)
-        promise.add_done_callback(lambda _: self._then(undo))
-
-    def _kept(self, request: Request, name: str, turn: int, promise: Future[Any]) -> None:
+    def _kept(self, request: Request, promise: _Promise, turn: int) -> None:
         """Answer a request with what a future has come to; on whatever thread it does."""
-        self._promised.pop(promise, None)
-        self._answer(request, name, partial(self._code.outcome, name, promise, turn), kept=True)
+        self._promised.discard(promise)
+        outcome = partial(self._code.outcome, promise.operation, promise.future, turn)
+        self._answer(request, promise.operation, outcome, kept=True)
 
     def _answer(self, request: Request, name: str, answered: Callable[[], Any], kept: bool = False) -> None:
         """Answer a request with a value, or refuse it as `answered` does; nothing yet if the value is a future.

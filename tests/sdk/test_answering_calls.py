@@ -118,20 +118,25 @@ def test_a_promise_that_comes_to_another_one_is_no_answer() -> None:
 
 
 @pytest.mark.parametrize("ended", ["the caller is connected no more", "the caller waits no longer"])
-def test_an_answer_that_nobody_waits_for_is_cancelled(ended: str) -> None:
-    promises: list[Future[Any]] = [Future(), Future()]
+@pytest.mark.parametrize("shared", [False, True])
+def test_an_answer_that_nobody_waits_for_is_cancelled(ended: str, shared: bool) -> None:
+    promise: Future[Any] = Future()
+    promises: list[Future[Any]] = [promise, promise if shared else Future()]
     unused = iter(promises)
-    served = Served(Camera(reply=lambda request: next(unused)))
+    served, replies = Served(Camera(reply=lambda request: next(unused))), list[Replies]()
     served.stage.call(apply(2, callers={"takePhoto" + CALL_MARK: (ALBUM, DIARY)}))
     patience = b"0.5" if "longer" in ended else b""
     for caller, attachment in ((ALBUM, patience), (DIARY, b"50")):
         key = KEYS.operation(CAMERA, "takePhoto", caller)
-        served.stage.caller.ask(key, request_of(caller), 60.0, lambda replies: None, attachment)
+        served.stage.caller.ask(key, request_of(caller), 60.0, replies.append, attachment)
         served.stage.let_pass(0.1)
     if not patience:
         served.stage.call(apply(3, callers={"takePhoto" + CALL_MARK: (DIARY,)}))
     served.stage.let_pass(1.0)
-    assert [promise.cancelled() for promise in promises] == [True, False]
+    assert [one.cancelled() for one in promises] == [not shared, False]
+    promises[1].set_result("a photo")
+    served.stage.let_pass(0.1)
+    assert [sample.payload for sample in replies[-1].samples] == [b'"a photo"']
 
 
 @pytest.mark.parametrize("ended", ["the caller is connected no more", "the caller waits no longer"])
