@@ -57,6 +57,10 @@ class Upward:
             return terms
         return frozenset[IRI]().union(*map(self.above, terms))
 
+    def is_above_others(self, term: IRI) -> bool:
+        """Whether something lies below a term, at a cost of the whole relation."""
+        return any(term in parents for parents in self._parents.values())
+
     def __bool__(self) -> bool:
         return bool(self._parents)
 
@@ -86,6 +90,10 @@ class Hierarchy:
     def superproperties(self, offered: IRI) -> frozenset[IRI]:
         """`offered` and every property above it."""
         return self._properties.above(offered)
+
+    def has_subproperties(self, wanted: IRI) -> bool:
+        """Whether a property lies below another one; this looks at the whole hierarchy."""
+        return self._properties.is_above_others(wanted)
 
     def matches(self, offered: IRI, wanted: IRI) -> bool:
         """Whether a class (of components, signals or parameters) that is offered serves where another is wanted."""

@@ -2,8 +2,9 @@
 
 pySHACL (`sh:pattern`) and rdflib (REGEX and REPLACE of SPARQL) ask `re`, which can take years. Within `linear_patterns`
 their modules see another `re`, which answers the same by `selfconf.rdf.shacl.pattern`. Queries are parsed once as
-well, not once for each component: parsing takes longer than most answers. And pySHACL does not write the terms of each
-result into the text of its report, which took a quarter of the time and is not read.
+well, not once for each component: parsing takes longer than most answers. In them `"x"` and `"x"^^xsd:string` are one
+string, as in RDF 1.1. And pySHACL does not write the terms of each result into the text of its report, which took a
+quarter of the time and is not read.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from typing import Any
 from pyshacl.constraints import constraint_component
 from pyshacl.constraints.core import string_based_constraints
 from pyshacl.constraints.core.string_based_constraints import PatternConstraintComponent
-from rdflib.plugins.sparql import operators, processor
+from rdflib import XSD, Literal
+from rdflib.plugins.sparql import algebra, operators, processor
 
 from selfconf.rdf.library_patches import replaced
 from selfconf.rdf.shacl import Pattern, pattern, shacl_pattern
@@ -73,6 +75,15 @@ def _prepared(text: str, base: str | None, namespaces: tuple[tuple[str, Any], ..
     return _translate(_parse(text), base, dict(namespaces))
 
 
+_named = vars(algebra)["translatePName"]
+
+
+def _plainly_named(part: Any, prologue: Any) -> Any:
+    """What a name or a literal of a query stands for; a string has no datatype, as in graphs (`rdflib_terms`)."""
+    found = _named(part, prologue)
+    return Literal(str(found)) if isinstance(found, Literal) and found.datatype == XSD.string else found
+
+
 def _recalled(text: str, base: str | None = None, namespaces: Mapping[str, Any] | None = None) -> Any:
     return _prepared(text, base, tuple(sorted((namespaces or {}).items())))
 
@@ -89,6 +100,7 @@ _INSTEAD: tuple[tuple[object, str, object], ...] = (
     (operators, "re", _LINEAR),
     (processor, "parseQuery", str),  # parsed by `_recalled`, where it has not been
     (processor, "translateQuery", _recalled),
+    (algebra, "translatePName", _plainly_named),
     (constraint_component, "stringify_node", _unread),
 )
 

@@ -7,7 +7,7 @@ from itertools import chain
 
 import rdflib
 
-from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.rdflib_literals import literal
 from selfconf.rdf.turtle import Document, Node, Triple
 
@@ -35,8 +35,9 @@ def rdflib_term(value: Term) -> rdflib.URIRef | rdflib.BNode | rdflib.Literal:
     if isinstance(value, IRI):
         return rdflib.URIRef(value)
     if isinstance(value, Literal):
-        datatype = None if value.language else rdflib.URIRef(value.datatype)
-        return literal(value.lexical, datatype, value.language)
+        # A string has no datatype to rdflib, whose queries would not find "x" where it had one.
+        plain = value.language or value.datatype == STRING
+        return literal(value.lexical, None if plain else rdflib.URIRef(value.datatype), value.language)
     return rdflib.BNode(value[2:])
 
 
@@ -45,7 +46,7 @@ def from_rdflib(node: rdflib.term.Node) -> Term:
     if isinstance(node, rdflib.URIRef):
         return IRI.unchecked(node)
     if isinstance(node, rdflib.Literal):
-        datatype = IRI.unchecked(node.datatype) if node.datatype else IRI("http://www.w3.org/2001/XMLSchema#string")
+        datatype = IRI.unchecked(node.datatype) if node.datatype else STRING
         if node.language:
             datatype = IRI("http://www.w3.org/1999/02/22-rdf-syntax-ns#langString")
         return Literal(str(node), datatype, node.language)

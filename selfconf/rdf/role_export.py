@@ -27,7 +27,7 @@ from selfconf.rdf.eligibility import (
     SelfTest,
     bound_shape,
 )
-from selfconf.rdf.rdflib_terms import merged, to_rdflib
+from selfconf.rdf.rdflib_terms import to_rdflib
 from selfconf.rdf.shacl import ValueTest
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions
 from selfconf.rdf.turtle import Triple, ox_term
@@ -58,7 +58,7 @@ def shape(given: TaskDocument, role: CompiledRole, hierarchy: Hierarchy) -> str:
     triples = list(_reached(bound_shape(given.document, given.task.bindings), role.iri))
     for number, test in enumerate(test for test in role.tests if isinstance(test, ParameterTest)):
         triples += _parameter_shape(role.iri, test, hierarchy, number)
-    graph = merged(to_rdflib(triple for triple in triples if triple[1:] != (TYPE, SC.Role)))  # "x", as rdflib reads it
+    graph = to_rdflib(triple for triple in triples if triple[1:] != (TYPE, SC.Role))
     for prefix, namespace in {**given.document.prefixes, "sh": SH.base, "sc": SC.base}.items():
         graph.bind(prefix, rdflib.Namespace(namespace), replace=True)
     return graph.serialize(format="turtle").rstrip()

@@ -253,9 +253,10 @@ class Partitioner:
     def _issuing(self, role: CompiledRole, passed: list[Passed]) -> list[Passed]:
         """The advertisements, among some, with ports of the types that the shape asks for, where pySHACL is asked.
 
-        A property that lies below those of ports may lead to further ports: then pySHACL decides.
+        A property that lies below those of ports, or of their types, may lead to further ones: then pySHACL decides.
         """
-        asked = () if role.complete else required_signals(self.document, role.iri)
+        undecided = role.complete or self.hierarchy.has_subproperties(SC.signalType)
+        asked = () if undecided else required_signals(self.document, role.iri)
         required = [(link, signal) for link, signal in asked if signal not in self.free]
         links = {link for link, _ in required}
 

@@ -88,7 +88,12 @@ STAR = "[ sh:zeroOrMorePath rdfs:subClassOf ]"
 
 
 @pytest.mark.parametrize(
-    "hierarchy", [NOTHING_ABOVE, Hierarchy([(iri("Taxed"), iri("Price"))], [(iri("emits"), SC.hasOutput)])]
+    "hierarchy",
+    [
+        NOTHING_ABOVE,
+        Hierarchy([(iri("Taxed"), iri("Price"))], [(iri("emits"), SC.hasOutput)]),
+        Hierarchy([], [(iri("of"), SC.signalType)]),
+    ],
 )
 @pytest.mark.parametrize("path", ["", "rdfs:subClassOf", STAR])
 @pytest.mark.parametrize("more", ["", "; sh:deactivated true", "; sh:minCount 2"])
@@ -99,13 +104,14 @@ def test_what_is_not_shown_to_pyshacl_is_what_it_would_refuse(
     text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Service ; {shape} ."
     taxed = f":taxed a sc:Component , :Service ; {OUTPUT.format(':Taxed')} , [ sc:name 'p' ; sc:signalType :Colour ] ."
     below = ":below a sc:Component , :Service ; :emits [ sc:name 'o' ; sc:signalType :Price ] ."
+    typed = ":typed a sc:Component , :Service ; sc:hasOutput [ sc:name 'o' ; :of :Price ] ."
     found = []
     for filtered in (True, False):
         asked = partitioner(text)
         asked = asked.under(hierarchy)
         if not filtered:
             monkeypatch.setattr(Partitioner, "_issuing", lambda self, role, passed: passed)
-        (some,) = asked.eligible(AdvertisementIndex.of(read((*ADS, taxed, below))))
+        (some,) = asked.eligible(AdvertisementIndex.of(read((*ADS, taxed, below, typed))))
         found.append(sorted(one.profile.component.short for one in some))
     assert found[0] == found[1]
     assert found[0] or "minCount" in more or path == "rdfs:subClassOf"

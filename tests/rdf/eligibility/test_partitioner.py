@@ -166,6 +166,16 @@ def test_sparql_in_a_role_is_judged() -> None:
     assert names(partitioner(text).partition(ads)) == [["a"]]
 
 
+@pytest.mark.parametrize("text", ['\\"x\\"', '\\"x\\"^^xsd:string'])
+@pytest.mark.parametrize("pattern", ["{ $this rdfs:label TEXT }", "{ FILTER EXISTS { $this rdfs:label TEXT } }"])
+def test_a_string_in_a_query_is_the_string_of_an_advertisement(text: str, pattern: str) -> None:
+    ads = read([":a a sc:Component, :Lamp ; rdfs:label 'x' .", ":b a sc:Component, :Lamp ; rdfs:label 'y' ."])
+    prefixes = "PREFIX rdfs: <http://www.w3.org/2000/01/rdf-schema#> PREFIX xsd: <http://www.w3.org/2001/XMLSchema#> "
+    shape = f'sh:sparql [ sh:select "{prefixes}SELECT $this WHERE {pattern.replace("TEXT", text)}" ]'
+    asked = partitioner(f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Lamp ; {shape} .")
+    assert names(asked.partition(ads)) == [["b"]]
+
+
 OWN_COMPONENT = """
 :AtMost a sh:ConstraintComponent ; sh:parameter [ sh:path :atMost ; sh:datatype xsd:integer ] ;
     sh:validator [ a sh:SPARQLAskValidator ; sh:ask "ASK { FILTER ($value <= $atMost) }" ] .
