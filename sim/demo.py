@@ -36,6 +36,8 @@ RESULTS = (
     "tracker-view.png",
 )
 """What a run leaves in its folder."""
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""The signals that end a demo and take everything down."""
 STARTING = 60.0
 """Seconds that a process may take to be there."""
 LINGERING = 86_400.0
@@ -158,8 +160,9 @@ class Stage:
 
 def run(given: DemoOptions) -> int:
     """Play the scene that the options name; 0 if it ends as it should."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupt)
+    for number in ENDING:
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as `nohup` has SIGHUP
+            signal.signal(number, _interrupt)
     scenes = {"navigate": _navigate, "composite": _navigate, "radio": _radio}
     try:
         return scenes[given.scene](given)
@@ -187,7 +190,7 @@ def _tell(sentence: str) -> None:
 
 
 def _navigate(given: DemoOptions) -> int:
-    from sim.gallery import draw_run, result, summary
+    from sim.outcome import result, summary  # loads the world, which takes a moment
 
     for old in (path for pattern in RESULTS for path in given.out.glob(pattern)):
         old.unlink()  # an earlier run's pictures would pass for this one's
@@ -231,9 +234,19 @@ def _navigate(given: DemoOptions) -> int:
     figures.write_text(json.dumps(result(account), indent=2) + "\n")
     _tell(f"wrote {figures}")
     if given.pictures != "none":
-        for path in draw_run(account, record, given.out, given.pictures, _tell):
+        for path in _drawing()(account, record, given.out, given.pictures, _tell):
             _tell(f"wrote {path}")
     return 0 if account.end["outcome"] == "arrived" and not account.end["touched"] else 1
+
+
+def _drawing() -> Callable[[Account, Path, Path, str, Callable[[str], None]], list[Path]]:
+    """What draws the pictures of a run. A signal waits until it is loaded: interrupted as it loads, Mitsuba aborts."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        from sim.gallery import draw_run
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return draw_run
 
 
 def _world_arguments(given: DemoOptions, stage: Stage, record: Path) -> list[str]:

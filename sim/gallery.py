@@ -1,4 +1,4 @@
-"""From a finished demo to its summary and its pictures."""
+"""From a finished demo to its pictures. It loads what draws them, which is an extra."""
 
 from __future__ import annotations
 
@@ -13,52 +13,11 @@ from numpy.typing import NDArray
 from selfconf.model.term import IRI
 from sim.account import Account, short
 from sim.home.apartment import Apartment, read_apartment
+from sim.outcome import GOAL
 from sim.peis_home import standing_point
 from sim.pictures import CameraImage, Failure, Link, Part, RunRecord, Sample, Supply, Wiring, draw
 
-GOAL = "bedroom"
 SPOKEN = {"tracker": "the person tracker", "odometry": "odometry"}
-
-
-def summary(account: Account) -> Iterator[str]:
-    """The run in a few lines: configurations, the gap, where she ended."""
-    for word, configuration in zip(("before", "after"), account.configurations, strict=False):
-        names = [short(component) for role in configuration["roles"] for component in role["components"]]
-        yield f"{word + ':':9}{', '.join(names)}"
-    gap = account.gap()
-    if gap is not None:
-        searched = account.search_seconds[1] * 1000 if len(account.search_seconds) > 1 else 0.0
-        yield f"{'gap:':9}{gap * 1000:.1f} ms from FAIL to the first pose of the new source at the navigator"
-        yield f"{'':9}({searched:.1f} ms of it for composing the new configuration)"
-    if account.end is not None:
-        error = arrival_error(account)
-        touched = ", ".join(account.end["touched"]) or "nothing"
-        yield f"{'end:':9}{account.end['outcome']} after {account.end['time']:.1f} simulated seconds"
-        yield f"{'':9}{error * 100:.1f} cm from the goal; touched {touched}"
-
-
-def result(account: Account) -> dict[str, Any]:
-    """The run as figures: outcome, error in metres, what failed and why, the gap and the search in seconds."""
-    assert account.end is not None
-    loss = account.losses[0] if account.losses else None
-    return {
-        "outcome": account.end["outcome"],
-        "simulated_seconds": account.end["time"],
-        "error": arrival_error(account),
-        "touched": account.end["touched"],
-        "lost": short(loss["component"]) if loss else None,
-        "cause": loss["cause"] if loss else None,
-        "gap": account.gap(),
-        "search": account.search_seconds[1] if len(account.search_seconds) > 1 else None,
-        "configurations": account.configurations,
-    }
-
-
-def arrival_error(account: Account) -> float:
-    """How far, in metres, she truly ended from the standing point of the goal."""
-    assert account.end is not None
-    stand = standing_point(read_apartment(), GOAL)
-    return math.hypot(account.end["x"] - stand.x, account.end["y"] - stand.y)
 
 
 def draw_run(account: Account, record: Path, out: Path, quality: str, progress: Callable[[str], None]) -> list[Path]:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from sim.demo import ENDING, DemoOptions, run
 from tests.harness.effort import at_night
 from tests.harness.yardstick import Yardstick
 from tests.serve.chromium import CHROMIUM, Chromium, Page
@@ -172,7 +173,24 @@ def test_astrid_arrives_and_pictures_are_drawn(tmp_path: Path, demo: list[Demo])
     assert demo[0].gone()
 
 
-def test_the_living_ecology_can_be_asked_while_the_demo_runs(tmp_path: Path, demo: list[Demo]) -> None:
+HIDING = """
+import sys
+
+class Hiding:
+    def find_spec(self, name, *_):
+        if name.partition(".")[0] in ("mitsuba", "mitsuba_oidn", "PIL", "pygraphviz", "resvg_py", "shapely"):
+            raise ModuleNotFoundError(f"No module named {name!r}")
+
+sys.meta_path.insert(0, Hiding())
+"""
+"""The module `sitecustomize` of a Python in which nothing is installed that draws pictures."""
+
+
+def test_the_living_ecology_can_be_asked_while_a_demo_without_pictures_runs(
+    tmp_path: Path, demo: list[Demo], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "sitecustomize.py").write_text(HIDING)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     demo.append(Demo(tmp_path, "--speed", "0.2", "--pictures", "none"))
     running = demo[0]
     running.until("         running")
@@ -184,6 +202,24 @@ def test_the_living_ecology_can_be_asked_while_the_demo_runs(tmp_path: Path, dem
     running.process.send_signal(signal.SIGINT)
     assert running.end() != 0
     assert running.gone()
+
+
+@pytest.fixture
+def handlers() -> Iterator[None]:
+    """Puts back how signals are handled."""
+    before = {number: signal.getsignal(number) for number in ENDING}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.usefixtures("handlers")
+def test_a_signal_that_is_ignored_as_by_nohup_ends_no_demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sim.demo._navigate", lambda given: 0)
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    assert run(DemoOptions(tmp_path)) == 0
+    assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    assert signal.getsignal(signal.SIGTERM) not in (signal.SIG_IGN, signal.SIG_DFL)
 
 
 @at_night
