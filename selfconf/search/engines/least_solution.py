@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from typing import TypeVar
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
@@ -101,6 +102,17 @@ def least_of_clauses(clauses: ClauseSolver, budget: Budget) -> list[Option] | Un
     return descent.chosen()
 
 
+_Company = TypeVar("_Company", OrderedDecisions, Rival)
+
+
+def _joined(engine: Callable[[], _Company], stack: ExitStack) -> _Company | None:
+    """Return an engine that joins in; None where it cannot, as on a full disk: the others find the same."""
+    try:
+        return stack.enter_context(engine())
+    except OSError:
+        return None
+
+
 class _Descent:
     """What is known of the least solution: the options of the first slots, settled by one engine or another."""
 
@@ -173,7 +185,7 @@ class _Descent:
         in_order: OrderedDecisions | None = None
         if OrderedDecisions.available(encoding):
             # Left before the first solver is, as its thread interrupts that one.
-            in_order = stack.enter_context(OrderedDecisions(encoding, self.slots))
+            in_order = _joined(lambda: OrderedDecisions(encoding, self.slots), stack)
         if self.budget.steps is None and Rival.available():
             self._work_beside(first, encoding, in_order, stack)
         else:
@@ -190,11 +202,12 @@ class _Descent:
         self.advance(first, ALONE_OF_TWO if crowded else ALONE)
         if self.finished:
             return
-        rival = stack.enter_context(Rival(encoding, self.slots, self.least))
-        self.beside.append(rival)
-        if in_order is not None and crowded:
-            in_order.pause()
-            self._share_processor(first, in_order, rival)
+        rival = _joined(lambda: Rival(encoding, self.slots, self.least), stack)
+        if rival is not None:
+            self.beside.append(rival)
+            if in_order is not None and crowded:
+                in_order.pause()
+                self._share_processor(first, in_order, rival)
         self.advance(first, None)
 
     def _share_processor(self, first: Turn, in_order: OrderedDecisions, rival: Rival) -> None:

@@ -29,7 +29,7 @@ def processors() -> int:
 
 
 class Rival:
-    """The process, and what it has found so far; use it in a `with` statement."""
+    """The process, and what it has found so far; use it in a `with` statement. OSError where none can be started."""
 
     def __init__(self, encoding: Encoding, slots: Sequence[int], least: bool) -> None:
         question = (
@@ -54,11 +54,17 @@ class Rival:
         assert found.origin is not None  # for it is a package with an `__init__`
         place = Path(found.origin).parents[1]
         command = [sys.executable, "-I", str(PROGRAM), str(place)]
-        # A session of its own: Ctrl-C at a terminal is for the search, which then ends this process.
-        self._process = subprocess.Popen(
-            command, stdin=other.fileno(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
-        )
-        other.close()
+        nothing = subprocess.DEVNULL
+        try:
+            # A session of its own: Ctrl-C at a terminal is for the search, which then ends this process.
+            self._process = subprocess.Popen(
+                command, stdin=other.fileno(), stdout=nothing, stderr=nothing, start_new_session=True
+            )
+        except OSError:
+            self._socket.close()
+            raise
+        finally:
+            other.close()
 
     @staticmethod
     def available() -> bool:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -48,6 +50,21 @@ def test_a_rival_that_does_all_the_work_finds_the_least_solution(problem: Proble
         patch.setattr(Rival, "available", staticmethod(lambda: True))
         patch.setattr(least_solution._Descent, "_ask", lambda *_: time.sleep(0) or 1)
         assert numbers(least_by_clauses(reduced(problem), Budget())) == least_numbers(problem)
+
+
+def test_an_engine_that_cannot_join_in_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    for moment in ("UNSUPPORTED", "BRIEF", "PREPARED", "ALONE", "ALONE_OF_TWO"):
+        monkeypatch.setattr(least_solution, moment, 10**9 if moment == "PREPARED" else 0)
+    monkeypatch.setattr(Rival, "available", staticmethod(lambda: True))
+    given_ = pruned(reduced(queens(6, 1, 3)))
+    expected = numbers(least_by_clauses(given_, Budget()))
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(tempfile, "NamedTemporaryFile", full)
+    monkeypatch.setattr(rival.sys, "executable", "/removed/since/python")
+    assert numbers(least_by_clauses(given_, Budget())) == expected
 
 
 def test_the_first_solver_begins_anew_with_counters_only_where_a_role_asks_for_many(
