@@ -30,6 +30,7 @@ LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
 """The names under which a server on this machine may be asked: a page elsewhere may know it under another one."""
 SPARQL_METHODS = ("GET", "HEAD", "POST")
 """The methods by which the SPARQL endpoint is asked; everything else is asked by the first two alone."""
+NOTHING_THERE = "there is no such page; / is the page, /sparql, /things and /metrics are for programs"
 PIECE = 1 << 16
 """Bytes of an answer that are sent before the client has taken those before, so that what waits for it is no more."""
 HEADERS = {
@@ -64,7 +65,7 @@ def application(
     async def file(request: Request) -> Response:
         found = page.get(request.path_params.get("name", "index.html"))
         if found is None:
-            return problem(404, "there is no such page; / is the page, /sparql, /things and /metrics are for programs")
+            return problem(404, NOTHING_THERE)
         text, media, tag = found
         if _names_tag(request.headers.get("if-none-match", ""), tag):
             return Response(status_code=304, headers={"ETag": tag})
@@ -178,6 +179,8 @@ async def _refused(_: Request, error: Exception) -> Response:
         # Starlette has the methods in the order of a set, which is another one in each process.
         allowed = ", ".join(sorted((error.headers or {})["Allow"].split(", ")))
         return problem(405, f"this is asked by one of {allowed}", {"Allow": allowed})
+    if error.status_code == 404:
+        return problem(404, NOTHING_THERE)
     return problem(error.status_code, error.detail, error.headers)
 
 

@@ -14,6 +14,8 @@ import math
 from typing import Any
 
 import h11
+import uvicorn
+from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 REQUEST_SECONDS = 15.0
@@ -28,6 +30,14 @@ REFUSED_AGAIN = 60.0
 """Seconds after which it is said again that the system lets no connection be taken."""
 
 log = logging.getLogger(__name__)
+
+
+def config_of(app: ASGIApp) -> uvicorn.Config:
+    """How uvicorn is to serve an application: without warnings, as strangers would cause any number of them.
+
+    One of them advises to install what this server does not use, whenever a client offers HTTP/2 (`Upgrade: h2c`).
+    """
+    return uvicorn.Config(app, log_level="error", access_log=False, lifespan="off", ws="none", http=BoundedConnection)
 
 
 class LoopFaults:

@@ -16,7 +16,7 @@ from selfconf.rdf import turtle
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.board import THING_EVENTS, Board
 from selfconf.serve.event_stream import streamed
-from selfconf.serve.negotiation import acceptable
+from selfconf.serve.negotiation import acceptable, accepted_by
 from selfconf.serve.problems import problem
 from selfconf.serve.things import DISCOVERY_CONTEXT, TD, directory_description
 
@@ -71,7 +71,7 @@ class Directory:
         found = self._board.advertised.get(IRI.unchecked(request.path_params["id"]))
         if found is None:
             return problem(404, "no component of this IRI is advertised; /things lists them all")
-        media = acceptable(request.headers.get("accept", ""), [TD, JSON_LD_MEDIA, "application/json", "text/turtle"])
+        media = acceptable(accepted_by(request), [TD, JSON_LD_MEDIA, "application/json", "text/turtle"])
         if not media:
             return problem(406, f"a component is described as {TD} or text/turtle")
         component = found.advertisement.component

@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from starlette.requests import Request
+
+
+def accepted_by(request: Request) -> str:
+    """The header Accept of a request, which may stand in several lines (RFC 9110, section 5.3); empty without it."""
+    return ",".join(request.headers.getlist("accept"))
+
 
 def acceptable(accept: str, offered: Sequence[str]) -> list[str]:
     """The media types, among those offered, that a client accepts, the best first; of equals the order offered counts.

@@ -24,7 +24,7 @@ from selfconf.model.setting_names import setting
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
-from selfconf.serve.connections import BoundedConnection, LoopFaults
+from selfconf.serve.connections import LoopFaults, config_of
 from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
 from selfconf.serve.look_endpoint import Onlookers
@@ -162,9 +162,7 @@ async def _serve(
     bus.run_aside()
     bus.wake_up(watcher.begin)
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))
-    config = uvicorn.Config(
-        app, log_level="warning", access_log=False, lifespan="off", ws="none", http=BoundedConnection
-    )
+    config = config_of(app)
     server = _Server(config, board, onlookers)
     config.timeout_graceful_shutdown = LAST_ANSWERS
     listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")

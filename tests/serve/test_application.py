@@ -26,7 +26,9 @@ def test_the_page_is_there_and_nothing_behind_it(board: Board) -> None:
     for known, status in ((tag, 304), (f'"other", W/{tag}', 304), ("*", 304), ('"other"', 200), (tag[1:], 200)):
         assert ask(served(board), "/", if_none_match=known).status == status
     for path in ("/page/nothing.js", "/page/..%2Fserver.py", "/nothing"):
-        assert ask(served(board), path).status == 404
+        answer = ask(served(board), path)
+        assert answer.status == 404
+        assert "/sparql" in answer.json["detail"], "it says what there is"
 
 
 @pytest.mark.parametrize("path", ["/", "/state", "/nothing", "/metrics"])

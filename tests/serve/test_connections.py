@@ -14,7 +14,7 @@ import pytest
 import uvicorn
 
 from selfconf.serve import connections
-from selfconf.serve.connections import BoundedConnection, LoopFaults
+from selfconf.serve.connections import LoopFaults, config_of
 
 SHORT = 0.3
 LARGE = 400
@@ -48,8 +48,7 @@ def place(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, int]]:
     monkeypatch.setattr(connections, "UNREAD_SECONDS", SHORT)
     monkeypatch.setattr(connections, "MOST_CONNECTIONS", 20)
     listening = socket.create_server(("127.0.0.1", 0))
-    config = uvicorn.Config(app, log_level="error", lifespan="off", ws="none", http=BoundedConnection)
-    server = uvicorn.Server(config)
+    server = uvicorn.Server(config_of(app))
     thread = threading.Thread(target=lambda: asyncio.run(server.serve(sockets=[listening])))
     thread.start()
     yield listening.getsockname()
@@ -126,6 +125,16 @@ def test_an_answer_that_is_not_taken_is_not_kept_for_ever(place: tuple[str, int]
         while more := taken(link):
             size += more
     assert (size > LARGE << 16) == (not pause)
+
+
+def test_a_client_that_offers_http_2_is_answered_and_costs_no_line_of_the_log(
+    capsys: pytest.CaptureFixture[str], place: tuple[str, int]
+) -> None:
+    offer = b"Connection: Upgrade, HTTP2-Settings\r\nUpgrade: h2c\r\nHTTP2-Settings: AAMAAABkAAQAAP__\r\n"
+    with socket.create_connection(place) as connection:
+        connection.sendall(HEAD[:-2] + offer + b"\r\nhello")
+        assert connection.recv(1 << 12).startswith(b"HTTP/1.1 200 ")
+    assert capsys.readouterr().err == ""
 
 
 def test_who_opens_connections_without_an_end_is_served_no_longer_than_the_others(place: tuple[str, int]) -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from starlette.requests import Request
 
-from selfconf.serve.negotiation import acceptable
+from selfconf.serve.negotiation import acceptable, accepted_by
 
 OFFERED = ["application/json", "text/csv", "text/turtle"]
 
@@ -24,3 +25,9 @@ OFFERED = ["application/json", "text/csv", "text/turtle"]
 )
 def test_the_most_specific_range_weighs(accept: str, chosen: list[str]) -> None:
     assert acceptable(accept, OFFERED) == chosen
+
+
+def test_the_header_may_stand_in_several_lines() -> None:
+    lines = [(b"accept", b"image/png"), (b"host", b"x"), (b"accept", b"text/turtle;q=0.5")]
+    assert accepted_by(Request({"type": "http", "headers": lines})) == "image/png,text/turtle;q=0.5"
+    assert accepted_by(Request({"type": "http", "headers": []})) == ""

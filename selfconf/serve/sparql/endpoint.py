@@ -15,7 +15,7 @@ from selfconf.errors import NetworkError, NotAcceptableError, ProgrammerError, Q
 from selfconf.query import RESULT_TYPES, TRIPLE_TYPES, StandingDataset, StandingQuestion, outcome
 from selfconf.serve.disconnection import unless_gone
 from selfconf.serve.metrics import Metrics
-from selfconf.serve.negotiation import acceptable
+from selfconf.serve.negotiation import acceptable, accepted_by
 from selfconf.serve.problems import problem
 from selfconf.serve.sparql.requests import LARGEST_REQUEST, QueryRequest, RequestRefusedError, query_request
 from selfconf.serve.sparql.service_description import service_description
@@ -67,7 +67,7 @@ class SparqlEndpoint:
             query = query_request(method, request.url.query, request.headers.get("content-type", ""), body)
         except RequestRefusedError as error:
             return problem(error.status, error.detail)
-        accept = ",".join(request.headers.getlist("accept"))
+        accept = accepted_by(request)
         if query is None:
             return self._description(request, accept)
         return await self._answer(query, accept, request)
