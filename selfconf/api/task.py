@@ -73,7 +73,7 @@ class TaskSpecification(Tabular):
         """Shortens IRIs by the prefixes of the template's document."""
         return Names(self.document.document.prefixes)
 
-    def bind(self, **values: Value) -> TaskSpecification:
+    def bind(self, /, **values: Value) -> TaskSpecification:
         """The task with values for its parameters by name.
 
         Text is read as `--bind` reads it: `:kitchen` is a CURIE in the prefixes of the template, `<urn:x>` an IRI, `7`,

@@ -136,7 +136,7 @@ class ComponentBench:
         }
         self._run: MemoryRun | None = None
 
-    def start(self, **parameters: str | int | float | bool) -> None:
+    def start(self, /, **parameters: str | int | float | bool) -> None:
         """Activate the component, with values for its operational parameters by name.
 
         All parameters of one type have one value, as tasks set them by their type. Raises ProgrammerError if the

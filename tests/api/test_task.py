@@ -137,6 +137,11 @@ def test_a_literal_whose_parts_are_none_of_a_literal_is_refused_in_a_sentence(pa
         sc.template(NAVIGATE).bind(goal=sc.Literal(*parts))
 
 
+def test_a_parameter_may_have_any_name() -> None:
+    text = Path(NAVIGATE).read_text("utf-8").replace('sc:name "robot"', 'sc:name "self"')
+    assert sc.template(text).bind(self=":Astrid").bindings == {"self": sc.IRI(ASTRID)}
+
+
 def test_unknown_double_and_missing_bindings_are_refused(task: sc.TaskSpecification, home: sc.Ecology) -> None:
     with pytest.raises(BindingError, match="no parameter 'pilot'"):
         task.bind(pilot=1)

@@ -68,6 +68,12 @@ def test_parameters_are_set_as_what_they_are() -> None:
     assert bench.emitted["heating"] == [{"on": False}]
 
 
+def test_a_parameter_may_have_any_name() -> None:
+    thermostat = Thermostat()
+    ComponentBench(thermostat, ADVERTISEMENT.replace('sc:name "mode"', 'sc:name "self"')).start(self="quiet")
+    assert vars(thermostat)["self"] == "quiet"
+
+
 @pytest.mark.parametrize("value", [1e-7, 1e22, -0.5, 3, -4, True, "1e-7"])
 def test_a_parameter_is_set_to_any_number_or_text(value: Any) -> None:
     thermostat = Thermostat()
