@@ -23,7 +23,7 @@ from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import Discover
 from selfconf.configurator.events import Composed, Discovered, StayedAway
 from selfconf.configurator.phases import NOTHING
-from selfconf.configurator.state import Loss, Phase, State
+from selfconf.configurator.state import MOST_PUT_OFF, Loss, Phase, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal
@@ -85,8 +85,11 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
 
 def heed_absence(state: State, event: StayedAway) -> Reaction:
     """What was lost has not come back while a search that found nothing waited for it."""
-    waited = state.phase is Phase.COMPOSING and state.awaits_return and event.attempt == state.attempt
-    return _refused(state) if waited else (state, ())
+    if state.phase is not Phase.COMPOSING or not state.awaits_return or event.attempt != state.attempt:
+        return state, ()
+    if state.heeds_others:  # they may have let go of what they held meanwhile; what comes of that search counts
+        return phases.discover(replace(state, put_off=MOST_PUT_OFF))
+    return _refused(state)
 
 
 def _refused(state: State) -> Reaction:

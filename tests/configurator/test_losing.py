@@ -10,7 +10,17 @@ from selfconf.configurator.effects import AwaitReturn, Compose, Discover, Finish
 from selfconf.configurator.events import Answered, Appeared, Call, Discovered, Failed, Reconnected, StayedAway
 from selfconf.configurator.state import MOST_PUT_OFF, Phase, State
 from selfconf.protocol.messages import Cause, Verdict
-from tests.configurator.builders import CONTROL, DRIVE, ODOMETRY, REFUSAL, TRACKER, History, navigation, released
+from tests.configurator.builders import (
+    CONTROL,
+    DRIVE,
+    ODOMETRY,
+    OTHERS,
+    REFUSAL,
+    TRACKER,
+    History,
+    navigation,
+    released,
+)
 
 
 def lost(cause: Cause = Cause.CRASH, startable: bool = True, patient: bool = False) -> History:
@@ -97,6 +107,20 @@ def test_what_no_site_can_start_may_have_been_cut_off_and_back_in_a_moment() -> 
     assert history.state.phase is Phase.RUNNING
     assert {CONTROL, DRIVE} < set(history.state.held)
     assert not history.state.owed
+
+
+@pytest.mark.parametrize("found", [True, False])
+def test_others_may_have_let_go_of_something_while_what_was_lost_stayed_away(found: bool) -> None:
+    history = out_of_sight()
+    history.hear(Appeared({}), Discovered({ODOMETRY: OTHERS}))
+    assert history.composed(REFUSAL)[-1] == AwaitReturn(history.state.attempt)
+    assert history.hear(StayedAway(history.state.attempt)) == [Discover()]
+    history.hear(Discovered({} if found else {ODOMETRY: OTHERS}))
+    history.composed(navigation(ODOMETRY) if found else REFUSAL)
+    if not found:  # it is not waited for any longer
+        history.composed(REFUSAL)
+    history.all_answer()
+    assert history.state.phase is (Phase.RUNNING if found else Phase.REFUSED)
 
 
 def test_what_has_not_come_back_in_time_is_a_reason_to_refuse() -> None:
