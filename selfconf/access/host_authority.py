@@ -72,7 +72,7 @@ class HostAuthority:
     def component(self, principal: Principal, also: Sequence[Principal] = ()) -> Path:
         """The folder of a process on this host, by its first component, with a certificate made or renewed now.
 
-        `also` are the other components of the process.
+        `also` are the other components of the process. Raises AuthorError, as where the site's own has expired.
         """
         folder = self._keys.path / "components" / holder_name((principal, *also))
         with exclusive(self._keys.path):
@@ -87,9 +87,15 @@ class HostAuthority:
         return folder
 
     def _component_ends(self) -> datetime:
-        """Until when a component gets a certificate: for no longer than its site has one."""
-        ends = datetime.now(timezone.utc) + timedelta(days=COMPONENT_DAYS)
-        return min(ends, self._keys.own().ends) if (self._keys.path / f"{OWN}.pem").is_file() else ends
+        """Until when a component gets a certificate: for no longer than its site has one. Raises AuthorError."""
+        now = datetime.now(timezone.utc)
+        ends = now + timedelta(days=COMPONENT_DAYS)
+        if (self._keys.path / f"{OWN}.pem").is_file():
+            own = self._keys.own()
+            if own.ends < now:
+                raise AuthorError(f"the certificate of {own.common_name} {own.untimely(now)}")
+            ends = min(ends, own.ends)
+        return ends
 
     def renew_components(self) -> None:
         """Renew the certificates of the processes of this host that are due. Raises AuthorError.

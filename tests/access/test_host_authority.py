@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import stat
+import time
+from datetime import datetime, timezone, tzinfo
 from pathlib import Path
 
 import pytest
 
-from selfconf.access import Authority, HostAuthority, KeysFolder, Principal, PrincipalKind, host_authority
+from selfconf.access import Authority, HostAuthority, KeysFolder, Principal, PrincipalKind, certificates, host_authority
 from selfconf.access.certificate_files import HOST_AUTHORITY, read_pair
-from selfconf.errors import PeerError
+from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
 
 CONF, SITE, COMP = PrincipalKind.CONFIGURATOR, PrincipalKind.SITE, PrincipalKind.COMPONENT
@@ -115,6 +117,26 @@ def test_a_component_has_no_certificate_for_longer_than_its_site(authority: Auth
     authority.renew(attic.path, days=30.0)
     HostAuthority(attic).renew_components()
     assert not component.own().half_over(), "it is renewed when half of its time has passed"
+
+
+def test_a_site_whose_certificate_has_expired_issues_none_and_says_so(
+    authority: Authority, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic", days=0.5)
+    attic = HostAuthority(KeysFolder(tmp_path / "attic"))
+    attic.component(Principal.component(IRI("urn:lamp")))
+
+    class Later(datetime):
+        @classmethod
+        def now(cls, tz: tzinfo | None = None) -> Later:
+            return cls.fromtimestamp(time.time() + 86400.0, tz)
+
+    monkeypatch.setattr(host_authority, "datetime", Later)
+    with pytest.raises(AuthorError, match=r"the certificate of site\.attic has expired at .*; renew it with"):
+        attic.component(Principal.component(IRI("urn:bell")))
+    monkeypatch.setattr(certificates, "_now", lambda: Later.now(timezone.utc))
+    with pytest.raises(AuthorError, match=r"the certificate of site\.attic has expired"):
+        attic.renew_components()
 
 
 def test_of_many_components_none_is_looked_at_closely_that_is_not_due(
