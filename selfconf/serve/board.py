@@ -12,6 +12,7 @@ from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.sparql import QUERY_PREFIXES
 from selfconf.serve.event_stream import EventStream
+from selfconf.serve.merge_patch import merge_patch
 from selfconf.serve.metrics import Metrics
 from selfconf.serve.things import thing_description
 from selfconf.serve.watching.change import Body, EcologyChange
@@ -70,7 +71,10 @@ class Board:
             self.stream.put(CHANGE, {kind: new for kind, new in told.items() if new})
 
     def _advertise(self, component: IRI, found: FoundAdvertisement | None) -> None:
-        """Note an advertisement, and tell of it, unless it is described as before: its site has advertised others."""
+        """Note an advertisement, and tell of it, unless it is described as before: its site has advertised others.
+
+        The event of a thing that was described otherwise says what has changed, as JSON Merge Patch.
+        """
         before, now, thing = self.descriptions.pop(component, None), None, {}
         if found is None:
             self.advertised.pop(component, None)
@@ -80,7 +84,8 @@ class Board:
             now = self.descriptions[component] = json.dumps(thing, ensure_ascii=False)
         if self.ready and before != now:
             kind = THING_EVENTS[2] if now is None else THING_EVENTS[0 if before is None else 1]
-            self.stream.put(kind, {**thing, "id": str(component)})
+            told = thing if now is None or before is None else merge_patch(json.loads(before), thing)
+            self.stream.put(kind, {**told, "id": str(component)})
 
     def knows(self, task: str) -> bool:
         """Whether there is a task of this identity, or was one lately."""

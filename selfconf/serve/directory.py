@@ -82,7 +82,7 @@ class Directory:
         return Response(self._board.descriptions[component], media_type=media[0], headers=headers)
 
     async def events(self, request: Request) -> Response:
-        """`/events` and `/events/{type}`: server-sent events."""
+        """`/events` and `/events/{type}`: server-sent events; with `diff` not the `id` alone, but what is new."""
         kind = request.path_params.get("kind")
         if kind is not None and kind not in THING_EVENTS:
             return problem(404, f"there are events of the types {', '.join(THING_EVENTS)}")

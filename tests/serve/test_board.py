@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from selfconf.serve.board import MOST_SHARED, Board
@@ -44,7 +46,19 @@ def test_a_thing_is_created_updated_and_deleted(board: Board) -> None:
     missed = board.stream.missed(before) or []
     things = [event for event in missed if event.kind.startswith("thing")]
     assert [event.kind for event in things] == ["thing_updated", "thing_deleted", "thing_created"]
+    assert things[0].data == {"id": iri("person-tracker"), "title": "the tracker"}, "no more than has changed"
     assert things[1].data == {"id": gone}
+    assert things[2].data == json.loads(board.descriptions[gone])
+
+
+def test_what_a_thing_has_no_more_is_told_as_gone(board: Board) -> None:
+    tracker = found("tracker", ":person-tracker rdfs:comment 'in the hall' .")
+    component = tracker.advertisement.component
+    board.apply(EcologyChange({component: tracker}))
+    before = board.stream.last
+    board.apply(EcologyChange({component: found("tracker")}))
+    (event,) = board.stream.missed(before) or ()
+    assert event.data == {"id": component, "description": None}
 
 
 @pytest.mark.parametrize(
