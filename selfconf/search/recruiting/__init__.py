@@ -5,11 +5,11 @@
   not told otherwise, `REPAIR_STEPS` how long a repair does.
 * `refusal_of_recruits` is the refusal of a problem whose players have no recruits.
 * `founded` is the solver for players and recruits together, `fewest_of` the fewest recruits that its clauses allow.
-* A `RecruitChoice` holds the recruits that matter to the players of one configuration; `players_of` names these.
+* A `RecruitChoice` holds the recruits that matter to the players of one configuration.
 """
 
 from selfconf.search.recruiting.fewest_recruits import fewest_of
-from selfconf.search.recruiting.recruit_choice import RecruitChoice, players_of
+from selfconf.search.recruiting.recruit_choice import RecruitChoice
 from selfconf.search.recruiting.recruit_refusal import refusal_of_recruits
 from selfconf.search.recruiting.recruiting import (
     RECRUIT_STEPS,
@@ -27,7 +27,6 @@ __all__ = [
     "fewest_of",
     "first_recruited",
     "founded",
-    "players_of",
     "possible_with_recruits",
     "recruited",
     "refusal_of_recruits",

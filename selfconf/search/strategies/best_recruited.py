@@ -39,7 +39,6 @@ from selfconf.search.recruiting import (
     fewest_of,
     first_recruited,
     founded,
-    players_of,
     recruited,
 )
 from selfconf.search.reduction import Option, ReducedProblem, assigned, in_order, pruned, with_recruits
@@ -189,43 +188,45 @@ def with_priced_recruits(
     price = cache(partial(recruit_cost, problem, running=running))
     whole = recruited(problem, optimum.configuration, running, steps, price)
     if whole is not None:
-        return priced(problem, optimum, whole[0])
+        return _priced(problem, optimum, whole[0], running)
     other = first_recruited(problem, steps, running, price)
     # Of these players nothing is known but that they come first.
-    return priced(problem, replace(optimum, proved=False), other) if isinstance(other, Configuration) else other
+    unproved = replace(optimum, proved=False)
+    return _priced(problem, unproved, other, running) if isinstance(other, Configuration) else other
 
 
-def priced(problem: Problem, optimum: Optimum, configuration: Configuration) -> Optimum:
+def _priced(problem: Problem, optimum: Optimum, configuration: Configuration, running: Configuration | None) -> Optimum:
     """Return an optimum with a configuration that has recruits: these cost as players do, in no role.
 
     What a solution costs is what its first players cost, as many as each role asks for, and its recruits. That nothing
     costs less is proved only where there are no recruits, and none could make a solution cheaper.
     """
+    chosen = [n for n, recruit in enumerate(problem.supply.recruits) if recruit.component in configuration.recruits]
+    costs = CostTable(problem, running, chosen)
+    players = _first_players(problem, configuration)
+    spent, alone = costs.levels(players, chosen), costs.levels(_first_players(problem, optimum.configuration))
+    # Where a leading level could be less, the bounds of the stated levels hold no more.
+    tight = spent[:LEADING_LEVELS] == alone[:LEADING_LEVELS]
+    lowest = tuple(amount * sum(map(len, players)) for amount in costs.lowest)
+    profiles = [recruit.profile for recruit in problem.supply.recruits]
     levels, hierarchy = problem.task.template.cost, problem.hierarchy
-    profiles = {recruit.component: recruit.profile for recruit in problem.supply.recruits}
-    minima = {
-        c
-        for a, role in zip(configuration.assignments, problem.roles, strict=True)
-        for c in a.components[: role.minimum]
-    }
-    counted = [
-        (problem.roles[number].iri, profile)
-        for component, (number, profile) in players_of(problem, configuration)
-        if component in minima
-    ]
-    counted += [(NO_ROLE, profiles[component]) for component in configuration.recruits]
-    amounts = [cost(levels, role, profile, hierarchy)[1:] for role, profile in counted]
-    cheaper = any(amount < 0 for one in profiles.values() for amount in cost(levels, NO_ROLE, one, hierarchy))
+    cheaper = any(amount < 0 for one in profiles for amount in cost(levels, NO_ROLE, one, hierarchy))
     return replace(
         optimum,
         configuration=configuration,
-        bound=_with_cheapest(problem, optimum.bound),
-        cost=tuple(sum(level, Fraction(0)) for level in zip(*amounts, strict=True)),
-        missing=tuple(
-            (one.component, wanted) for role, one in counted for wanted in unknown(levels, role, one, hierarchy)
-        ),
+        bound=_with_cheapest(problem, optimum.bound if tight else lowest[LEADING_LEVELS:]),
+        cost=spent[LEADING_LEVELS:],
+        missing=tuple(_missing(problem, players, [profiles[number] for number in chosen])),
         proved=optimum.proved and not configuration.recruits and not cheaper,
     )
+
+
+def _first_players(problem: Problem, configuration: Configuration) -> list[list[Candidate]]:
+    """Return the players of a configuration without those beyond what the roles ask for."""
+    return [
+        [c for one in a.components[: role.minimum] for c in candidates if c.profile.component == one]
+        for a, role, candidates in zip(configuration.assignments, problem.roles, problem.candidates, strict=True)
+    ]
 
 
 def _with_cheapest(problem: Problem, bound: tuple[Fraction, ...]) -> tuple[Fraction, ...]:

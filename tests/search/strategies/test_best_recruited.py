@@ -24,6 +24,7 @@ from selfconf.search.strategies import best
 from tests.search.chance import Chance, by_chance
 from tests.search.oracle import Players
 from tests.search.recruiting.test_recruiting import RecruitingWorld, a_recruiting_problem, with_recruits
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, component, iri, problem
 
 LATENCY, ERROR = iri("latency"), iri("error")
@@ -167,6 +168,18 @@ def dear_before_cheap() -> Problem:
     helped = with_recruits(problem({"user": [user]}), *some)
     template = replace(helped.task.template, cost=((CostTerm(LATENCY),),))
     return Problem(replace(helped.task, template=template), helped.partition)
+
+
+def test_without_a_solver_a_bound_holds_though_recruits_are_of_unknown_cost() -> None:
+    users = [stated(component("user", "s:S"), latency=2), component("alone")]
+    helped = with_recruits(problem({"user": users}), component("supplier", "", "s:S"))
+    template = replace(helped.task.template, cost=((CostTerm(LATENCY),),))
+    with without_solvers():
+        answer = best.best_configuration(Problem(replace(helped.task, template=template), helped.partition))
+    assert isinstance(answer, Optimum)
+    assert (answer.cost, answer.unknown, answer.proved) == ((Fraction(2),), 1, False)
+    # The other user, whose latency is not known either, needs no recruit: with it the level is 0.
+    assert answer.bound == (Fraction(0),)
 
 
 def test_of_recruits_that_issue_the_same_the_cheapest_is_taken() -> None:
