@@ -91,7 +91,7 @@ class InsideProspect:
         without = lost | (held.keys() - shared)
         try:
             outcome, _ = agreed(
-                lambda left_out: self._request.compose(known, without | left_out, None), shared, lambda one: one
+                lambda left_out: self._request.compose(known, left_out | without, None), shared, lambda one: one
             )
         except SelfconfError:
             return False

@@ -19,6 +19,7 @@ from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import replace
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.keys import Keys, safe_name
@@ -206,10 +207,12 @@ class Composites:
     def _request(self, inside: Inside, values: Mapping[str, Term], fed: Callable[[], Set[str]]) -> RunRequest:
         component, composer = inside.composite, inside.composer_with(values)
 
-        def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
+        def compose(
+            found: Mapping[IRI, Advertisement], left_out: frozenset[Barred], running: Configuration | None
+        ) -> Outcome:
             composer.leave_unfed(inside.optional - fed())
             local = {one: a for one, a in found.items() if one in self._advertisements and one != component}
-            return composer.compose(local, lost, running)
+            return composer.compose(local, left_out, running)
 
         request = RunRequest.of(composer, compose)
         return replace(request, name=safe_name(component.short), believed=self._believed, aside=self._aside)

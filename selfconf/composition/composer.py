@@ -19,7 +19,7 @@ from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.obstacle import NotJudged
 from selfconf.model.optimum import Optimum
-from selfconf.model.partition import ANY_VALUE, Candidate, NearMiss, Partition, Variable
+from selfconf.model.partition import ANY_VALUE, Barred, Candidate, NearMiss, Partition, Variable
 from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, ValueUnknown
 from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.term import IRI
@@ -152,16 +152,16 @@ class Composer:
         return few | fed
 
     def compose(
-        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+        self, ecology: Mapping[IRI, Advertisement], left_out: frozenset[Barred], running: Configuration | None
     ) -> Outcome:
-        """The configuration without the lost components, keeping what runs where that can be; or why there is none."""
-        *_, answer = self.answers(ecology, lost, running)
+        """The configuration without what is left out, keeping what runs where that can be; or why there is none."""
+        *_, answer = self.answers(ecology, left_out, running)
         return answer.configuration if isinstance(answer, Optimum) else answer
 
     def answers(
         self,
         ecology: Mapping[IRI, Advertisement],
-        lost: frozenset[IRI],
+        left_out: frozenset[Barred],
         running: Configuration | None,
         played: tuple[IRI, IRI] | None = None,
     ) -> Iterator[Optimum | Outcome]:
@@ -171,10 +171,10 @@ class Composer:
         may play it, for a question about an alternative. A configuration is certified before it is handed
         out, by rules that share nothing with the search.
         """
-        lost -= {self.outside}  # the task that holds the composite is the one that its inside is for
+        left_out -= {self.outside}  # the task that holds the composite is the one that its inside is for
         if running is not None and self.outside is not None:
             running = with_outside_player(running, self.outside)
-        problem = self._problem(self.partition(ecology), lost, played)
+        problem = self._problem(self.partition(ecology), left_out, played)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
         for answer in self.searches.answers(problem, running):
             outcome = answer.configuration if isinstance(answer, Optimum) else answer
@@ -186,14 +186,16 @@ class Composer:
             elif isinstance(outcome, Refusal) and outcome.reasons:
                 short = frozenset(reason.role for reason in outcome.reasons if isinstance(reason, TooFewEligible))
                 if short not in misses:
-                    misses[short] = tuple(near_misses(self.partitioner, self.gathered(ecology), short or None, lost))
+                    misses[short] = tuple(
+                        near_misses(self.partitioner, self.gathered(ecology), short or None, left_out)
+                    )
                 yield replace(outcome, near_misses=misses[short])
             else:
                 yield outcome
 
-    def _problem(self, partition: Partition, lost: frozenset[IRI], played: tuple[IRI, IRI] | None) -> Problem:
-        """What is to be searched: without the lost components, and with one player for a role where that is asked."""
-        partition = partition.without(lost) if lost else partition
+    def _problem(self, partition: Partition, left_out: frozenset[Barred], played: tuple[IRI, IRI] | None) -> Problem:
+        """What is to be searched: without what is left out, and with one player for a role where that is asked."""
+        partition = partition.without(left_out) if left_out else partition
         if played is not None:
             number = next(n for n, role in enumerate(self._task.template.roles) if role.iri == played[0])
             partition = partition.with_only(number, played[1])

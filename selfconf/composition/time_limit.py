@@ -17,6 +17,7 @@ from typing import TypeVar
 from selfconf.composition.composer import Composer
 from selfconf.model.configuration import Configuration
 from selfconf.model.optimum import Optimum
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Outcome, Undecided
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
@@ -75,7 +76,7 @@ def _calls_ended_after(seconds: float) -> Iterator[None]:
 def composed(
     composer: Composer,
     ecology: Mapping[IRI, Advertisement],
-    lost: frozenset[IRI],
+    left_out: frozenset[Barred],
     running: Configuration | None,
     limit: TimeLimit,
 ) -> Optimum | Outcome:
@@ -84,7 +85,7 @@ def composed(
     answers: list[Optimum | Outcome] = []
 
     def gather() -> bool:
-        for answer in composer.answers(ecology, lost, running):
+        for answer in composer.answers(ecology, left_out, running):
             answers.append(answer)
         return True
 

@@ -8,6 +8,7 @@ from dataclasses import field
 from selfconf.configurator.starting_order import Callers
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Wire
@@ -20,10 +21,10 @@ class Discover:
 
 @immutable
 class Compose:
-    """Act 3: search for a configuration without the lost components, which keeps as much of `running` as it can."""
+    """Act 3: search for a configuration without what is left out, which keeps as much of `running` as it can."""
 
     attempt: int
-    lost: frozenset[IRI]
+    left_out: frozenset[Barred]
     running: Configuration | None
 
 

@@ -18,6 +18,7 @@ from selfconf.deployment.run_request import RunRequest
 from selfconf.errors import SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.obstacle import NotJudged
+from selfconf.model.partition import Barred
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 
@@ -62,7 +63,7 @@ class Contingencies:
         self._bus, self._request, self._advertised, self._runs = bus, request, advertised, runs
         self._supposed: _Supposed | None = None
         """That for which they are found out now, or have been."""
-        self._known: dict[IRI, Contingency | None] = {}
+        self._known: dict[Barred, Contingency | None] = {}
         """By the component that is lost, None where there is no configuration, or was no time to find it; replaced with
         what is supposed, and filled by another thread."""
         self._next: tuple[frozenset[IRI], Configuration] | None = None
@@ -93,7 +94,7 @@ class Contingencies:
             known = self._known
             self._request.at_leisure(lambda: self._find_out(supposed, known))
 
-    def _find_out(self, supposed: _Supposed, known: dict[IRI, Contingency | None]) -> None:
+    def _find_out(self, supposed: _Supposed, known: dict[Barred, Contingency | None]) -> None:
         """Search without each component that is not known about; interrupted, it goes on with the next one.
 
         Unless that has taken too long already: a search that is interrupted again and again would never rest.
@@ -121,11 +122,16 @@ class Contingencies:
                     known.setdefault(component, None)
 
     def answer(
-        self, found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+        self, found: Mapping[IRI, Advertisement], left_out: frozenset[Barred], running: Configuration | None
     ) -> Contingency | None:
         """What the search answers if it is asked this, where that is known and is a configuration."""
         supposed = self._supposed
-        if supposed is None or supposed.running is not running or not supposed.lost < lost or supposed.found != found:
+        if (
+            supposed is None
+            or supposed.running is not running
+            or not supposed.lost < left_out
+            or supposed.found != found
+        ):
             return None
-        more = lost - supposed.lost
+        more = left_out - supposed.lost
         return self._known.get(next(iter(more))) if len(more) == 1 else None

@@ -17,6 +17,7 @@ from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import NotJudged
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent
 from selfconf.model.template import Task
@@ -26,7 +27,7 @@ from selfconf.protocol.messages import TaskRecord, Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.tasks import TaskDocument
 
-ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[IRI], "Configuration | None"], Outcome]
+ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[Barred], "Configuration | None"], Outcome]
 """Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
 
 Aside = Callable[[Callable[[], None]], Undo]
@@ -57,7 +58,7 @@ class TaskComposer(Protocol):
         """The task."""
 
     def compose(
-        self, ecology: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None
+        self, ecology: Mapping[IRI, Advertisement], left_out: frozenset[Barred], running: Configuration | None
     ) -> Outcome:
         """Act 3."""
 

@@ -17,6 +17,7 @@ from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
 from selfconf.model.obstacle import NotJudged
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import ComponentLeftOut, SearchEnded
 from selfconf.model.term import IRI
@@ -29,7 +30,7 @@ class _Better(NamedTuple):
     """The answer to a search for something better than what runs, and what it was about."""
 
     found: Mapping[IRI, Advertisement]
-    lost: frozenset[IRI]
+    left_out: frozenset[Barred]
     outcome: Outcome
     not_judged: Mapping[IRI, NotJudged]
 
@@ -64,13 +65,13 @@ class TaskSearch:
         self._outdated()  # the answer of an earlier search is not looked at any more
         found, began = self._advertised(), time.monotonic()
         ignores_holders = self._state().ignores_holders
-        known = None if ignores_holders else self._contingencies.answer(found, effect.lost, effect.running)
+        known = None if ignores_holders else self._contingencies.answer(found, effect.left_out, effect.running)
         if known is not None:
             composed = Composed(effect.attempt, known.configuration, plan=known.plan)
             self._composed(composed, time.monotonic() - began, known.not_judged)
             return
         better, looks_again = self._better, self._runs
-        if looks_again and better is not None and (better.found, better.lost) == (found, effect.lost):
+        if looks_again and better is not None and (better.found, better.left_out) == (found, effect.left_out):
             self._composed(Composed(effect.attempt, better.outcome), time.monotonic() - began, better.not_judged)
             return
         taken, refused = self._state().taken.keys(), self._state().refusal if ignores_holders else None
@@ -78,7 +79,7 @@ class TaskSearch:
         def work() -> None:
             began = time.monotonic()
             try:
-                outcome = self._request.compose(found, effect.lost, effect.running)
+                outcome = self._request.compose(found, effect.left_out, effect.running)
                 plan = plan_of(outcome) if isinstance(outcome, Configuration) else None
                 not_judged = dict(self._request.not_judged())
                 refusal = outcome if isinstance(outcome, Refusal) else refused
@@ -97,7 +98,7 @@ class TaskSearch:
             seconds = time.monotonic() - began
             composed = Composed(effect.attempt, outcome, frozenset(usable), plan)
             if looks_again and not isinstance(outcome, Undecided):
-                self._better = _Better(found, effect.lost, outcome, not_judged)
+                self._better = _Better(found, effect.left_out, outcome, not_judged)
             self._bus.wake_up(lambda: self._searched(composed, seconds, not_judged))
 
         self._outdated = self._request.aside(work)

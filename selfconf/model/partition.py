@@ -14,7 +14,7 @@ properties or ports are amiss, `composition.near_misses` those that feed nothing
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import field
 from decimal import Decimal
 
@@ -109,6 +109,9 @@ class NearMiss:
         return self.obstacle.clause
 
 
+Barred = IRI | tuple[int | None, IRI]
+"""What a search is barred from: a component, or one only as the player of a role, which is given by its number, or as
+a recruit (None)."""
 Unissuable = tuple[int | None, str | None, WantedSignal]
 """What an input wants that no component to add could be known to issue: for a role by its number, or to be recruited
 (None), and by an output of that name, where an interaction asks for one."""
@@ -135,11 +138,21 @@ class Partition:
         """The free parameters that the shape of a role, given by its number, mentions."""
         return self.mentions[role] if role < len(self.mentions) else ()
 
-    def without(self, lost: frozenset[IRI]) -> Partition:
-        """The partition once some components, and with them the values that no other states, have left the ecology."""
-        recruits = tuple(recruit for recruit in self.recruits if recruit.component not in lost)
-        left = tuple(tuple(c for c in role if c.profile.component not in lost) for role in self.candidates)
-        return self._narrowed(left, recruits)
+    def without(self, left_out: Set[Barred]) -> Partition:
+        """The partition without some components, and without the values that none of those left states."""
+        gone, less = set[IRI](), dict[int | None, set[IRI]]()
+        for one in left_out:
+            if isinstance(one, IRI):
+                gone.add(one)
+            else:
+                less.setdefault(one[0], set()).add(one[1])
+        of_roles = [gone | less.get(number, set()) for number in range(len(self.candidates))]
+        left = tuple(
+            tuple(candidate for candidate in some if candidate.profile.component not in without)
+            for some, without in zip(self.candidates, of_roles, strict=True)
+        )
+        without = gone | less.get(None, set())
+        return self._narrowed(left, tuple(recruit for recruit in self.recruits if recruit.component not in without))
 
     def without_recruits(self) -> Partition:
         """The partition with which players have to be enough."""

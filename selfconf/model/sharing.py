@@ -1,8 +1,8 @@
 """What a search leaves out, so that no other task wants something else of the components that it shares.
 
 A component that other tasks hold and would share counts for a search until a configuration is found that wants
-something else of it than its holder. Then the search is made again without the sources that it is not to follow, and
-if there is no configuration without these, without the component itself.
+something else of it than its holder. Then the search is made again without the sources that it is not to follow, in
+the roles in which they would feed it, and if there is no configuration so, without the component itself.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from typing import TypeVar
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 
-Avoided = Mapping[IRI, IRI]
-"""The sources that a search leaves out, each with the shared component that is not to follow it."""
+Avoided = Mapping[Barred, IRI]
+"""The sources that a search does without in the roles in which they would feed a shared component, with that."""
 MOST_AVOIDED = 10
 """How many sources a search avoids before it does without the components that would follow them."""
 Found = TypeVar("Found")
@@ -24,7 +25,7 @@ Found = TypeVar("Found")
 
 def avoid(
     contested: Mapping[IRI, Holder], configuration: Configuration, avoided: Avoided
-) -> tuple[dict[IRI, Holder], dict[IRI, IRI]]:
+) -> tuple[dict[IRI, Holder], dict[Barred, IRI]]:
     """The components to count as taken, and the sources to avoid, after a configuration that others contest.
 
     `contested` are the components of which their holders want something else, `avoided` what was avoided for it. A
@@ -35,10 +36,16 @@ def avoid(
         wanted = {source for _, source, _ in holder.wants.inputs}
         sources = {source for _, source, _ in configuration.wants(component).inputs} - wanted
         if sources and len(more) < MOST_AVOIDED:
-            more.update(dict.fromkeys(sorted(sources), component))
+            more.update(((_number_of_role(configuration, source), source), component) for source in sorted(sources))
         else:
             taken[component] = holder
     return taken, more
+
+
+def _number_of_role(configuration: Configuration, component: IRI) -> int | None:
+    """The number of the role that a component plays; None if it is a recruit."""
+    playing = (number for number, one in enumerate(configuration.assignments) if component in one.components)
+    return next(playing, None)
 
 
 def avoided_in_vain(avoided: Avoided, sharers: Mapping[IRI, Holder]) -> dict[IRI, Holder]:
@@ -47,7 +54,7 @@ def avoided_in_vain(avoided: Avoided, sharers: Mapping[IRI, Holder]) -> dict[IRI
 
 
 def agreed(
-    search: Callable[[frozenset[IRI]], Found],
+    search: Callable[[frozenset[Barred]], Found],
     sharers: Mapping[IRI, Holder],
     configuration_of: Callable[[Found], object],
 ) -> tuple[Found, dict[IRI, Holder]]:

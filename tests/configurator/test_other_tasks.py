@@ -74,7 +74,7 @@ def test_what_tasks_of_a_lower_priority_hold_than_a_task_now_has_counts_for_the_
     history.all_answer()
     history.hear(Ranked(OTHERS.priority + 1))
     (search,) = [one for one in history.hear(Failed(TRACKER, "1", Cause.FAIL)) if isinstance(one, Compose)]
-    assert search.lost == frozenset({TRACKER})
+    assert search.left_out == frozenset({TRACKER})
 
 
 def test_what_tasks_of_the_same_or_a_higher_priority_hold_does_not_count_for_the_search() -> None:
@@ -140,8 +140,8 @@ def test_what_can_be_shared_counts_as_long_as_all_want_the_same_of_it() -> None:
 def test_what_can_be_shared_is_taken_where_its_holder_wants_something_else_of_it() -> None:
     history = History(TASK)
     history.hear(Accepted(100), Discovered({}, sharers(navigation(ODOMETRY))))
-    assert history.composed(navigation()) == [Compose(2, frozenset({TRACKER}), None)], (
-        "at first without what it follows"
+    assert history.composed(navigation()) == [Compose(2, frozenset({(0, TRACKER)}), None)], (
+        "at first without what it follows, in that role"
     )
     assert history.composed(REFUSAL) == [Compose(3, frozenset({CONTROL}), None)]
     assert history.composed(REFUSAL) == [Compose(4, frozenset(), None)]

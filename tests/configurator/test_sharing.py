@@ -120,14 +120,14 @@ def test_what_others_share_is_not_changed_for_the_better() -> None:
 def test_what_others_share_is_known_before_it_is_changed_for_the_better() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
     history.hear(Improvable(), Discovered({}, sharers(navigation(ODOMETRY))))
-    assert history.composed(navigation()) == [Compose(history.state.attempt, frozenset({TRACKER}), None)]
+    assert history.composed(navigation()) == [Compose(history.state.attempt, frozenset({(0, TRACKER)}), None)]
     assert history.composed(navigation(ODOMETRY)) == []
 
 
 def test_a_component_is_shared_as_its_holder_wants_where_that_can_be() -> None:
     history = History(TASK)
     history.hear(Accepted(100), Discovered({}, sharers(navigation(ODOMETRY))))
-    assert history.composed(navigation()) == [Compose(2, frozenset({TRACKER}), None)]
+    assert history.composed(navigation()) == [Compose(2, frozenset({(0, TRACKER)}), None)]
     history.composed(navigation(ODOMETRY))
     history.all_answer()
     assert history.state.phase is Phase.RUNNING

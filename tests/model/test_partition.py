@@ -13,6 +13,7 @@ from selfconf.model.partition import (
     Mention,
     NearMiss,
     Partition,
+    Recruit,
     Variable,
     candidate_order,
     ordered,
@@ -39,6 +40,15 @@ def test_a_partition_without_the_lost_keeps_everybody_else_in_order() -> None:
     a, b, c = (Candidate(Profile(IRI(f"urn:{name}")), (1,)) for name in "abc")
     partition = Partition(((a, b), (b, c)), (Variable(IRI("urn:p"), (IRI("urn:x"),)),))
     assert partition.without(frozenset({IRI("urn:b")})) == Partition(((a,), (c,)), partition.variables)
+
+
+def test_a_component_can_be_left_out_of_one_role_or_as_a_recruit_alone() -> None:
+    a, b = (Candidate(Profile(IRI(f"urn:{name}"))) for name in "ab")
+    recruits = tuple(Recruit(one.profile, frozenset({0})) for one in (a, b))
+    partition = Partition(((a, b), (a, b)), recruits=recruits)
+    assert partition.without({(1, IRI("urn:a")), (None, IRI("urn:b"))}) == Partition(
+        ((a, b), (b,)), recruits=recruits[:1]
+    )
 
 
 def test_values_that_only_the_lost_stated_are_lost_with_them() -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from itertools import chain, combinations, product
+from collections.abc import Sequence, Set
+from itertools import product
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.holder import Holder
+from selfconf.model.immutable import replace
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Refusal
 from selfconf.model.sharing import MOST_AVOIDED, agreed, avoid, contested_by
 from selfconf.model.term import IRI
@@ -18,16 +21,26 @@ TRACKERS = tuple(IRI(f"urn:c:tracker{number}") for number in range(3))
 REFUSAL = Refusal(IRI("urn:t:watch"), ())
 
 
-def watching(camera: IRI, tracker: IRI) -> Configuration:
-    """A tracker follows a camera."""
-    players = (Assignment(IRI("urn:r:eye"), (camera,)), Assignment(IRI("urn:r:tracker"), (tracker,)))
+EYE, TRACKER, GUARD = range(3)
+"""The numbers of the roles."""
+
+
+def watching(camera: IRI, tracker: IRI, guard: IRI | None = None) -> Configuration:
+    """A tracker follows a camera; another camera may keep guard."""
+    roles = (("eye", camera), ("tracker", tracker), *([("guard", guard)] if guard else []))
+    players = tuple(Assignment(IRI(f"urn:r:{role}"), (component,)) for role, component in roles)
     return Configuration(IRI("urn:t:watch"), players, (Connection(camera, "image", tracker, "image"),))
 
 
-def first(left_out: frozenset[IRI]) -> Configuration | Refusal:
-    """The first configuration without some components."""
-    pairs = ((t, c) for t, c in product(TRACKERS, CAMERAS) if not {t, c} & left_out)
-    return next((watching(camera, tracker) for tracker, camera in pairs), REFUSAL)
+def first(left_out: Set[Barred], guarded: bool = False) -> Configuration | Refusal:
+    """The first configuration without some components, or without some as the players of roles."""
+
+    def free(components: tuple[IRI, ...], role: int) -> list[IRI]:
+        return [one for one in components if one not in left_out and (role, one) not in left_out]
+
+    guards: Sequence[IRI | None] = free(CAMERAS, GUARD) if guarded else (None,)
+    choices = product(free(TRACKERS, TRACKER), free(CAMERAS, EYE), guards)
+    return next((watching(eye, tracker, guard) for tracker, eye, guard in choices if guard != eye), REFUSAL)
 
 
 def holders(followed: tuple[int | None, ...]) -> dict[IRI, Holder]:
@@ -44,20 +57,33 @@ def itself(outcome: Configuration | Refusal) -> object:
     return outcome
 
 
-@given(st.tuples(*[st.sampled_from((None, 0, 1, 2, 3))] * 3), st.sets(st.sampled_from(CAMERAS)))
+@given(st.tuples(*[st.sampled_from((None, 0, 1, 2, 3))] * 3), st.sets(st.sampled_from(CAMERAS)), st.booleans())
 def test_a_configuration_is_found_that_all_agree_with_if_there_is_one(
-    followed: tuple[int | None, ...], gone: set[IRI]
+    followed: tuple[int | None, ...], gone: set[IRI], guarded: bool
 ) -> None:
     sharers = holders(followed)
-    found, taken = agreed(lambda left_out: first(left_out | gone), sharers, itself)
-    everybody = (*TRACKERS, *CAMERAS)
-    choices = chain.from_iterable(combinations(everybody, count) for count in range(len(everybody)))
-    all_of_them = [first(frozenset(some) | gone) for some in choices]
-    good = [one for one in all_of_them if isinstance(one, Configuration) and not contested_by(sharers, one)]
+    found, taken = agreed(lambda left_out: first(left_out | gone, guarded), sharers, itself)
+    cameras = [camera for camera in CAMERAS if camera not in gone]
+    guards: Sequence[IRI | None] = cameras if guarded else (None,)
+    choices = [one for one in product(cameras, TRACKERS, guards) if one[0] != one[2]]
+    good = [watching(*one) for one in choices if not contested_by(sharers, watching(*one))]
     assert bool(good) == isinstance(found, Configuration)
     if isinstance(found, Configuration):
         assert not contested_by(sharers, found)
         assert not taken.keys() & set(found.components)
+
+
+def test_a_source_is_avoided_only_where_it_would_feed_the_shared_component() -> None:
+    """Of two cameras the tracker is to follow the second, so that the first can keep guard."""
+    sharers, others = holders((1, None, None)), frozenset({*CAMERAS[2:], *TRACKERS[1:]})
+    found, taken = agreed(lambda left_out: first(left_out | others, guarded=True), sharers, itself)
+    assert (found, taken) == (watching(CAMERAS[1], TRACKERS[0], CAMERAS[0]), {})
+
+
+def test_a_recruit_is_avoided_as_a_recruit() -> None:
+    recruited = replace(watching(CAMERAS[0], TRACKERS[0]), assignments=(), recruits=(CAMERAS[0],))
+    sharers = holders((1, None, None))
+    assert avoid(sharers, recruited, {}) == ({}, {(None, CAMERAS[0]): TRACKERS[0]})
 
 
 def test_a_component_is_taken_after_so_many_sources_were_avoided_for_it() -> None:
@@ -65,10 +91,10 @@ def test_a_component_is_taken_after_so_many_sources_were_avoided_for_it() -> Non
     holder = Holder("other~1", wants=watching(IRI("urn:c:gone"), TRACKERS[0]).wants(TRACKERS[0]))
     searches = 0
 
-    def search(left_out: frozenset[IRI]) -> Configuration | Refusal:
+    def search(left_out: frozenset[Barred]) -> Configuration | Refusal:
         nonlocal searches
         searches += 1
-        free = [camera for camera in cameras if camera not in left_out]
+        free = [camera for camera in cameras if (EYE, camera) not in left_out]
         return watching(free[0], TRACKERS[0]) if TRACKERS[0] not in left_out else REFUSAL
 
     found, taken = agreed(search, {TRACKERS[0]: holder}, itself)

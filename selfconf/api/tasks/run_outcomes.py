@@ -19,6 +19,7 @@ from selfconf.deployment import ComposeFunction
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.optimum import Optimum
+from selfconf.model.partition import Barred
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import (
     AnyRunEvent,
@@ -86,10 +87,12 @@ class RefusalAmong(Refusal):
     ecology: Mapping[IRI, Advertisement] = field(kw_only=True, repr=False, compare=False)
 
 
-def outcome_among(answer: Optimum | Outcome, found: Mapping[IRI, Advertisement], lost: Collection[IRI]) -> Outcome:
-    """What a search in an ecology without its lost components has come to: a refusal keeps that ecology."""
+def outcome_among(
+    answer: Optimum | Outcome, found: Mapping[IRI, Advertisement], left_out: Collection[Barred]
+) -> Outcome:
+    """What a search in an ecology without what is left out has come to: a refusal keeps that ecology."""
     if isinstance(answer, Refusal):
-        able = FrozenMapping({component: one for component, one in found.items() if component not in lost})
+        able = FrozenMapping({component: one for component, one in found.items() if component not in left_out})
         return RefusalAmong(**{one.name: getattr(answer, one.name) for one in fields(Refusal)}, ecology=able)
     return answer.configuration if isinstance(answer, Optimum) else answer
 
@@ -97,8 +100,10 @@ def outcome_among(answer: Optimum | Outcome, found: Mapping[IRI, Advertisement],
 def composing(composer: Composer, seconds: float | None = None) -> ComposeFunction:
     """Act 3 of a run: the best answer of a composer within some seconds; a refusal keeps the ecology it is about."""
 
-    def compose(found: Mapping[IRI, Advertisement], lost: frozenset[IRI], running: Configuration | None) -> Outcome:
-        return outcome_among(composed(composer, found, lost, running, TimeLimit(seconds)), found, lost)
+    def compose(
+        found: Mapping[IRI, Advertisement], left_out: frozenset[Barred], running: Configuration | None
+    ) -> Outcome:
+        return outcome_among(composed(composer, found, left_out, running, TimeLimit(seconds)), found, left_out)
 
     return compose
 

@@ -11,7 +11,7 @@ from operator import attrgetter
 
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, ParameterForbids, ShapeViolated
-from selfconf.model.partition import NearMiss
+from selfconf.model.partition import Barred, NearMiss
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_values
@@ -72,7 +72,7 @@ def near_misses(
     partitioner: Partitioner,
     advertisements: Advertisements,
     roles: Container[IRI] | None = None,
-    lost: Container[IRI] = (),
+    lost: Container[Barred] = (),
 ) -> Iterator[NearMiss]:
     """For each role the components of its class that exactly one other thing keeps out, with that obstacle.
 
