@@ -229,6 +229,8 @@ def complain_of_strategy(given: argparse.Namespace, task: TaskSpecification) -> 
 def given_ecology(given: argparse.Namespace) -> Ecology:
     """The ecology that the arguments name: files, an endpoint, or else the living one, to be closed by `close`."""
     one_ecology(given)
+    if given.ads is not None or given.endpoint is not None:
+        not_living(given, "--endpoint" if given.ads is None else "--ads")
     if given.ads is not None:
         return read_files(given.ads)
     if given.endpoint is not None:
@@ -242,6 +244,13 @@ def one_ecology(given: argparse.Namespace) -> None:
     """Raises AuthorError where two ecologies are named."""
     if given.ads is not None and given.endpoint is not None:
         raise AuthorError("--ads and --endpoint are two ecologies; give one of them")
+
+
+def not_living(given: argparse.Namespace, option: str) -> None:
+    """Raises AuthorError where an option names an ecology that does not live, and a living one is typed as well."""
+    for one in ("ecology", "connect"):
+        if getattr(given, one) and one not in given.from_project:
+            raise AuthorError(f"{option} is an ecology of its own, and --{one} is for the living one; give one of them")
 
 
 def read_files(paths: Iterable[Path]) -> Ecology:

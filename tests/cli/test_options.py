@@ -135,6 +135,17 @@ def test_two_ecologies_are_one_too_many(command: str, template: Path, capsys: py
     assert run(capsys, command, str(template), *BOUND, *given).is_one_sentence("give one of them")
 
 
+@pytest.mark.parametrize("living", [("--ecology", "home"), ("--connect", "tcp/127.0.0.1:9")])
+@pytest.mark.parametrize("given", [("--ads", "."), ("--endpoint", "http://127.0.0.1:9/query")])
+def test_a_living_ecology_is_not_passed_over_for_another(
+    given: tuple[str, str], living: tuple[str, str], template: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for command in ("configure", "partition"):
+        outcome = run(capsys, command, str(template), *BOUND, *given, *living)
+        assert outcome.is_one_sentence(given[0], living[0], "give one of them")
+    assert run(capsys, "query", "SELECT * {}", *given, *living).is_one_sentence(given[0], living[0])
+
+
 def test_a_folder_without_advertisements_is_named(template: Path, capsys: pytest.CaptureFixture[str]) -> None:
     empty = template.parent / "empty"
     empty.mkdir()
