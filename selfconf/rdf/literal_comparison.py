@@ -115,6 +115,13 @@ def has_value(literal: Literal) -> bool:
     return isinstance(found, rdflib.Literal) and found.value is not None
 
 
+def comparable(one: Term, other: Term) -> bool:
+    """Whether two literals are of one value space; what is of another has no order beside either (SPARQL 1.1, 17.3)."""
+    first, second = rdflib_term(one), rdflib_term(other)
+    literals = isinstance(first, rdflib.Literal) and isinstance(second, rdflib.Literal)
+    return literals and _value_space(first) == _value_space(second)
+
+
 def order(value: Term, limit: Term) -> int | None:
     """How a value compares with a limit: negative, zero or positive; None where the two have no order (SHACL, 4.3)."""
     return _order(rdflib_term(value), rdflib_term(limit))

@@ -1,12 +1,13 @@
 """SHACL without pySHACL: constraints on single values as compiled tests, and the syntax of shapes.
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
-makes tests of the constraints that can be; two `exclude` each other if no value passes both. `misfit`, `unfit`,
-`of_values`, `said_twice`, `said_alone`, `LISTS`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
-`ILL_FORMED` say what may stand as a value of SHACL's own properties. `component_parameters` are the predicates by which
-a document constrains by components of its own. `pattern` is a regular expression that a text cannot make expensive
-(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL, and
-`pattern_fault` why a text is none. Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
+makes tests of the constraints that can be; two `exclude` each other if no value passes both, and one may be
+`passed_by_none` at all. `misfit`, `unfit`, `of_values`, `said_twice`, `said_alone`, `LISTS`, `LITERAL`,
+`ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and `ILL_FORMED` say what may stand as a value of SHACL's own
+properties. `component_parameters` are the predicates by which a document constrains by components of its own. `pattern`
+is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is `MatchTooCostly`.
+`shacl_pattern` is one with the flags of SHACL, and `pattern_fault` why a text is none. Judging by pySHACL is
+`selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, pattern_fault, shacl_pattern
@@ -25,7 +26,7 @@ from selfconf.rdf.shacl.shape_syntax import (
     said_twice,
     unfit,
 )
-from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude
+from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude, passed_by_none
 
 __all__ = [
     "BESIDES",
@@ -45,6 +46,7 @@ __all__ = [
     "exclude",
     "misfit",
     "of_values",
+    "passed_by_none",
     "pattern",
     "pattern_fault",
     "said_alone",

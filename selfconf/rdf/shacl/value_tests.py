@@ -39,6 +39,9 @@ PAIRS: Mapping[IRI, Callable[[int], bool]] = {
 """The constraints that compare a value with those of another property of the node that has it."""
 _LOWER, _UPPER = (SH.minInclusive, SH.minExclusive), (SH.maxInclusive, SH.maxExclusive)
 _STRICT = (SH.minExclusive, SH.maxExclusive)
+_NOTHING_BEYOND = {SH.minExclusive: Literal("INF", XSD.double), SH.maxExclusive: Literal("-INF", XSD.double)}
+_SAMPLES = ("1", "true", "2000-01-01", "2000-01-01T00:00:00", "12:00:00", "P1D")
+"""Texts of which one at least is a literal of each datatype whose values have an order."""
 _ANY: frozenset[type] = frozenset((IRI, BlankNode, Literal))
 _LENGTHS = frozenset((SH.minLength, SH.maxLength))
 _SOLE = frozenset((SH.nodeKind, SH.datatype, SH.minLength, SH.maxLength))
@@ -86,13 +89,31 @@ def exclude(one: ValueTest, other: ValueTest) -> bool:
         return first.wanted != second.wanted
     if kinds == (SH.minLength, SH.maxLength):
         return _length(first.wanted) > _length(second.wanted)
-    if kinds[0] in _LOWER and kinds[1] in _UPPER:
-        order = _order_of_limits(first.wanted, second.wanted)
-        return order is not None and (order > 0 or (order == 0 and any(kind in _STRICT for kind in kinds)))
-    if kinds[0] in _LIMITS and kinds[1] == SH.datatype and second.wanted == STRING:
-        text = Literal("", STRING)
-        return isinstance(first.wanted, Literal) and _literals().order(text, first.wanted) is None
-    return False
+    if kinds[0] in _LIMITS and kinds[1] == SH.datatype:
+        sample = _sample(second.wanted)
+        return sample is not None and not _literals().comparable(sample, first.wanted)
+    return kinds[0] in _LIMITS and kinds[1] in _LIMITS and _nothing_between(first, second)
+
+
+def _nothing_between(one: ValueTest, other: ValueTest) -> bool:
+    """Whether no value lies within two limits: nothing is between them, or has an order beside both."""
+    if not _literals().comparable(one.wanted, other.wanted):
+        return True
+    if one.constraint not in _LOWER or other.constraint not in _UPPER:
+        return False
+    order = _order_of_limits(one.wanted, other.wanted)
+    strict = one.constraint in _STRICT or other.constraint in _STRICT
+    return order is not None and (order > 0 or (order == 0 and strict))
+
+
+def passed_by_none(test: ValueTest) -> bool:
+    """Whether no value passes a test: its limit is NaN, which has no order, or there is nothing beyond it."""
+    if test.constraint not in _LIMITS or not isinstance(test.wanted, Literal):
+        return False
+    beyond = _NOTHING_BEYOND.get(test.constraint)
+    return _order_of_limits(test.wanted, test.wanted) is None or (
+        beyond is not None and _order_of_limits(test.wanted, beyond) == 0
+    )
 
 
 _SIDES = {kind: number for number, kind in enumerate((SH.minLength, SH.maxLength, *_LOWER, *_UPPER, SH.datatype))}
@@ -116,6 +137,15 @@ def _order_of_limits(low: Term, high: Term) -> int | None:
     """How two limits compare: negative, zero or positive; None where they have no order."""
     order: int | None = _literals().order(low, high)
     return order
+
+
+@lru_cache
+def _sample(datatype: Term) -> Literal | None:
+    """A literal of a datatype whose values have an order."""
+    if not isinstance(datatype, IRI):
+        return None
+    literals = (Literal(text, datatype) for text in _SAMPLES)
+    return next((one for one in literals if _literals().well_typed(one) and _literals().has_value(one)), None)
 
 
 def compiled(constraints: Mapping[IRI, list[Term]]) -> tuple[list[ValueTest], set[IRI]]:

@@ -18,7 +18,7 @@ from rdflib.term import Node
 from selfconf.errors import TemplateError
 from selfconf.model.term import IRI
 from selfconf.rdf.rdflib_terms import from_rdflib
-from selfconf.rdf.shacl import ValueTest, compiled, exclude
+from selfconf.rdf.shacl import ValueTest, compiled, exclude, passed_by_none
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
 
 _KINDS: dict[Node, frozenset[type]] = {
@@ -83,6 +83,8 @@ def _own(normal: NormalForm) -> Iterator[ShapeContradiction]:
     """Of the node itself: every two statements about it, and the values that are left of its lists."""
     own = normal.own
     for number, one in enumerate(own):
+        if passed_by_none(_value_test(one)):
+            yield ShapeContradiction(one, one)
         yield from (ShapeContradiction(one, other) for other in own[:number] if _exclude(one, other))
     for one in own:
         if one[1] == SH["in"]:

@@ -169,7 +169,9 @@ def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, 
     earlier = conflict.other if later == conflict.one else conflict.one
     offset = places.get(later, file.offset(shape))
     hint = None
-    if later == earlier:
+    if later == earlier and isinstance(later[2], Literal):
+        message = f"No value meets {file.said(later)}, so {effect}."
+    elif later == earlier:
         what = "No alternative of this can hold" if later[1] in (SH["or"], SH.xone) else "This cannot hold"
         message = f"{what} beside what else is asked for, so {effect}."
     elif earlier in places:
