@@ -118,8 +118,9 @@ def has_value(literal: Literal) -> bool:
 def comparable(one: Term, other: Term) -> bool:
     """Whether two literals are of one value space; what is of another has no order beside either (SPARQL 1.1, 17.3)."""
     first, second = rdflib_term(one), rdflib_term(other)
-    literals = isinstance(first, rdflib.Literal) and isinstance(second, rdflib.Literal)
-    return literals and _value_space(first) == _value_space(second)
+    if not isinstance(first, rdflib.Literal) or not isinstance(second, rdflib.Literal):
+        return False
+    return _value_space(first) == _value_space(second)
 
 
 def order(value: Term, limit: Term) -> int | None:
