@@ -24,11 +24,12 @@ from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 _SHAPE = IRI("urn:selfconf:acceptance:shape")
 _OUTPUT = IRI("urn:selfconf:acceptance:output")
+"""What an output is called that has no IRI."""
 _PATH = "urn:selfconf:acceptance:path:"
 Port = tuple[IRI, str]
 """A component, and the name of an output of it."""
-Looks = tuple[tuple[tuple[Term, ...], ...], frozenset[IRI]]
-"""What a shape sees of an output: where each of its paths leads, and the types."""
+Looks = tuple[tuple[tuple[Term, ...], ...], frozenset[IRI], IRI]
+"""What a shape sees of an output: where each of its paths leads, the types, and its IRI if it has one."""
 Seen = Callable[[IRI], Sequence[Triple]]
 """For a component what a shape sees of its advertisement."""
 
@@ -60,7 +61,9 @@ class SeenOutputs:
             found: dict[Looks, list[Port]] = {}
             for port in outputs:
                 ends = tuple(self._ends(text, document, path, port) for text, document, path in paths)
-                found.setdefault((ends, self._types(port)), []).append(port)
+                node = self.node(port)
+                iri = node if isinstance(node, IRI) else _OUTPUT
+                found.setdefault((ends, self._types(port), iri), []).append(port)
             self._alike[key] = found
         return self._alike[key]
 
@@ -143,7 +146,7 @@ class OutputShape:
 
     def obstacle(self, output: Port, seen: SeenOutputs) -> Obstacle | None:
         """What keeps an output from conforming, if anything does. Raises TemplateError where that cannot be judged."""
-        ((looks, _),) = seen.alike(self._paths, [output]).items()
+        (looks,) = seen.alike(self._paths, [output])
         found = self._obstacle(looks)
         if found is None and not self._tests.complete and not self._by_pyshacl([output], seen):
             return ShapeViolated("it does not conform")
@@ -151,10 +154,10 @@ class OutputShape:
 
     def _obstacle(self, looks: Looks) -> Obstacle | None:
         """The first obstacle that outputs which look alike meet in the tests."""
-        ends, types = looks
+        ends, types, iri = looks
         pairs = [(name, value) for name, values in zip(self._names.values(), ends, strict=True) for value in values]
         # The tests look at the profile of a component, so that is what an output has to look like.
-        return next(self._tests.obstacles(Profile(_OUTPUT, types, tuple(pairs)), self._hierarchy), None)
+        return next(self._tests.obstacles(Profile(iri, types, tuple(pairs)), self._hierarchy), None)
 
     def _by_pyshacl(
         self, outputs: Sequence[Port], seen: SeenOutputs, not_judged: dict[Port, NotJudged] | None = None

@@ -15,6 +15,7 @@ from selfconf.rdf.conformance import judged
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.output_shapes import OutputShape, SeenOutputs
 from selfconf.rdf.eligibility.partitioner import Partitioner
+from selfconf.rdf.literal_comparison import only_ordered
 from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
 from selfconf.rdf.turtle import Document, parse
 from selfconf.rdf.vocabulary import SC, SH
@@ -27,7 +28,8 @@ OUTPUTS = """
 :high a sc:Component, :Sensor, :Good ; :on :Astrid ; sc:hasOutput [ sc:name "o" ; sc:signalType :Pose , :Scan ;
     :age 9 ; sc:rate [ sc:value 9 ; sc:unit unit:HZ ] ; :quality "best" ] ,
     [ a :Raw ; sc:name "p" ; sc:signalType :Scan ] .
-:bare a sc:Component, :Sensor ; :on :Astrid , :Pippi ; sc:hasOutput [ sc:name "o" ] .
+:bare a sc:Component, :Sensor ; :on :Astrid , :Pippi ; sc:hasOutput :out .
+:out sc:name "o" .
 """
 PATHS = st.sampled_from(
     (
@@ -55,7 +57,12 @@ PROPERTIES = st.builds(
     st.lists(CONSTRAINTS, min_size=1, max_size=2),
 )
 SHAPES = st.recursive(
-    st.one_of(PROPERTIES, st.just("sh:class :Raw"), st.just("sh:nodeKind sh:BlankNode")),
+    st.one_of(
+        PROPERTIES,
+        st.sampled_from(
+            ("sh:class :Raw", "sh:nodeKind sh:BlankNode", "sh:node [ sh:in ( :out ) ]", "sh:hasValue :out")
+        ),
+    ),
     lambda inner: st.one_of(
         st.builds("sh:not [ {} ]".format, inner),
         st.lists(inner, min_size=1, max_size=2).map(
@@ -108,7 +115,8 @@ def test_an_output_conforms_where_pyshacl_says_so(text: str, hierarchy: Hierarch
         shapes = to_rdflib(document.triples())
         shapes.add((rdflib_term(shape), rdflib.RDF.type, rdflib.URIRef(SH.NodeShape)))
         shapes.add((rdflib_term(shape), rdflib.URIRef(SH.targetNode), rdflib_term(node)))
-        _, report = judged(data, shapes)
+        with only_ordered():  # by itself pySHACL fails beside a blank node
+            _, report = judged(data, shapes)
         assert (port in found) == ("Conforms: True" in report), (canonical, port, report)
 
 
