@@ -12,10 +12,9 @@ which; on its own host a site goes on with its own.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import islice
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple, TypeGuard
+from typing import NamedTuple
 
 from selfconf.access.certificate_files import read_certificate
 from selfconf.access.certificates import Certificate
@@ -23,6 +22,7 @@ from selfconf.access.disputed_components import believed, claims
 from selfconf.access.expiry import CertificateWatch
 from selfconf.access.host_authority import HostAuthority
 from selfconf.access.keys_folder import KeysFolder
+from selfconf.access.other_sites import SITES_ANSWER, OtherSites
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.refusal_reports import RefusalReports
 from selfconf.access.rules import AccessRules, rules_of
@@ -33,9 +33,9 @@ from selfconf.errors import NetworkError, PeerError, SelfconfError
 from selfconf.files import FileStamp, stamp
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
-from selfconf.protocol.keys import Keys, site_of
-from selfconf.protocol.messages import Introduction, Known, Page
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Introduction
 
 log = logging.getLogger(__name__)
 
@@ -47,15 +47,8 @@ RAREST_RETRY = 30.0
 """After how many seconds at most it is tried again to open the hub."""
 FAULT_AGAIN = 600.0
 """After how many seconds a fault that lasts is reported again."""
-SOON = 0.05
-"""Seconds after which others are asked what they advertise, when something has changed: mostly more does. However many
-changes are reported, others are asked no oftener than that."""
 WARNED = 0.05
 """Seconds between the word that a hub is about to be opened anew and that."""
-SITES_ANSWER = 3.0
-"""Seconds that other sites may take to say what they advertise."""
-ASK_SITES_AGAIN = 5.0
-"""Seconds after which they are asked again where one of them has not answered in full."""
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 """Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
 INTRODUCE_AGAIN = 5.0
@@ -83,13 +76,6 @@ def _processes(components: Iterable[tuple[IRI, IRI]]) -> list[Process]:
     for component, program in sorted(components):
         found.setdefault(program, []).append(component)
     return [tuple(map(Principal.component, dict.fromkeys((program, *mine)))) for program, mine in found.items()]
-
-
-def _is_whole(pages: Sequence[Page]) -> bool:
-    """Whether what a site has replied is all that it advertises; of two sites of one name, what both have."""
-    totals = {page.life: page.total for page in pages}
-    replied = {(page.life, page.index) for page in pages if page.component is not None}
-    return len(replied) == sum(totals.values())
 
 
 class _Advertised(NamedTuple):
@@ -143,11 +129,8 @@ class Doorkeeper:
         self._warned = False
         """Whether the hub is about to be opened anew."""
         self._warning = bus.publisher(self._keys.reopens(site.name), Urgency.EVENT)
-        self._others: dict[str, frozenset[IRI]] = {}
-        """The components that other sites advertise."""
         self._ruled: _Advertised | None = None
         """What was advertised, and by which sites, when the rules were made."""
-        self._revisions: dict[str, int] = {}
         self._disputed: frozenset[IRI] = frozenset()
         self._known_for = 0
         """How often it need not be shown to others, as all know it and none has come since."""
@@ -158,9 +141,8 @@ class Doorkeeper:
         """What was said to be wrong with the keys or the hub, and when."""
         self._pause = LOOK
         self._undo_retry: Callable[[], None] = lambda: None
-        self._asks_soon = self._renews_soon = False
-        """Whether others are about to be asked what they advertise, and whether the rules are about to be made anew."""
-        self._undo_asking_again: Callable[[], None] = lambda: None
+        self._renews_soon = False
+        """Whether the rules are about to be made anew."""
         self._admitted = set[Certificate]()
         """The good certificates that were shown in these moments, and since when that is noted."""
         self._admitted_at = bus.now()
@@ -171,7 +153,8 @@ class Doorkeeper:
         self.rules = hub.rules
         bus.serve(self._keys.introduce(site.name), self._introduced)
         bus.serve(self._keys.access(site.name), self._tell)
-        bus.subscribe(self._keys.changed(), lambda _: self._others_changed())
+        self._others = OtherSites(bus, self._keys, site.name, self._others_answered)
+        bus.subscribe(self._keys.changed(), lambda _: self._others.ask_soon())
         bus.watch(self._keys.any_site_life(), self._site_changed)
         CertificateWatch(bus, site.ecology, site.credentials, complain, distrusted=hub.distrusted)
         for pause in INTRODUCTIONS:
@@ -257,52 +240,11 @@ class Doorkeeper:
 
     def _site_changed(self, *_: object) -> None:
         self._known_for = 0
-        self._others_changed()
+        self._others.ask_soon()
 
-    # What others advertise.
-
-    def _others_changed(self) -> None:
-        if not self._asks_soon:
-            self._asks_soon = True
-            self._bus.later(SOON, self._ask_others)
-
-    def _ask_others(self) -> None:
-        self._asks_soon = False
-        known = encode(Known(dict(self._revisions)))
-        self._bus.ask(self._keys.advertisements(), known, SITES_ANSWER, self._others_answered)
-
-    def _others_answered(self, replies: Replies) -> None:
-        """Note what sites advertise that have answered in full, n of n: else what they advertised before counts."""
-        in_part = False
-        for site, pages in self._news(replies).items():
-            self._revisions = {known: at for known, at in self._revisions.items() if known.partition("/")[0] != site}
-            if not _is_whole([page for page, _ in pages]):
-                in_part = True
-                continue
-            self._revisions |= {f"{site}/{page.life}": page.revision for page, _ in pages}
-            vouched = (page.component for page, key in pages if self._is_advertised(page.component, site, key))
-            self._others[site] = frozenset(islice(vouched, MOST_ADVERTISED))
-        self._undo_asking_again()
-        if in_part or not replies.complete:
-            self._undo_asking_again = self._bus.later(ASK_SITES_AGAIN, self._others_changed)
+    def _others_answered(self) -> None:
         if self._advertised() != self._ruled:
             self._renew_rules()
-
-    def _news(self, replies: Replies) -> dict[str, list[tuple[Page, str]]]:
-        """The pages of each other site that does not advertise the same as before, with their keys."""
-        news: dict[str, list[tuple[Page, str]]] = {}
-        for sample in replies.samples:
-            try:
-                page, site = decode(sample.attachment, Page), site_of(sample.key)
-            except PeerError:
-                continue
-            is_as_before = page.component is None and self._revisions.get(f"{site}/{page.life}") == page.revision
-            if site != self._name and not is_as_before:
-                news.setdefault(site, []).append((page, sample.key))
-        return news
-
-    def _is_advertised(self, component: IRI | None, site: str, key: str) -> TypeGuard[IRI]:
-        return component is not None and key == self._keys.advertisement(site, component)
 
     # The rules.
 
@@ -321,7 +263,7 @@ class Doorkeeper:
 
     def _advertised(self) -> _Advertised:
         beside = frozenset(self._hub.sites()) - {self._name}
-        return _Advertised(dict(self._own()), dict(self._others), beside)
+        return _Advertised(dict(self._own()), self._others.advertised(), beside)
 
     def _undisputed(self, advertised: Mapping[str, frozenset[IRI]]) -> dict[str, frozenset[IRI]]:
         """The components that each site speaks for; complains of those that have become disputed."""

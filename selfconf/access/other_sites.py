@@ -1,0 +1,93 @@
+"""What the other sites of an ecology advertise, as a site with keys hears it from them.
+
+Each of them speaks for the components that it advertises, so it is asked for these whenever something changes. What it
+has said in full counts, n of n; where it answers in part, as one that is busy or is cut off does, what it advertised
+before counts, and it is asked again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import islice
+from typing import TypeGuard
+
+from selfconf.bus.port import Bus, Replies, Undo
+from selfconf.errors import PeerError
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
+from selfconf.protocol.keys import Keys, site_of
+from selfconf.protocol.messages import Known, Page
+
+SOON = 0.05
+"""Seconds after which others are asked what they advertise, when something has changed: mostly more does. However many
+changes are reported, others are asked no oftener than that."""
+SITES_ANSWER = 3.0
+"""Seconds that other sites may take to say what they advertise, and who they are."""
+ASK_SITES_AGAIN = 5.0
+"""Seconds after which they are asked again where one of them has not answered in full."""
+
+
+class OtherSites:
+    """Those of one ecology, as one site knows them."""
+
+    def __init__(self, bus: Bus, keys: Keys, site: str, answered: Callable[[], None]) -> None:
+        """`site` is the one that asks; `answered` is called whenever the others have said what they advertise."""
+        self._bus, self._keys, self._site, self._heard = bus, keys, site, answered
+        self._advertised: dict[str, frozenset[IRI]] = {}
+        self._revisions: dict[str, int] = {}
+        """Of what is known, by the name and the life of the site, as of a `Known`."""
+        self._asks_soon = False
+        self._undo_asking_again: Undo = lambda: None
+
+    def advertised(self) -> dict[str, frozenset[IRI]]:
+        """The components that each of them advertises, as far as is known."""
+        return dict(self._advertised)
+
+    def ask_soon(self) -> None:
+        """Ask them what they advertise: something has changed."""
+        if not self._asks_soon:
+            self._asks_soon = True
+            self._bus.later(SOON, self._ask)
+
+    def _ask(self) -> None:
+        self._asks_soon = False
+        known = encode(Known(dict(self._revisions)))
+        self._bus.ask(self._keys.advertisements(), known, SITES_ANSWER, self._answered)
+
+    def _answered(self, replies: Replies) -> None:
+        in_part = False
+        for site, pages in self._news(replies).items():
+            self._revisions = {known: at for known, at in self._revisions.items() if known.partition("/")[0] != site}
+            if not _is_whole([page for page, _ in pages]):
+                in_part = True
+                continue
+            self._revisions |= {f"{site}/{page.life}": page.revision for page, _ in pages}
+            vouched = (page.component for page, key in pages if self._is_advertised(page.component, site, key))
+            self._advertised[site] = frozenset(islice(vouched, MOST_ADVERTISED))
+        self._undo_asking_again()
+        if in_part or not replies.complete:
+            self._undo_asking_again = self._bus.later(ASK_SITES_AGAIN, self.ask_soon)
+        self._heard()
+
+    def _news(self, replies: Replies) -> dict[str, list[tuple[Page, str]]]:
+        """The pages of each other site that does not advertise the same as before, with their keys."""
+        news: dict[str, list[tuple[Page, str]]] = {}
+        for sample in replies.samples:
+            try:
+                page, site = decode(sample.attachment, Page), site_of(sample.key)
+            except PeerError:
+                continue
+            is_as_before = page.component is None and self._revisions.get(f"{site}/{page.life}") == page.revision
+            if site != self._site and not is_as_before:
+                news.setdefault(site, []).append((page, sample.key))
+        return news
+
+    def _is_advertised(self, component: IRI | None, site: str, key: str) -> TypeGuard[IRI]:
+        return component is not None and key == self._keys.advertisement(site, component)
+
+
+def _is_whole(pages: Sequence[Page]) -> bool:
+    """Whether what a site has replied is all that it advertises; of two sites of one name, what both have."""
+    totals = {page.life: page.total for page in pages}
+    replied = {(page.life, page.index) for page in pages if page.component is not None}
+    return len(replied) == sum(totals.values())
