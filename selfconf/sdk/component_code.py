@@ -193,6 +193,20 @@ class ComponentCode:
         if not self._resting:
             self._guarded("received", partial(self._component.received, port, signal))
 
+    def read_value(self, value: Any, media: str) -> Any:
+        """Return what the component receives of a value with its media type; raises ValueError if it passes it over.
+
+        What else breaks there is a failure of the component, and no end of its program. On the thread of its code.
+        """
+        try:
+            return self._component.signal_value(value, media)
+        except (ValueError, RecursionError) as error:
+            raise ValueError(str(error)) from None
+        except Exception as error:
+            log.exception("%s broke in signal_value", self._name)
+            self._fail(f"it broke in signal_value: {type(error).__name__}: {error}")
+            raise ValueError("breaks the component") from None
+
     def serve(self, operation: str, request: Signal) -> Any:
         """Return what the component answers to a call; raises Refused if it does not. On the thread of its code.
 

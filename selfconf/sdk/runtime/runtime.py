@@ -104,7 +104,7 @@ class ComponentRuntime:
             partial(self.fail, cause=Cause.MALFORMED),
         )
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
-        self.inputs: InputFollower = inputs or Inputs(bus, keys, thread, profile, heard, component.signal_value)
+        self.inputs: InputFollower = inputs or Inputs(bus, keys, thread, profile, heard, self.code.read_value)
         self.operations = Operations(
             bus,
             keys,
@@ -115,7 +115,7 @@ class ComponentRuntime:
             fields or {},
             self.callers,
             partial(self.fail, cause=Cause.MALFORMED),
-            component.signal_value,
+            self.code.read_value,
         )
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)

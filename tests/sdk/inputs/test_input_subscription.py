@@ -67,3 +67,18 @@ def test_a_component_may_read_values_in_a_way_of_its_own() -> None:
         tracker.component.emit("pose", value, media="text/plain")
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",), ("position", (b"whole", "text/plain"))]
+
+
+def test_what_breaks_as_a_component_reads_a_value_is_its_failure_and_no_end_of_its_program() -> None:
+    class Reader(Recorder):
+        @staticmethod
+        def signal_value(value: Any, media: str) -> Any:
+            return value["x"]
+
+    stage = Stage(Reader())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", {"y": 1})
+    stage.let_pass(0.1)
+    assert [fail.detail for fail in stage.fails] == ["it broke in signal_value: KeyError: 'x'"]
+    assert not stage.component.active
