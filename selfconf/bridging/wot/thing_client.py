@@ -46,6 +46,10 @@ class ThingRefusal(ThingError):
     """A thing has answered that it does not, or cannot, do what it was asked: by a status of HTTP from 400 on."""
 
 
+class BrokenAnswerError(ThingError):
+    """A connection was lost in the middle of an answer, or of the wait for it; the thing may be there still."""
+
+
 class UnsendableValueError(ThingError):
     """What was to be sent is nothing that a thing takes; it was asked nothing, and is not to blame."""
 
@@ -181,7 +185,8 @@ class ThingClient:
         except asyncio.TimeoutError:
             raise ThingError(f"{form} has not answered in full within {seconds or self._limits.answer:g} s") from None
         except (aiohttp.ClientError, OSError, ValueError) as error:
-            raise ThingError(f"{form} does not answer: {_reason(error)}") from None
+            kind = BrokenAnswerError if _is_break(error) else ThingError
+            raise kind(f"{form} does not answer: {_reason(error)}") from None
 
     def _check(self, form: ThingForm, answer: aiohttp.ClientResponse) -> None:
         where = answer.headers.get("Location")
@@ -275,6 +280,13 @@ def _bare(media: str) -> str:
 
 def _is_json(media: str) -> bool:
     return media == JSON or media.endswith("+json")
+
+
+def _is_break(error: Exception) -> bool:
+    """Whether there was a connection, which was lost."""
+    if isinstance(error, aiohttp.ClientConnectorError):
+        return False
+    return isinstance(error, aiohttp.ClientOSError | aiohttp.ServerDisconnectedError | aiohttp.ClientPayloadError)
 
 
 def _reason(error: Exception) -> str:

@@ -14,8 +14,10 @@ from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
 from typing import Any
 
+from selfconf.bridging.wot.forms import ThingForm
 from selfconf.bridging.wot.interactions import ThingInput, ThingInteractions, ThingOperation, ThingOutput
 from selfconf.bridging.wot.thing_client import (
+    BrokenAnswerError,
     ThingAnswer,
     ThingClient,
     ThingError,
@@ -140,18 +142,32 @@ class ThingComponent(Component):
             self._issue(output, answer)
 
     async def _follow(self, output: ThingOutput) -> None:
+        """Follow a form anew each time that it comes to an end, or that its connection is cut.
+
+        What lies between may cut one on which nothing comes; that the thing is not there is known by the next request.
+        """
         form = output.follow
         while form is not None:
-            began, pause = self._loop.time(), AGAIN
-            if form.subprotocol == "sse":
-                async with self._client.subscribed(form) as answers:
-                    await self._read(output, changed=True)  # it may have changed before the thing told of changes
-                    async for answer in answers:
-                        self._issue(output, answer)
-            elif (found := await self._client.wait(form)) is not None:
-                pause = SOONEST
-                self._issue(output, found)
+            began = self._loop.time()
+            try:
+                pause = await self._followed_once(output, form)
+            except BrokenAnswerError:
+                pause = AGAIN
+                if self._loop.time() - began < AGAIN:
+                    raise
             await asyncio.sleep(max(0.0, began + pause - self._loop.time()))
+
+    async def _followed_once(self, output: ThingOutput, form: ThingForm) -> float:
+        """Issue what comes of one request; how long after it the next one is made, at least."""
+        if form.subprotocol == "sse":
+            async with self._client.subscribed(form) as answers:
+                await self._read(output, changed=True)  # it may have changed before the thing told of changes
+                async for answer in answers:
+                    self._issue(output, answer)
+        elif (found := await self._client.wait(form)) is not None:
+            self._issue(output, found)
+            return SOONEST
+        return AGAIN
 
     def _issue(self, output: ThingOutput, answer: ThingAnswer) -> None:
         self._last[output.name] = answer

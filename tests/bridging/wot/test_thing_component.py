@@ -8,6 +8,9 @@ from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from selfconf.bridging.wot.thing_component import AGAIN
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Reserve, Wire
@@ -97,6 +100,45 @@ def test_what_changes_before_the_thing_tells_of_changes_is_not_missed(
         active(found)
         assert until(lambda: len(values) == 3)
     assert [value["on"] for value in values] == [False, True, False]
+
+
+@pytest.mark.parametrize("how", ["sse", "longpoll"])
+def test_a_connection_that_is_cut_while_a_thing_is_followed_is_made_anew(
+    thing_server: Start, living: LivingStage, tmp_path: Path, how: str
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    turns = iter(range(3))
+
+    def changes(handler: BaseHTTPRequestHandler) -> None:
+        turn = next(turns, None)
+        if turn in (0, 1):  # as what lies between cuts a connection on which nothing comes; aiohttp asks once more
+            if how == "sse":
+                handler.send_response(200)
+                handler.send_header("Content-Type", "text/event-stream")
+                handler.send_header("Transfer-Encoding", "chunked")
+                handler.end_headers()
+            server.released.wait(2 * AGAIN)
+            handler.close_connection = True
+        elif how == "sse":
+            handler.send_response(200)
+            handler.send_header("Content-Type", "text/event-stream")
+            handler.end_headers()
+            handler.wfile.write(b"data: true\n\n")
+            server.released.wait(60.0)
+        elif turn == 2:
+            reply(handler, b"true")
+        else:
+            server.released.wait(60.0)
+
+    server.answers["/on/changes"] = changes
+    forms = [{"href": "on"}, {"href": "on/changes", "op": "observeproperty", "subprotocol": how}]
+    description = server.describe(properties={"on": {**SWITCH, "readOnly": True, "forms": forms}})
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        values = found.heard("lamp", "on")
+        active(found)
+        assert until(lambda: values[-1:] == [{"on": True}])
+        assert found.causes() == []
 
 
 def test_a_signal_writes_a_property_and_calls_an_action(
