@@ -26,7 +26,7 @@ class TaskStory:
     configuration: Mapping[str, Any] | None = None
     refusal: Mapping[str, Any] | None = None
     since: float = 0.0
-    """When its configuration began, or when it was refused one."""
+    """When its configuration began, or since when it has none."""
     unchanged: dict[str, float] = field(default_factory=dict)
     """Since when each role has been played by the same components, and each recruit has been one; by their IRIs."""
     lost: dict[str, EventBody] = field(default_factory=dict)
@@ -50,7 +50,9 @@ class TaskStory:
             self.ended = None
             self._note_replaced(before)
         elif act in ("waiting", "refused"):
-            self.refusal, self.since = event.get("refusal") or {}, _time(event)
+            if self.refusal is None:  # one that waits comes to the same again and again
+                self.since = _time(event)
+            self.refusal = event.get("refusal") or {}
         elif act in ("stopped", "detached"):
             self.ended = _time(event)
 
@@ -203,13 +205,16 @@ def _came_about(found: TaskStory, component: str) -> Iterator[str]:
 
 def _refused(found: TaskStory, term: str) -> list[str]:
     refusal = found.refusal or {}
-    roles = [str(reason.get("role")) for reason in refusal.get("reasons", ())]
+    reasons = list(refusal.get("reasons", ()))
+    roles = [str(reason.get("role")) for reason in reasons]
     near = list(refusal.get("near_misses", ()))
     told = (found.task, *roles, *(str(miss.get("component")) for miss in near), *found.lost)
     if not any(_means(term, one) for one in (*told, *map(str, _bindings(found)))):
         return []
     sentences = [f"{found.task} has no configuration, since {clock_time(found.since)}"]
-    sentences += [f"  {reason.get('message')}" for reason in refusal.get("reasons", ())]
+    if "message" in refusal:  # of a search that has ended undecided, which has no reasons
+        reasons.append(refusal)
+    sentences += [f"  {reason.get('message')}" for reason in reasons]
     sentences += _losses(found)
     sentences += [
         f"  nearly, {'to be recruited for' if miss.get('recruit') else 'as'} {_name(miss.get('role'))}:"

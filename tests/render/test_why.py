@@ -111,6 +111,20 @@ def test_a_refusal_is_told_with_its_reasons_near_misses_and_repairs() -> None:
         ]
 
 
+def test_a_search_that_ended_undecided_is_told_as_that() -> None:
+    undecided = {"code": "undecided", "message": "not decided within 1 step; allow more by --steps"}
+    first, why = why_sentences(story("patrol", [{"act": "waiting", "time": 30.0, "refusal": undecided}]), "patrol", {})
+    assert first.startswith("patrol has no configuration, since ")
+    assert why == "  not decided within 1 step; allow more by --steps"
+
+
+def test_a_task_that_waits_has_no_configuration_since_it_waits() -> None:
+    looks = [{"act": "waiting", "time": time, "refusal": {}} for time in (30.0, 60.0, 90.0)]
+    assert story("navigate", [*EVENTS, *looks]).since == 30.0
+    assert story("navigate", [*EVENTS, *looks, running(100.0, "tracker")]).since == 100.0
+    assert story("navigate", [*EVENTS, *looks, running(100.0, "tracker"), *looks[:1]]).since == 30.0
+
+
 def recruiting(time: float, *chain: str) -> dict[str, Any]:
     """A configuration in which a locator is fed by a chain of recruits, the last of which has no inputs."""
     ends = zip(chain, ("locator", *chain), strict=False)
