@@ -69,7 +69,7 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
     if state.phase is not Phase.COMPOSING:
         return state, ()
     if state.ignores_holders:
-        return phases.refuse(_coveted(state, event))
+        return _refused(state) if state.asks_again else phases.refuse(_coveted(state, event))
     if isinstance(event.outcome, Configuration):
         if state.contested(event.outcome):
             fewer, avoided = _avoid(state, event.outcome)

@@ -17,6 +17,7 @@ from selfconf.configurator.effects import (
 )
 from selfconf.configurator.events import (
     Accepted,
+    Appeared,
     Call,
     Discovered,
     Failed,
@@ -98,6 +99,18 @@ def test_a_refusal_for_lack_of_what_others_hold_names_it() -> None:
     assert history.state.lost.keys() == {TRACKER}
     assert history.state.lost[TRACKER].busy
     assert history.state.lost[TRACKER].detail == str(OTHERS)
+
+
+def test_what_appears_while_it_is_found_out_who_holds_what_is_lacking_counts_before_the_refusal() -> None:
+    history = History(TASK)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS}))
+    history.composed(REFUSAL)
+    history.hear(Appeared({ODOMETRY: "2"}))
+    assert history.composed(navigation()) == [Discover()]
+    history.hear(Discovered({TRACKER: OTHERS}))
+    history.composed(navigation(ODOMETRY))
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
 
 
 def test_a_refusal_that_nobody_else_is_to_blame_for_names_nobody() -> None:
