@@ -14,6 +14,7 @@ what else is hidden.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
@@ -56,6 +57,12 @@ class NodePorts(NamedTuple):
     """The services that it is a client of."""
     actions: dict[str, RosAction]
     """The actions that it serves, besides `offered`; their feedback is among the outputs."""
+
+    def endpoints(self) -> frozenset[RosEndpoint]:
+        """All that it has, without the numbers by which a node tells one that it makes anew from the one before."""
+        named = (self.outputs, self.inputs, self.offered, self.needed)
+        found = (*(each for ports in named for each in ports.values()), *itertools.chain(*self.actions.values()))
+        return frozenset(replace(each, entity=0) for each in found)
 
 
 def translated_name(name: str, translation: SignalTranslation) -> str:

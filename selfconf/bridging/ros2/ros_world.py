@@ -60,7 +60,7 @@ class RosNode:
     token: RosToken
     tokens: dict[str, RosToken] = field(default_factory=dict)
     advertised: frozenset[RosEndpoint] | None = None
-    """The endpoints that it was last advertised with; None while it is not."""
+    """The endpoints of the ports that it was last advertised with; None while it is not."""
     code: NodeComponent | None = None
     settle: Undo = lambda: None
 
@@ -181,7 +181,8 @@ class RosWorld:
 
     def _settled(self, node: RosNode) -> None:
         """Advertise a node as it is now, if that is another than it was."""
-        endpoints, iri = node.endpoints, node_iri(node.token)
+        ports, iri = ports_of(node.endpoints), node_iri(node.token)
+        endpoints = ports.endpoints()
         if endpoints == node.advertised:
             return
         if self._by_name.setdefault(iri, node.token.identity) != node.token.identity:
@@ -193,7 +194,6 @@ class RosWorld:
                 self._settle(node, LOOK_WHETHER_FREE)
                 return
             node.code.fail(f"the node {node.token.full_name} offers less than before")
-        ports = ports_of(endpoints)
         component = described_node(node.token, ports)
         try:
             self._bridge.advertise(iri, ImportedDocument("", _place(node.token), (component.described(),), {}))

@@ -80,6 +80,20 @@ def test_a_node_that_offers_less_fails(living: LivingStage, tmp_path: Path) -> N
         assert until(lambda: 'sc:name "more"' not in found.advertised())
 
 
+def test_a_node_that_makes_an_endpoint_anew_offers_what_it_did_before(living: LivingStage, tmp_path: Path) -> None:
+    with bridging_domain(living, tmp_path / "ads") as found:
+        talker = found.node("talker")
+        leave, leave_hidden = talker.token("MS", "/chatter"), talker.token("MS", "/_hidden")
+        assert until(lambda: found.is_complete("talker", "chatter"))
+        found.activate("talker")
+        leave_hidden()
+        leave()
+        talker.token("MS", "/chatter")
+        found.node("later").publishes("/later")
+        assert until(lambda: found.is_complete("later", "later"))
+        assert found.causes() == []
+
+
 def test_of_two_nodes_of_one_name_the_first_counts(living: LivingStage, tmp_path: Path) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
         first = found.node("talker")
