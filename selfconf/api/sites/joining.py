@@ -16,18 +16,13 @@ that one would take its own hub for broken, and nothing would relay for longer t
 A relay whose process runs is left its place for `SLOW` seconds more: it may only be busy with all those that have lost
 it, as after a common stall. Who takes its place cuts off all that have reached it again, and the same begins anew.
 
-What sites write into the runtime folder may be lost, as when that is emptied, or a disk is full: a site whose file is
-not there writes it again, and relays as well where it cannot be written.
-
 The usual ports of two ecologies may overlap. Then a site that has lost its hub may find that of the other ecology:
 that passes on what is said in this one as well, but it is not where programs look for this one. So a site takes the
 place all the same while no site of its ecology relays, and connects its own hub to the other.
 
-A hub may break inside while its process goes on: routers of Zenoh 1.10 panic now and then when many clients are lost
-and come back at once, as after a common stall, and answer nothing from then on (zenoh#2624). So a site that relays asks
-its own hub who lives, again and again, and opens another one when it does not answer. The others ask theirs, more
-seldom: a client that was connected to a hub of its own process may go to another one and be deaf there, as nothing
-reads what comes over its connection. It is heard, so it seems to live; that connection is cut, and made anew.
+A hub may break inside while its process goes on (`hub_health`). So a site that relays asks its own hub, again and
+again, and opens another one when it does not answer. The others ask theirs, more seldom, and cut the connection to one
+that does not, so that it is made anew.
 """
 
 from __future__ import annotations
@@ -37,9 +32,10 @@ import os
 import random
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from pathlib import Path
 
 from selfconf import rendezvous, this_machine
+from selfconf.api.sites.announced_site import AnnouncedSite
+from selfconf.api.sites.hub_health import HubHealth
 from selfconf.bus.port import Undo
 from selfconf.bus.zenoh import GREETING, Hub, Security, ZenohBus, client, cut_connections, router
 from selfconf.errors import NetworkError
@@ -60,12 +56,6 @@ STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
 STILL_HEARD = 6
 """How many of these times pass between two looks of other sites whether their hub answers them."""
-HUB_ANSWER = 2.0
-"""Seconds that a hub may take to answer a site; one that works answers within milliseconds."""
-UNANSWERED = 3
-"""How many questions in a row it may leave unanswered; each follows at the end of the time of the one before."""
-BUSY = 0.5
-"""Seconds after the end of that time by which its end is heard; later, this site itself had no time to hear it."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and is suspended is taken to hang."""
 SLOW = 1.5
@@ -92,21 +82,15 @@ class Joining:
         self._elsewhere = [endpoint for endpoint in connect if endpoint not in (*relays, *self._usual)]
         self.bus = self._opened(listen, relays)
         self._reached_at = relays[0] if relays else ""
-        self._file: Path | None = None
-        self._said_to_relay = False
-        """Whether the file of this site says that it relays, unless another site has written it since."""
+        self._file = AnnouncedSite(self._described)
         self.log = ""
         """The log of the site, for others on this machine."""
-        self._trouble = ""
-        """What has kept this site from writing into the runtime folder the last time; empty if nothing has."""
         self._awaited = relays
         """Those that relayed when this site last had a hub, or that it has been trying to reach since."""
         self._hung_at: float | None = None
         """When they are taken to hang; None while there is a hub."""
         self._look_again: Undo = lambda: None
-        self._unanswered = 0
-        """How many questions in a row the hub has not answered."""
-        self._asking = False
+        self._hub_health = HubHealth(self.bus, Keys(ecology).site_life(name, "*"), self._hub_is_broken)
         self.bus.watch_link(self._link_changed)
         self.bus.later(STILL_MINE, self._look_from_time_to_time)
 
@@ -140,34 +124,21 @@ class Joining:
         self.bus.run(lambda: bool(heard) or self.bus.now() > deadline)
         return heard[0] if heard else ()
 
-    def announce(self) -> None:
-        """Write down for others on this machine where this site is reached. Raises NetworkError."""
-        relays = bool(self.bus.endpoint)
-        mine = LocalSite(
+    def _described(self) -> LocalSite:
+        """The site, as its file has it."""
+        return LocalSite(
             self._ecology,
             self._name,
             self.endpoint,
             os.getpid(),
-            relays=relays,
+            relays=self.relays,
             log=self.log,
             from_here=self.bus.from_here,
         )
-        self._file = this_machine.announce(mine)
-        self._said_to_relay = relays
 
-    def _announce_anew(self) -> None:
-        """Write it down once more, as it has changed or is lost; where that cannot be, it is tried again later."""
-        try:
-            self.announce()
-            self._trouble = ""
-        except NetworkError as error:
-            self._complain(error)
-
-    def _complain(self, trouble: NetworkError) -> None:
-        """Say once what keeps this site from telling the others of this machine where it is."""
-        if str(trouble) != self._trouble:
-            self._trouble = str(trouble)
-            log.error("programs of this machine may not find this site: %s", trouble)
+    def announce(self) -> None:
+        """Write down for others on this machine where this site is reached. Raises NetworkError."""
+        self._file.write()
 
     @contextmanager
     def _turn(self) -> Iterator[bool]:
@@ -176,7 +147,7 @@ class Joining:
             try:
                 mine = stack.enter_context(this_machine.turn(seconds=0.0))
             except NetworkError as error:
-                self._complain(error)
+                self._file.complain(error)
                 mine = False
             yield mine
 
@@ -190,9 +161,7 @@ class Joining:
 
     def leave(self) -> None:
         """Take back what was written down."""
-        file, self._file = self._file, None  # first: the thread of the bus writes it anew where it is lost
-        if file is not None:
-            this_machine.leave(file)
+        self._file.remove()
 
     def _relaying(self) -> list[LocalSite]:
         """The other sites of this machine that relay."""
@@ -237,9 +206,9 @@ class Joining:
     def _reached(self) -> None:
         """There is a hub; where it is one that has begun since, say so, or others would try the one before first."""
         self._awaited, self._hung_at = self._relays(), None
-        if self._file is not None and not self.relays and self._awaited and self._reached_at not in self._awaited:
+        if self._file.is_there and not self.relays and self._awaited and self._reached_at not in self._awaited:
             self._reached_at = self._awaited[0]
-            self._announce_anew()
+            self._file.write_again()
 
     def _lost(self) -> None:
         """There is no hub, from now on unless it was so before."""
@@ -248,40 +217,23 @@ class Joining:
 
     def _look_from_time_to_time(self) -> None:
         self.bus.later(STILL_MINE * (1 if self.bus.endpoint else STILL_HEARD), self._look_from_time_to_time)
-        file = self._file
-        if file is None:
+        if not self._file.is_there:
             return
-        if self._trouble or not file.exists():
-            self._announce_anew()
+        if self._file.is_lost:
+            self._file.write_again()
         # It may have lost its hub before it was announced, and looked in vain. Whether others relay is not looked at:
         # of many sites each would read the files of all.
         if self._is_replaced() or not (self.bus.endpoint or self.bus.link):
             self._look_again()
             self._look()
-        elif not self._asking and (self.bus.link or (self.bus.endpoint and self._hangs(SLOW))):
-            self._ask_hub()
+        elif self.bus.link or (self.bus.endpoint and self._hangs(SLOW)):
+            self._hub_health.ask()
 
-    def _ask_hub(self) -> None:
-        """Ask the hub who lives; what counts is that it answers, and not only after the time is over."""
-        self._asking, asked = True, self.bus.now()
-
-        def answered(_: tuple[str, ...]) -> None:
-            self._asking = False
-            took = self.bus.now() - asked
-            if self.bus.link and took < HUB_ANSWER:
-                self._unanswered = 0
-            elif took < HUB_ANSWER + BUSY:
-                self._unanswered += 1
-            if self._unanswered >= UNANSWERED:
-                self._unanswered = 0
-                if self.bus.endpoint:
-                    self._replace_hub()
-                else:
-                    self._connect_anew()
-            elif took >= HUB_ANSWER:
-                self._ask_hub()
-
-        self.bus.roll_call(Keys(self._ecology).site_life(self._name, "*"), HUB_ANSWER, answered)
+    def _hub_is_broken(self) -> None:
+        if self.bus.endpoint:
+            self._replace_hub()
+        else:
+            self._connect_anew()
 
     def _connect_anew(self) -> None:
         """Cut the connection to a hub that is there, but seems to answer nothing; the bus makes another one."""
@@ -301,7 +253,7 @@ class Joining:
                 self._relay_at(list(dict.fromkeys((before, *self._usual))), self._relays())
 
     def _look(self) -> None:
-        if self._file is None:
+        if not self._file.is_there:
             return
         if not self.bus.link:
             self._lost()  # when the change was reported, it was not lost yet
@@ -314,13 +266,8 @@ class Joining:
         return not (self._is_replaced() if self.bus.endpoint else self._lacks_hub())
 
     def _is_replaced(self) -> bool:
-        """Whether this site relays, and another has written into its file that it does not, as it has its place.
-
-        Where the disk is full the file of a site that has begun to relay still says what was so before.
-        """
-        if self._file is None or not (self.bus.endpoint and self._said_to_relay):
-            return False
-        return not this_machine.relays(self._file)
+        """Whether this site relays, and another has written into its file that it does not, as it has its place."""
+        return self.relays and self._file.is_overruled
 
     def _lacks_hub(self) -> bool:
         """Whether this site is connected to no hub of its ecology: to none, or while no site of this machine relays."""
@@ -341,7 +288,7 @@ class Joining:
             before = self.bus.endpoint
             self.bus.relay_no_more()
             self._reached_at = next(iter(self._relays()), before)
-            self._announce_anew()
+            self._file.write_again()
 
     def _take_place(self) -> None:
         """Relay, if no site does, or if those that do hang."""
@@ -399,7 +346,7 @@ class Joining:
             known = [relay for relay in relays if relay not in self._usual]
             self.bus.relay(hub, [*known, *strange, *self._elsewhere])
             self._await([endpoint])
-            self._announce_anew()
+            self._file.write_again()
             return
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import rendezvous, this_machine
-from selfconf.api.sites import joining
+from selfconf.api.sites import hub_health, joining
 from selfconf.api.sites.joining import Joining
 from selfconf.bus.zenoh import client, router
 from selfconf.errors import NetworkError
@@ -296,7 +296,7 @@ def test_relays_of_several_hosts_see_each_other_again_after_one_was_stopped(home
 
 def test_a_site_whose_own_hub_has_broken_opens_another(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(joining, "STILL_MINE", 0.1)
-    monkeypatch.setattr(joining, "HUB_ANSWER", 0.3)
+    monkeypatch.setattr(hub_health, "HUB_ANSWER", 0.3)
     site = machine.join("a")
     machine.join("b")
     relay = site.bus._relay
@@ -321,7 +321,7 @@ def test_a_site_that_hears_nothing_from_a_hub_connects_to_it_anew(
     """It asks once more as soon as the time of a question is over, however seldom it looks while all is well."""
     monkeypatch.setattr(joining, "STILL_MINE", 0.1)
     monkeypatch.setattr(joining, "STILL_HEARD", 600)
-    monkeypatch.setattr(joining, "HUB_ANSWER", 0.3)
+    monkeypatch.setattr(hub_health, "HUB_ANSWER", 0.3)
     machine.join("a")
     site = machine.join("b")
     links: list[str] = []
