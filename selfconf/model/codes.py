@@ -800,6 +800,12 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L31", "A template is the same in each file that describes it.",
+        "Files of tasks and composites each hold their template. Where two files differ in what they say of it, one is "
+        "out of date or should have a name of its own; a configuration is judged by the first of them.",
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

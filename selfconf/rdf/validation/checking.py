@@ -4,8 +4,8 @@ Two passes. The first reads every file by Oxigraph and learns which terms there 
 nothing is suspicious has passed then. The second checks the others: places by rdflib's parser,
 violations by pySHACL, malformed roles, lints. Each file is judged on its own triples; a configuration also by what
 others say of its template and its components (`described_elsewhere`). What the files of a run share besides is only the
-knowledge which terms exist, which can make a warning of a term or take it away, and which components are described
-twice. An ontology is known alike whether it is among the files, given as an
+knowledge which terms exist, which can make a warning of a term or take it away, which components are described
+twice, and which templates in two ways. An ontology is known alike whether it is among the files, given as an
 ontology, or ships with selfconf.
 """
 
@@ -53,7 +53,7 @@ class UnclearedFile:
 
     source: SourceText
     elsewhere: dict[str, str] = field(default_factory=dict)
-    """Components of it that another file, which is named, describes as well."""
+    """Components of it that another file, which is named, describes as well; templates that it describes otherwise."""
     beside: tuple[tuple[SourceText, tuple[str, ...]], ...] = ()
     """The files that describe templates and components of its configurations, each with the IRIs of those."""
 
@@ -144,6 +144,21 @@ def described_twice(seen: dict[str, Prefiltered]) -> dict[str, dict[str, str]]:
     return dict(again)
 
 
+def described_otherwise(seen: dict[str, Prefiltered]) -> dict[str, dict[str, str]]:
+    """For each file that describes a template otherwise than the first that does: the template, and that first file.
+
+    Files of tasks and of composites each hold their template, so that copies of one are no mistake.
+    """
+    first: dict[str, str] = {}
+    other: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in sorted(seen):
+        for template, description in seen[name].templates.items():
+            one = first.setdefault(template, name)
+            if seen[one].templates[template] != description and not template.startswith("_:"):
+                other[name][template] = one
+    return dict(other)
+
+
 def _digest(*parts: bytes) -> hashlib.blake2s:
     """Of some octets, each set off from the next by its length."""
     found = hashlib.blake2s(digest_size=16)
@@ -166,7 +181,7 @@ def _loaded(source: SourceText) -> Prefiltered:
 
 def _uncleared(files: Iterable[SourceText], seen: dict[str, Prefiltered], index: TermIndex) -> Iterator[UnclearedFile]:
     """The files that the prefilter does not clear, or that describe what another file describes."""
-    elsewhere = described_twice(seen)
+    elsewhere, otherwise = described_twice(seen), described_otherwise(seen)
     by_name = {source.name: source for source in files}
     describing: dict[str, str] = {}
     for name in sorted(seen):
@@ -175,14 +190,15 @@ def _uncleared(files: Iterable[SourceText], seen: dict[str, Prefiltered], index:
                 describing.setdefault(thing, name)
     for name, source in by_name.items():
         found = seen.get(name)
-        if found is None or (name not in elsewhere and found.clear and index.clear(found)):
+        others = {**otherwise.get(name, {}), **elsewhere.get(name, {})}
+        if found is None or (not others and found.clear and index.clear(found)):
             continue
         beside: dict[str, list[str]] = defaultdict(list)
         if found.answers:
             for thing in sorted(found.referred.difference(found.components, found.templates) & describing.keys()):
                 beside[describing[thing]].append(thing)
         described = tuple((by_name[other], tuple(things)) for other, things in sorted(beside.items()))
-        yield UnclearedFile(source, elsewhere.get(name, {}), described)
+        yield UnclearedFile(source, others, described)
 
 
 def _read(source: SourceText) -> tuple[list[Diagnostic], Prefiltered | None]:

@@ -23,7 +23,7 @@ class LintedFile:
     positions: Positions
     index: TermIndex
     elsewhere: Mapping[str, str]
-    """Components of this file that another file, which is named, describes as well."""
+    """Components of it that another file, which is named, describes as well; templates that it describes otherwise."""
     shapes: Graph = field(default_factory=Graph)
     """What every advertisement and template keeps to."""
 

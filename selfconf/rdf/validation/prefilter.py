@@ -9,6 +9,7 @@ bad one; that is a property test.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -46,6 +47,7 @@ _STRINGS = frozenset((XSD.string, RDF.langString))
 _EQUIVALENCES = (OWL.equivalentClass, OWL.equivalentProperty)
 _PLACING = frozenset((RDFS.subClassOf, RDFS.subPropertyOf, *_EQUIVALENCES))
 """What gives its subject a place in a hierarchy."""
+_PARTS_OF_TEMPLATE = frozenset((SC.Role, SC.Parameter))
 _REFERRING = (SC.template, SC.component, SC.recruited, SC["from"], SC.to)
 """How tasks and configurations name their templates and components."""
 TERM_POSITIONS = (
@@ -73,6 +75,8 @@ FileTerm = str | Lexical
 Properties = dict[str, dict[FileTerm, None]]
 """The values of each property of one subject, each once, in the order of the text."""
 Statements = dict[str, Properties]
+TemplateDescription = Counter[tuple[FileTerm, str, FileTerm]]
+"""What is said of a thing and of its parts: subject, predicate and object of each statement, and how often."""
 
 
 @immutable
@@ -99,7 +103,7 @@ class Prefiltered:
     relevant: bool = False
     """Whether the file speaks of anything that is validated."""
     components: list[str] = field(default_factory=list)
-    templates: list[str] = field(default_factory=list)
+    templates: dict[str, TemplateDescription] = field(default_factory=dict)
     answers: bool = False
     """Whether the file has a configuration."""
     referred: set[str] = field(default_factory=set)
@@ -136,6 +140,7 @@ def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.
     statements = _read(octets, base, syntax, found)
     for subject, properties in statements.items():
         _note(found, subject, properties)
+    found.templates = {one: _description(statements, one) for one in found.templates}
     advertisements = _Advertisements(statements)
     found.clear = (
         found.clear
@@ -219,13 +224,38 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     if SC.Component in types:
         found.components.append(subject)
     if SC.Template in types:
-        found.templates.append(subject)
+        found.templates[subject] = Counter()
     found.answers = found.answers or SC.Configuration in types
     for predicate in _REFERRING:
         found.referred.update(value for value in properties.get(predicate, ()) if isinstance(value, str))
     signals = properties.get(SC.signalType, ())
     found.signals.update(value for value in signals if isinstance(value, str) and value[:2] != "_:")
     found.relevant = found.relevant or any(_validated(term) for term in (*properties, *types))
+
+
+def _description(statements: Statements, template: str) -> TemplateDescription:
+    """What is said of a template, its roles and its parameters, but for labels; blank nodes are all alike in it."""
+    found: TemplateDescription = Counter()
+    seen, waiting = {template}, [template]
+    while waiting:
+        subject = waiting.pop()
+        for predicate, values in statements[subject].items():
+            for value in values if predicate not in _PLAIN else ():
+                found[_anonymous(subject), predicate, _anonymous(value)] += 1
+                if isinstance(value, str) and value not in seen and _is_part(statements, value):
+                    seen.add(value)
+                    waiting.append(value)
+    return found
+
+
+def _anonymous(term: FileTerm) -> FileTerm:
+    return "_:" if isinstance(term, str) and term[:2] == "_:" else term
+
+
+def _is_part(statements: Statements, node: str) -> bool:
+    """Whether a node is one of a template's own: in brackets, a role or a parameter."""
+    said = statements.get(node, {})
+    return bool(said) and (node[:2] == "_:" or not _PARTS_OF_TEMPLATE.isdisjoint(said.get(TYPE, ())))
 
 
 def _below(subject: str, properties: Properties) -> Iterator[tuple[str, str]]:

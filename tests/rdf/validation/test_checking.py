@@ -113,6 +113,26 @@ def test_a_component_that_two_files_describe_is_an_error_in_the_second() -> None
     assert "0.ttl" in problem.message
 
 
+LAMPS = ":lamps a sc:Template ; sc:roles ( :lamp ) . :lamp a sc:Role ; sh:class rob:Lamp ; {} ."
+ROOM = "sh:property [ sh:path rob:place ; sh:in ( {} ) ]"
+
+
+def test_a_template_that_two_files_describe_differently_has_a_warning_in_the_second() -> None:
+    one, two = LAMPS.format(ROOM.format(":hall")), LAMPS.format(ROOM.format(":kitchen"))
+    assert [(found.file, found.code) for found in check(one, two).diagnostics] == [("1.ttl", "SC-L31")]
+    (found,) = check(two, "\n" + one, two).diagnostics
+    assert (found.file, found.line) == ("1.ttl", PREAMBLE.count("\n") + 2)
+    assert "0.ttl" in found.message
+
+
+def test_copies_of_a_template_in_files_of_tasks_and_of_advertisements_are_no_mistake() -> None:
+    template = LAMPS.format(ROOM.format(":hall"))
+    task = ":evening a sc:Task ; sc:template :lamps ."
+    inside = ":lights a sc:Component, :Lights ; sc:grounding [ sc:template :lamps ] ."
+    labelled = template + ' :lamps rdfs:label "lamps"@en . :hall a :Room .'
+    assert not check(template, template + task, template + inside, labelled).diagnostics
+
+
 def test_an_advertisement_needs_no_port_no_label_and_no_known_type() -> None:
     assert check(":a a sc:Component, <https://example.org/else#Thing> .").conforms
 

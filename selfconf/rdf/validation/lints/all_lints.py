@@ -29,7 +29,7 @@ from selfconf.rdf.validation.lints.terms import (
     misplaced_terms,
     ownerless_ports,
     prefixes,
-    repeated_components,
+    repeated_descriptions,
     typed_operations,
     undeclared_prefixes,
     unfit_literals,
@@ -46,7 +46,7 @@ def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
 
 WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unknown_terms,
-    repeated_components,
+    repeated_descriptions,
     prefixes,
     undeclared_prefixes,
     ownerless_ports,

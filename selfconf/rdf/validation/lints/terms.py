@@ -169,12 +169,16 @@ def _closest(word: str, known: list[str]) -> str | None:
     return alike[0] if alike else None
 
 
-def repeated_components(file: LintedFile) -> Iterator[Diagnostic]:
-    """Components that another file describes as well."""
-    for component, other in file.elsewhere.items():
-        offset = file.offset(URIRef(component))
-        message = f"The component {file.short(component)} is described in {other} as well."
-        yield at(file.positions, offset, "SC-L04", message)
+def repeated_descriptions(file: LintedFile) -> Iterator[Diagnostic]:
+    """Components that another file describes as well, and templates that another describes otherwise."""
+    for thing, other in file.elsewhere.items():
+        offset, short = file.offset(URIRef(thing)), file.short(thing)
+        if (URIRef(thing), RDF.type, URIRef(_SC.Component)) in file.graph:
+            yield at(file.positions, offset, "SC-L04", f"The component {short} is described in {other} as well.")
+        else:
+            message = f"The template {short} is described in {other} as well, and not as it is here."
+            hint = "Give one of the two another IRI, or describe both alike."
+            yield at(file.positions, offset, "SC-L31", message, hint=hint)
 
 
 def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
