@@ -155,10 +155,12 @@ class _NearestSearch:
 
         `fixed` says that clauses can go on from there.
         """
-        budget = Budget(min(steps, DEPTH_FIRST_STEPS))
+        few = min(steps, DEPTH_FIRST_STEPS)
+        budget = Budget(few)
         found = None if self.problem.valueless else self.with_losses(0, budget)
         if budget.steps or self.problem.valueless or (fixed and found is not None):
-            return found, budget
+            # Where no clauses go on from there, all other steps are for depth-first search too.
+            return found, budget if fixed else Budget(steps - few + (budget.steps or 0))
         alone = self.running_alone()
         if alone is not None and self.meet(alone) == (self.whole, self.possible):
             return alone, Budget(0)  # none is nearer, but another one may be the first of the nearest

@@ -189,6 +189,21 @@ def test_when_the_steps_end_the_answer_is_the_nearest_configuration_that_was_met
     ] == [("blind", 0, False), ("half", 1, False), ("full", 2, False), ("full", 2, True)]
 
 
+def test_all_steps_are_for_some_losses_where_it_is_soon_seen_that_there_are_any() -> None:
+    useless = [component(f"useless{number:04}", "u:Unfed") for number in range(2_500)]
+    moving, other, stays = component("moving"), component("other"), component("stays")
+    counts = {"alone": (1, 2)}  # nothing that clauses could go on with
+    before = {"alone": [component("lost")], "crowd": [moving], "kept": [stays]}
+    running = first.search(problem(before, counts=counts))
+    assert isinstance(running, Configuration)
+    # Only the component that plays for the crowd can replace the one that is lost, and the crowd has one more.
+    left = problem({"alone": [moving], "crowd": [*useless, other], "kept": [component("a"), stays]}, counts=counts)
+    found = reconfigure.nearest(left, running)
+    assert isinstance(found, reconfigure.Reconfiguration)
+    assert [one.short for one in found.configuration.components] == ["moving", "other", "stays"]
+    assert found.proved
+
+
 def test_what_runs_stays_where_it_is_enough_by_itself_though_many_could_come_before_it() -> None:
     """Six roles in a ring, each with room for all: c0 is lost, and what is left of those that run needs no other."""
     names = [f"r{number}" for number in range(6)]

@@ -69,8 +69,8 @@ def first_recruited(
     """Return the configuration of the first players that recruits can feed, or None.
 
     For when the first solution is not one of them: recruits may need what a player issues, or play a role themselves.
-    With a configuration that runs they are the first of those that keep the most of its players in their roles; or,
-    where the steps end before that is known, those that keep the most of those met.
+    With a configuration that runs they are the first of those that keep the most of its players in their roles. Without
+    a solver, or where the steps end before that is known, others might keep more.
     """
     search = _by_clauses if solver_available() else _by_enumeration
     playing = None if problem.valueless else search(problem, Budget(steps), running)
