@@ -4,9 +4,9 @@ It implements most of the rules of OWL 2 RL (OWL 2 Profiles, section 4.3). Of th
 version 0.4 lacks *scm-int* and *scm-uni* (a class lies below what it is an intersection of, and above what it is a
 union of), which are applied here beforehand, since they need nothing but the lists. It also lacks those that compare
 restrictions (*scm-svf*, *scm-avf*, *scm-hv*), and does not count a term among the terms that are the same as a class or
-property (*eq-rep* together with *scm-cls*, *scm-op*, *scm-dp*). So an ontology that uses
-other words of OWL, RDFS and RDF than those below, by which both reasoners infer the same hierarchy, is left to owlrl:
-restrictions, `owl:sameAs` and what may entail it, and statements about the words of OWL themselves.
+property (*eq-rep* together with *scm-cls*, *scm-op*, *scm-dp*), nor every class below `owl:Thing` (*scm-cls*). So an
+ontology that uses other words of OWL, RDFS and RDF than those below, by which both reasoners infer the same hierarchy,
+is left to owlrl: restrictions, `owl:sameAs` and what may entail it, and statements about the words of OWL themselves.
 """
 
 from __future__ import annotations
@@ -39,6 +39,9 @@ OWL_KINDS = frozenset(
     )
 )  # fmt: skip
 
+_OF_THINGS = frozenset((TYPE, RDFS.subClassOf, RDFS.domain, RDFS.range))
+"""What may lead to owl:Thing; as equal to a class, or as a part of one, it would lie below it, with all classes."""
+
 
 def suits(triples: Sequence[Triple]) -> bool:
     """Whether `reasonable` is installed and certain to find what owlrl finds."""
@@ -50,6 +53,7 @@ def suits(triples: Sequence[Triple]) -> bool:
             _of_owl(subject)
             or (_of_owl(predicate) and predicate not in OWL_AXIOMS | OWL_ANNOTATIONS)
             or (_of_owl(value) and value not in OWL_KINDS)
+            or (value == OWL.Thing and predicate not in _OF_THINGS)
             for subject, predicate, value in triples
         )
     )

@@ -96,6 +96,8 @@ def test_the_ontologies_of_selfconf_suit_and_both_reasoners_infer_one_hierarchy(
         ":A owl:onProperty :p ; owl:someValuesFrom :B .",
         ":p rdfs:subPropertyOf rdfs:subClassOf .",
         "owl:Thing rdfs:subClassOf :A .",
+        ":A owl:equivalentClass owl:Thing .",
+        ":A owl:unionOf ( :B owl:Thing ) .",
         ":A rdfs:subClassOf owl:Nothing .",
         ":l rdf:first :A , :B .",
     ],
@@ -108,6 +110,8 @@ def test_an_ontology_that_uses_anything_else_is_left_to_owlrl(axiom: str) -> Non
     ("ontology", "lower", "higher"),
     [
         (":p owl:sameAs :q . :q a owl:ObjectProperty .", "p", "q"),
+        (":B owl:equivalentClass owl:Thing . :A a owl:Class .", "A", "B"),
+        (":B owl:unionOf ( owl:Thing ) . :A a owl:Class .", "A", "B"),
         (
             ":p rdfs:subPropertyOf :q . :A owl:onProperty :p ; owl:hasValue 1 .:B owl:onProperty :q ; owl:hasValue 1 .",
             "A",
