@@ -33,11 +33,17 @@ LIMIT = 120.0
 
 
 def cache_folder() -> Path:
-    """Where closures are kept: `$SELFCONF_CACHE_DIR`, or `selfconf` in the user's cache folder."""
+    """Where closures are kept: `$SELFCONF_CACHE_DIR`, or `selfconf` in the user's cache folder.
+
+    Where there is neither, nothing can be written there, nor is anything found.
+    """
     given = os.environ.get("SELFCONF_CACHE_DIR")
     if given:
         return Path(given)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "selfconf"
+    try:
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "selfconf"
+    except RuntimeError:  # HOME is not set, and the user is in no list, as in a container with a number for a user
+        return Path(os.devnull) / "selfconf"
 
 
 def entailed_hierarchy(triples: Iterable[Triple]) -> Iterator[Triple]:

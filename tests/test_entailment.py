@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import selfconf as sc
 from selfconf import entailment
 from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import Reasoning
@@ -50,6 +51,17 @@ def test_a_closure_that_takes_too_long_is_ended_with_advice(monkeypatch: pytest.
     monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", "0.01")
     with pytest.raises(AuthorError, match=r"takes more than 0\.01 s; use reasoning='subclass'"):
         closed()
+
+
+def test_without_a_home_nothing_is_remembered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for variable in ("SELFCONF_CACHE_DIR", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("pwd.getpwuid", {}.__getitem__)  # the user is in no list
+    file = tmp_path / "nothing.ttl"
+    file.write_text("<urn:a> <urn:p> <urn:b> .")
+    for _ in range(2):
+        assert closed() >= {("Tracker", "Sensor")}
+        assert sc.validate(file, cache=True).conforms
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
