@@ -197,7 +197,9 @@ def test_all_steps_are_for_some_losses_where_it_is_soon_seen_that_there_are_any(
     running = first.search(problem(before, counts=counts))
     assert isinstance(running, Configuration)
     # Only the component that plays for the crowd can replace the one that is lost, and the crowd has one more.
-    left = problem({"alone": [moving], "crowd": [*useless, other], "kept": [component("a"), stays]}, counts=counts)
+    left = problem(
+        {"alone": [moving], "crowd": [*useless, other, moving], "kept": [component("a"), stays]}, counts=counts
+    )
     found = reconfigure.nearest(left, running)
     assert isinstance(found, reconfigure.Reconfiguration)
     assert [one.short for one in found.configuration.components] == ["moving", "other", "stays"]
