@@ -24,7 +24,7 @@ from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError
 from selfconf.model.immutable import immutable
 from selfconf.protocol.codec import decode
-from selfconf.protocol.keys import Keys
+from selfconf.protocol.keys import Keys, life_of
 from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.protocol.stamps import StampReader
 from selfconf.sdk.code_thread import CodeThread
@@ -282,7 +282,7 @@ class InputSubscription:
             self._ask_if_lost()
             return
         self._lives.discard(key)
-        if not self._lives:
+        if not self._lives or life_of(key) == self._heard_life:  # another process may be the component, and not act
             self._bus.later(0.0, partial(self._end_life, self._heard_at))
 
     def _end_life(self, heard: float) -> None:
@@ -314,14 +314,19 @@ class InputSubscription:
         """Whether a life of the component is seen to live."""
         return self._keys.life(self._wire.component, life) in self._lives
 
+    @property
+    def _heard_life(self) -> str:
+        """The life that has issued the newest signal, which may still wait: the code may be busy, as in `started`."""
+        waiting = self._queue.newest()
+        stamp = self._stamp_of(waiting) if waiting is not None else None
+        return self._order.newest.life if stamp is None else stamp.life
+
     def _look_for_sign(self, heard: float) -> None:
         """An output of which no life is seen, and that has issued a signal, as of some time, is lost without a sign.
 
         That is the life that has issued it, or another signal, and so on.
         """
-        waiting = self._queue.newest()  # the code may be busy, as in `started`
-        stamp = self._stamp_of(waiting) if waiting is not None else None
-        if self._ended or self.lost or self._shows(self._order.newest.life if stamp is None else stamp.life):
+        if self._ended or self.lost or self._shows(self._heard_life):
             return
         if self._heard_at > heard:
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))

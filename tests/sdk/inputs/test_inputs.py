@@ -13,6 +13,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.blindness import TOLERATES
+from selfconf.sdk.component import Component
 from selfconf.sdk.inputs.input_subscription import JUST_COME, UNSEEN
 from selfconf.sdk.inputs.inputs import HANDOVER, HANDOVER_CHECK
 from selfconf.sdk.inputs.silence_watch import PATIENCE
@@ -186,6 +187,23 @@ def test_a_signal_that_is_doubled_while_its_source_is_out_of_sight_feeds_nothing
     stage.others.publisher(KEYS.output(TRACKER, "pose"), Urgency.SIGNAL).put(*doubled)
     stage.let_pass(0.5)
     assert stage.recorder.said[-1] == ("unfed", "position")
+
+
+def test_an_input_is_unfed_when_the_life_that_fed_it_has_ended_though_another_process_is_the_same_component() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.call(follow())
+    tracker.component.emit("pose", 1)
+    stage.let_pass(0.1)
+    other = ComponentRuntime(stage.network.node(), KEYS, TRACKER_PROFILE, Component(), "life-s")
+    assert stage.network.run(lambda: tracker.closed, 5.0), "of two lives the smaller stays"
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
+    stage.caller.ask(KEYS.call(TRACKER, "apply"), encode(apply(2)), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    other.component.emit("pose", 2)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[3:] == [("fed", "position"), ("position", 2)]
 
 
 def test_an_input_that_follows_two_outputs_is_fed_while_one_of_them_is_left() -> None:
