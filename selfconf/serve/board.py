@@ -52,7 +52,7 @@ class Board:
         self._metrics.changes += 1
         self._answers.clear()
         for event in change.events:
-            self._metrics.happened(str(event.get("act")), str(event.get("cause", "")))
+            self._metrics.happened(str(event.get("act")), str(event.get("cause", "")), event["time"])
         for component, found in change.advertised.items():
             self._advertise(component, found)
         for known, new in (

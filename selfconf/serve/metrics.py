@@ -18,7 +18,12 @@ OTHER = "other"
 class Metrics:
     """Counts queries, failures and configurations since the server began."""
 
-    def __init__(self) -> None:
+    def __init__(self, began: float = 0.0) -> None:
+        """`began` is when, in seconds of the Unix epoch: configurators tell their latest events of before, too.
+
+        Were these counted, each start of a server would look like a rush of failures.
+        """
+        self._began = began
         self._queries: Counter[str] = Counter()
         self._query_seconds = 0.0
         self._losses: Counter[str] = Counter()
@@ -31,8 +36,10 @@ class Metrics:
         self._queries[status] += 1
         self._query_seconds += seconds
 
-    def happened(self, act: str, cause: str) -> None:
-        """Count an event of a run."""
+    def happened(self, act: str, cause: str, moment: float) -> None:
+        """Count an event of a run, by its time."""
+        if moment < self._began:
+            return
         self._acts[act] += 1
         if act == "lost":
             self._losses[cause if cause in CAUSES else OTHER] += 1

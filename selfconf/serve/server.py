@@ -7,6 +7,7 @@ import logging
 import os
 import signal
 import socket
+import time
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -139,7 +140,7 @@ async def _serve(
     options: ServerOptions,
     listening: Callable[[str], None],
 ) -> None:
-    loop, metrics = asyncio.get_running_loop(), Metrics()
+    loop, metrics = asyncio.get_running_loop(), Metrics(time.time())
     loop.set_exception_handler(LoopFaults())
     board = Board(membership.ecology, metrics)
     sparql = SparqlEndpoint(record.dataset, metrics, options.seconds)
