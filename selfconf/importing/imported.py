@@ -190,4 +190,4 @@ class Renaming:
     source: str
 
     def __str__(self) -> str:
-        return f"{self.source}: {self.was} is described by an earlier source too; here it is called {self.component}"
+        return f"{self.source}: another component is called {self.was} already; here it is called {self.component}"

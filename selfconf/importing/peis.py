@@ -18,7 +18,7 @@ from selfconf.importing.naming import absolute, stem
 from selfconf.importing.sources import SourceDocument
 from selfconf.model.profile import is_port_name
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf.vocabulary import RDFS
+from selfconf.rdf.vocabulary import RDFS, SC, TYPE
 
 KEYS = ("name", "id", "exec", "extraarguments", "initstate", "spawndelay", "semantics", "proxy")
 _TOKEN = re.compile(r"""\s*(?:\#[^\n]*|(?P<single>[=,{}\[\]+])|(?P<quote>["'])|(?P<word>[^\s=,{}\[\]"'+]+))""")
@@ -137,9 +137,10 @@ def _mistake(source: SourceDocument, message: str) -> AuthorError:
 
 
 def _component(name: str, parts: list[Part], source: SourceDocument, ledger: ImportLedger) -> ImportedComponent:
-    kind = absolute(parts[0]) if isinstance(parts[0], str) else None
-    if kind is None:
-        ledger.leave_out("types that are no IRIs", "the component is of the class of all PEIS components", source)
+    kind = _kind(parts[0], source, ledger)
+    for text in parts[1:3]:
+        if isinstance(text, list) and text:
+            ledger.leave_out("names and descriptions that are lists", "people are to read them", source)
     title = parts[1] if isinstance(parts[1], str) else ""
     called = name or title or stem(source)
     for unknown in parts[4:6]:
@@ -160,8 +161,18 @@ def _component(name: str, parts: list[Part], source: SourceDocument, ledger: Imp
     )
 
 
+def _kind(part: Part, source: SourceDocument, ledger: ImportLedger) -> IRI | None:
+    """The type of a component, if it is one that the component may have."""
+    found = absolute(part) if isinstance(part, str) else None
+    if found is not None and found not in SC:
+        return found
+    what = "types that are no IRIs" if found is None else "types of selfconf"
+    ledger.leave_out(what, "the component is of the class of all PEIS components", source)
+    return None
+
+
 def _pairs(part: Part, source: SourceDocument, ledger: ImportLedger) -> Iterator[tuple[str, str]]:
-    for pair in part if isinstance(part, list) else ():
+    for pair in part if isinstance(part, list) else [part] if part else []:
         match pair:
             case [str(first), str(second)] if first:
                 yield first, second
@@ -174,6 +185,8 @@ def _properties(part: Part, source: SourceDocument, ledger: ImportLedger) -> Ite
         predicate = absolute(name)
         if predicate is None:
             ledger.leave_out("properties that are no IRIs", "a property is an IRI", source)
+        elif predicate in SC or predicate == TYPE:
+            ledger.leave_out("terms of selfconf", "an import states those itself", source)
         else:
             yield predicate, absolute(value) or Literal(value)
 

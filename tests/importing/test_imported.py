@@ -58,4 +58,5 @@ def test_what_is_left_out_and_what_is_renamed_are_sentences() -> None:
     )
     assert str(Omission("forms", "why", ("a", "b", "c"), 3)).endswith("in a, b and c")
     assert str(Omission("forms", "why", ("a", "b", "c", "d"), 4)).endswith("in a, b and 2 others")
-    assert "urn:x:lamp-2" in str(Renaming(IRI("urn:x:lamp-2"), LAMP, "b.json"))
+    renamed = Renaming(IRI("urn:x:lamp-2"), LAMP, "b.json")
+    assert str(renamed) == f"b.json: another component is called {LAMP} already; here it is called urn:x:lamp-2"

@@ -155,3 +155,21 @@ def test_astrid_of_2008_plays_her_roles_of_figure_7(workshop: Workshop) -> None:
     assert isinstance(answer, Answer)
     flows = {(str(each.source).rpartition(":")[2], each.output, each.input) for each in answer.connections}
     assert {("ring", "sonar.range", "sonar"), ("wheels", "position.0.odopos", "localize")} < flows
+
+
+def test_what_is_no_list_of_pairs_and_what_is_said_in_terms_of_selfconf_is_named(workshop: Workshop) -> None:
+    sc = "https://w3id.org/selfconf#"
+    report = workshop.imported(
+        "peis",
+        {
+            "a.cmp": "Name=a Semantics='(urn:x:T (b c) (d) e () () () f)'",
+            "b.cmp": f"Name=b Semantics='({sc}Template b d (({sc}preference high)) () () () ())'",
+        },
+    )
+    assert left_out(report) == {
+        "names and descriptions that are lists": 2,
+        "parts that are no pairs": 2,
+        "terms of selfconf": 1,
+        "types of selfconf": 1,
+    }
+    assert "Template" not in workshop.texts()["b.ttl"]
