@@ -152,7 +152,8 @@ class ThingWorld:
                     self._tell(f"there are more than {MOST_THINGS} things; a bridge stands for so many")
                 here.setdefault(iri, thing)
         for iri in self._watches.keys() - here.keys():
-            self._watches.pop(iri).end()
+            gone = self._watches.pop(iri)
+            gone.end(f"{gone.thing.source.shown} describes it no more")
             self._bridge.withdraw(iri)
         for iri, thing in list(here.items())[:MOST_THINGS]:
             watch = self._watches.get(iri)
@@ -169,7 +170,7 @@ class ThingWorld:
             before.thing = thing
             return
         if before is not None:
-            before.end()
+            before.end(f"{thing.source.shown} describes it anew")
         try:
             self._watches[iri] = ThingWatch(thing, found, self._bridge, self._client, self._settings)
         except OSError as error:  # it is tried again at the next reading
@@ -219,9 +220,11 @@ class ThingWatch:
         bridge.advertise(self._iri, document)
         self._looking = asyncio.ensure_future(self._look())
 
-    def end(self) -> None:
-        """Look no more: the thing is described no more, or otherwise."""
+    def end(self, reason: str) -> None:
+        """Look no more, and say why to the task that holds it: the thing is described no more, or otherwise."""
         self._looking.cancel()
+        if self._code is not None and self._code.active:
+            self._code.fail(reason)
 
     async def _look(self) -> None:
         loop = asyncio.get_running_loop()

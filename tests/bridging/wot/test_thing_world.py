@@ -16,7 +16,7 @@ from selfconf.bridging.wot.thing_client import ThingLimits
 from selfconf.bridging.wot.thing_world import is_url
 from selfconf.files import advertisements
 from tests.bridging.thing_server import ThingServer, reply
-from tests.bridging.wot.bridged import HASTY, bridging, written
+from tests.bridging.wot.bridged import HASTY, active, bridging, written
 from tests.sdk.living import LivingStage, until
 
 Start = Callable[[], ThingServer]
@@ -48,6 +48,20 @@ def test_a_thing_that_is_described_anew_is_another_component(
         written(tmp_path, server.describe(**{"@type": "rob:Display"}))
         assert until(lambda: "rob:Display" in path.read_text() and found.lives("lamp"))
         assert len(list(found.folder.glob("*.ttl"))) == 1
+
+
+@pytest.mark.parametrize(("then", "words"), [("rob:Display", "describes it anew"), (None, "describes it no more")])
+def test_a_task_hears_why_a_thing_that_it_holds_lives_no_more(
+    thing_server: Start, living: LivingStage, tmp_path: Path, then: str | None, words: str
+) -> None:
+    server = thing_server()
+    server.values.update({"/on": True, "/things": [server.describe()]})
+    source = f"{server.url}/things"
+    with bridging(living, tmp_path / "ads", source) as found:
+        active(found)
+        server.values["/things"] = [] if then is None else [server.describe(**{"@type": then})]
+        assert until(lambda: found.causes() == [f"{source} {words}"])
+        assert until(lambda: found.lives("lamp") is (then is not None))
 
 
 def test_a_thing_goes_on_of_which_a_directory_says_when_it_was_asked(
