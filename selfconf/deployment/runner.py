@@ -61,20 +61,19 @@ from selfconf.deployment.components import (
 )
 from selfconf.deployment.lasting_losses import LastingLosses
 from selfconf.deployment.notices import RunNotices
+from selfconf.deployment.readiness import Readiness
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import Retries
+from selfconf.deployment.run_reports import AT_LEISURE, RunReports
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.deployment.task_discovery import TaskDiscovery
 from selfconf.deployment.task_search import TaskSearch
-from selfconf.deployment.warm_up import warm_up_failure
 from selfconf.discovery import EcologyView
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.immutable import FrozenMapping, replace
-from selfconf.model.refusal import Refusal
 from selfconf.model.run_event import (
-    AnyRunEvent,
     ComponentLost,
     FailWatched,
     TaskRefused,
@@ -88,20 +87,12 @@ from selfconf.protocol.messages import RecordedLoss, Status, Wire
 
 log = logging.getLogger(__name__)
 
-AT_LEISURE = 0.01
-"""Seconds by which reports and releases are delayed while a configuration is deployed: nothing waits for them."""
-APPEARED_TOGETHER = 0.3
-"""Seconds for which what appears while a task runs is gathered, before it is found out what may come next."""
 RETURN = 3.0
 """Seconds for which a task that does not wait is not refused for lack of what has gone without a word.
 
 By then that has turned itself off (`selfconf.deployment.components.calls.GONE`), so the refusal need not doubt it."""
 LOSSES_TOLD = 1000
 """How many losses are named at most, the newest: where ever new components come and go they have no end."""
-PULSE = 0.25
-"""How often, in seconds, a configurator looks whether it has been suspended."""
-SUSPENDED = 1.0
-"""A pause of so many seconds more than `PULSE` means that this program was suspended, and so cut off."""
 
 
 class TaskRunner:
@@ -140,7 +131,9 @@ class TaskRunner:
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._lives = HeldLives(self.ecology)
-        context = TaskContext(self.ecology, lambda: self.state, self._step, self._report)
+        self._notices = RunNotices(bus, self.keys, self.name, task)
+        self.reports = RunReports(bus, request, self._notices, clock)
+        context = TaskContext(self.ecology, lambda: self.state, self._step, self.reports.note)
         self._waking = Waking(context, self._lives)
         self._ends = PortEnds(self.ecology, request.outside)
         self._calls = Calls(context, self.identity, self.supervisor, self._lives, self._waking, self._ends)
@@ -148,6 +141,7 @@ class TaskRunner:
         self._reachability = Reachability(context, self._calls, sites)
         self._liveness = Liveness(context, self._calls, self._waking, sites, self._reachability)
         self._audits = Audits(context, self._calls, self._reachability)
+        self._readiness = Readiness(context, request, self._calls, self._liveness, self._reachability)
         self._discovery = TaskDiscovery(context, self.name, self._liveness, request.without_configurator)
         self._search = TaskSearch(context, request, self._liveness, self._give_up)
         self._lasting_losses = LastingLosses(context)
@@ -155,15 +149,10 @@ class TaskRunner:
         self._record = DeploymentRecord(
             bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
         )
-        self._notices = RunNotices(bus, self.keys, self.name, task)
         self._events: deque[Event] = deque()
         self._stepping = False
-        self._stands_by_anew = False
-        """Whether the time is set to be ready for a failure with what has appeared."""
-        self._unreported: list[AnyRunEvent] = []
         self._leave = bus.announce(self.supervisor)
-        self._last_pulse = bus.now()
-        self._messages = ComponentMessages(context, task, self._lives, self._ends, self._heed)
+        self._messages = ComponentMessages(context, task, self._lives, self._ends, self._reachability.heed)
         self._subscriptions = [
             bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
             bus.subscribe(
@@ -174,7 +163,7 @@ class TaskRunner:
     def start(self) -> None:
         """Begin with act 1."""
         self._audits.go_on()
-        self._pulse()
+        self._reachability.pulse()
         self._step(Accepted(int(self.clock() * 1000)))
 
     def adopt(self, configuration: Configuration, epoch: int, lost: tuple[RecordedLoss, ...] = ()) -> None:
@@ -183,7 +172,7 @@ class TaskRunner:
         That had lost some components, as `recorded_losses` of its runner said.
         """
         self._audits.go_on()
-        self._pulse()
+        self._reachability.pulse()
         self._step(Adopted(epoch, configuration, lost))
 
     def hand_over(self) -> None:
@@ -274,9 +263,8 @@ class TaskRunner:
         if isinstance(event, Appeared) and self.state.target is not None:
             self._retries.settle()
             self._search.prepare()
-            if event.lives and not self._stands_by_anew:
-                self._stands_by_anew = True
-                self.bus.later(APPEARED_TOGETHER, self._stand_by_anew)
+            if event.lives:
+                self._readiness.prepare_soon()
         if isinstance(event, Composed):
             self._search.prepare()  # what was found, or is held by others, may be other than before
             if self.state.left_to_others:
@@ -292,57 +280,13 @@ class TaskRunner:
                 self.trouble = ProgrammerError(f"{type(effect).__name__} broke: {type(error).__name__}: {error}")
                 self._events.append(Stopped())
 
-    def _pulse(self) -> None:
-        """Look from time to time whether this program was suspended, for as long as the task goes on."""
-        if not self.state.ended:
-            self.bus.later(PULSE, self._pulse)
-            self._look_whether_suspended()
-
-    def _look_whether_suspended(self) -> None:
-        """Notice that this program was suspended: whatever has not been answered meanwhile says nothing."""
-        now = self.bus.now()
-        late, self._last_pulse = now - self._last_pulse - PULSE, now
-        if late > SUSPENDED:
-            log.warning("this program was suspended for %.1f s; looking at what has become of the ecology", late)
-            self._reachability.suspended()
-
-    def _heed(self, failed: Failed) -> None:
-        """Take in a failure that was heard of, perhaps before the first pulse after a suspension."""
-        self._look_whether_suspended()
-        self._reachability.heed(failed)
-
-    def _stand_by_anew(self) -> None:
-        """Be ready for a failure with all that has appeared for a while, as a process may hold many components."""
-        self._stands_by_anew = False
-        if self.state.phase is Phase.RUNNING and self.state.target is not None:
-            self._stand_by(self.state.target)
-
-    def _stand_by(self, configuration: Configuration) -> None:
-        """Be ready for a failure: what may come next is listened to, and one is gone through."""
-        state = self.state
-        lost, epoch = frozenset(state.lost), state.epoch
-
-        def work() -> None:
-            standby = self.request.standby(configuration, lost)
-
-            def send() -> None:
-                if self.state.epoch == epoch and self.state.phase is Phase.RUNNING and not self._reachability.unsure:
-                    self._calls.stand_by(configuration, standby)
-                    sources = {wire.component for some in standby.values() for wires in some.values() for wire in wires}
-                    self._liveness.select(sources, lambda: None)
-
-            self.bus.wake_up(send)
-            warm_up_failure(state)
-
-        self.request.aside(work)
-
     def _changed_phase(self, before: Phase) -> None:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
         if self.state.phase is Phase.RUNNING:
             self._retries.runs()
         if self.state.phase is Phase.REFUSED and self.state.patient:
-            self._report(TaskWaiting(self.state.refusal, self.losses))
+            self.reports.note(TaskWaiting(self.state.refusal, self.losses))
             self._retries.await_another_chance()
 
     @property
@@ -369,29 +313,10 @@ class TaskRunner:
             if before is None or replace(before, startable=loss.startable) != loss:
                 self._waking.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
-                self._report(ComponentLost(component, loss.cause.value, loss.detail))
+                self.reports.note(ComponentLost(component, loss.cause.value, loss.detail))
                 self._lasting_losses.lost()
             elif before is not loss and loss.life:
                 self._lives.lost(component, loss.life)
-
-    def _report(self, event: AnyRunEvent) -> None:
-        """Note an event with its time, and report it when there is nothing more urgent to do."""
-        if not self._unreported:
-            self.bus.later(AT_LEISURE, self.report_all)
-        self._unreported.append(replace(event, time=self.clock()))
-
-    def explained(self, event: TaskWaiting, refusal: Refusal) -> None:
-        """Tell observers what else was found out about an event that was reported; may be called from any thread."""
-        self.bus.wake_up(lambda: self._notices.amend(event, replace(event, refusal=refusal)))
-
-    def report_all(self) -> None:
-        """Report now all that has happened; called in the thread of the bus."""
-        unreported, self._unreported = self._unreported, []
-        for event in unreported:
-            self._notices.put(event)
-            self.request.report(event)
-            if isinstance(event, TaskWaiting) and isinstance(event.refusal, Refusal):
-                self.request.explain(event.refusal, partial(self.explained, event))
 
     # Effects.
 
@@ -403,7 +328,7 @@ class TaskRunner:
             case Compose():
                 self._search.begin(effect)
             case Watch():
-                self._report(FailWatched(effect.component))
+                self.reports.note(FailWatched(effect.component))
                 self._messages.watch(effect.component)
             case Unwatch():
                 self._messages.unwatch(effect.component)
@@ -426,8 +351,8 @@ class TaskRunner:
                 self.bus.later(leisure, partial(self._calls.release, effect))
             case Running():
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())
-                self._report(TaskRunning(effect.configuration, self.state.epoch))
-                self._stand_by(effect.configuration)
+                self.reports.note(TaskRunning(effect.configuration, self.state.epoch))
+                self._readiness.prepare()
                 self._search.prepare()
                 self._retries.settle()
             case Finish():
@@ -445,9 +370,9 @@ class TaskRunner:
 
     def _finish(self, effect: Finish) -> None:
         refusal, lost, owed = effect.refusal, self.losses, self._out_of_control
-        self._report(TaskStopped(lost=lost, owed=owed) if refusal is None else TaskRefused(refusal, lost, owed))
+        self.reports.note(TaskStopped(lost=lost, owed=owed) if refusal is None else TaskRefused(refusal, lost, owed))
         try:
-            self.report_all()
+            self.reports.tell()
         finally:  # the end of a task must not depend on what receives the reports
             self._leave()  # a component that could not be released turns itself off now
             self._messages.close()

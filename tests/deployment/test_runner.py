@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,10 +13,8 @@ from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Loss, Phase, Policy
 from selfconf.deployment.runner import LOSSES_TOLD
 from selfconf.model.refusal import TooFewEligible
-from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Release, Status, TaskRecord, Verdict
-from selfconf.render.run_events import event_body
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, Lab, Recorder, iri
@@ -217,20 +214,6 @@ def test_a_stranger_cannot_release_what_a_configurator_holds(lab: Lab) -> None:
     assert "drive" in lab.active()
 
 
-def test_what_it_does_is_reported_in_the_order_of_the_four_acts(lab: Lab) -> None:
-    lab.running(lab.agent())
-    lab.let_pass(0.1)
-    acts = [account.act for account in lab.events]
-    firsts = [
-        acts.index(act) for act in ("query", "discovered", "composed", "watching", "activating", "set", "running")
-    ]
-    assert firsts == sorted(firsts)
-    assert max(i for i, act in enumerate(acts) if act == "watching") < acts.index("activating")
-    connected = {(str(a.source), str(a.output)) for a in lab.acts("connecting")}
-    assert (str(iri("person-tracker")), "pose") in connected
-    assert all(event_body(event) for event in lab.events)
-
-
 def test_a_configurator_that_has_ended_asks_nobody_any_more(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
     agent = lab.agent(bound=(("robot", ":Nobody"), ("goal", "(AT BEDROOM)")))
     assert lab.until(lambda: bool(lab.ended))
@@ -278,68 +261,3 @@ def test_why_a_component_was_lost_is_its_cause_where_nothing_else_is_known(lab: 
     lab.components["tracker"].fail("")
     lab.let_pass(1.0)
     assert agent.losses == {iri("person-tracker"): "fail"}
-
-
-def test_however_many_components_come_back_at_once_it_is_found_out_once_what_may_come_next(
-    lab: Lab, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    agent = lab.agent()
-    lab.running(agent)
-    lab.let_pass(1.0)
-    found_out: list[object] = []
-    monkeypatch.setattr(agent._calls, "stand_by", lambda configuration, standby: found_out.append(standby))
-    for _ in range(5):
-        lab.crash("odometry")
-        lab.let_pass(0.01)
-        lab.component("odometry")
-        lab.let_pass(0.01)
-    lab.let_pass(1.0)
-    assert len(found_out) == 1
-
-
-def test_no_component_is_told_anew_what_may_come_next_where_that_has_stayed(
-    lab: Lab, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    agent = lab.agent()
-    lab.running(agent)
-    lab.let_pass(1.0)
-    asked: list[IRI] = []
-    ask = agent._calls._calling.ask
-
-    def noted(component: IRI, *more: Any) -> None:
-        asked.append(component)
-        ask(component, *more)
-
-    monkeypatch.setattr(agent._calls._calling, "ask", noted)
-    lab.crash("odometry")
-    lab.let_pass(0.1)
-    lab.component("odometry")
-    lab.let_pass(1.0)
-    assert asked == []
-
-
-def test_a_component_that_is_applied_to_anew_is_told_again_what_may_come_next(
-    lab: Lab, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    agent = lab.agent()
-    calls, applied, asked = agent._calls, dict[IRI, Any](), list[IRI]()
-    apply, ask = calls._apply, calls._calling.ask
-
-    def noted(effect: Any) -> None:
-        applied[effect.component] = effect
-        apply(effect)
-
-    def noted_ask(component: IRI, *more: Any) -> None:
-        asked.append(component)
-        ask(component, *more)
-
-    monkeypatch.setattr(calls, "_apply", noted)
-    lab.running(agent)
-    lab.let_pass(1.0)
-    component = next(iter(calls._stood_by))
-    monkeypatch.setattr(calls._calling, "ask", noted_ask)
-    apply(applied[component])
-    assert agent.state.target is not None
-    agent._stand_by(agent.state.target)
-    lab.let_pass(1.0)
-    assert asked == [component] * 2, "it is applied to, and then told"

@@ -251,7 +251,7 @@ class Run:
 
     def _aside(self, work: Callable[[], None]) -> Undo:
         """Have the thread that reads the events do what takes long, once it has read what has led to it."""
-        self._in_ecology().runner.report_all()
+        self._in_ecology().runner.reports.tell()
         return self._work.work(work, OF_TASK)
 
     def _distrusted(self) -> None:
@@ -285,7 +285,7 @@ class Run:
             if over:
                 self._told = refusal, searched_ecology(refusal), found[0]
         elif isinstance(event, TaskWaiting):
-            self._in_ecology().runner.explained(event, found[0])
+            self._in_ecology().runner.reports.explained(event, found[0])
         return replace(event, refusal=found[0])
 
     def _with_places(self, refusal: Refusal) -> Refusal:

@@ -7,6 +7,8 @@ the ecology is asked what has become of its components. A program that was suspe
 
 from __future__ import annotations
 
+import logging
+
 from selfconf.configurator import Failed, Reconnected
 from selfconf.deployment.components.calls import Calls
 from selfconf.deployment.components.living_sites import LivingSites
@@ -14,6 +16,12 @@ from selfconf.deployment.task_context import TaskContext
 from selfconf.model.run_event import EcologyReachable, EcologyUnreachable
 from selfconf.model.term import IRI
 
+log = logging.getLogger(__name__)
+
+PULSE = 0.25
+"""How often, in seconds, a configurator looks whether it has been suspended."""
+SUSPENDED = 1.0
+"""A pause of so many seconds more than `PULSE` means that this program was suspended, and so cut off."""
 CUT_OFF = 0.25
 """Seconds between two looks of a configurator that is cut off whether it still is."""
 MOST_REOPENINGS, REOPENINGS_WITHIN = 6, 60.0
@@ -42,6 +50,7 @@ class Reachability:
         """The latest failure of each life of a component that was heard of while this node was unsure."""
         self._reopenings: dict[str, list[float]] = {}
         """When each site has last said that its hub is about to be opened anew."""
+        self._last_pulse = self._bus.now()
 
     @property
     def undisturbed(self) -> bool:
@@ -61,11 +70,24 @@ class Reachability:
         self._report(EcologyReachable())
         self._step(Reconnected())
 
-    def suspended(self) -> None:
-        """This program stood still for a while, as if it had been cut off: so it was, or nearly."""
-        if self._ecology.followed:
-            self.unsure = True
-            self.await_link()
+    def pulse(self) -> None:
+        """Look from time to time whether this program was suspended, for as long as the task goes on."""
+        if not self._state().ended:
+            self._bus.later(PULSE, self.pulse)
+            self._look_whether_suspended()
+
+    def _look_whether_suspended(self) -> None:
+        """Notice that this program stood still for a while: it was as good as cut off.
+
+        Whatever has not been answered meanwhile says nothing.
+        """
+        now = self._bus.now()
+        late, self._last_pulse = now - self._last_pulse - PULSE, now
+        if late > SUSPENDED:
+            log.warning("this program was suspended for %.1f s; looking at what has become of the ecology", late)
+            if self._ecology.followed:
+                self.unsure = True
+                self.await_link()
 
     def reopens(self, site: str) -> None:
         """A site's hub is about to be opened anew: lives seem to end, one after the other, and sites among the last.
@@ -84,7 +106,9 @@ class Reachability:
         """Feed the machine with a failure that was heard of; while this node is unsure, that waits.
 
         A repair would find that nothing answers, and give up what another configurator may have repaired long since.
+        The failure may be heard of before the first pulse after a suspension.
         """
+        self._look_whether_suspended()
         if self._bus.link != self._link:
             self.await_link()
         if self.unsure:

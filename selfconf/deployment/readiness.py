@@ -1,0 +1,55 @@
+"""How a task that runs is ready for a failure: what may come next is listened to, and one failure is gone through."""
+
+from __future__ import annotations
+
+from selfconf.configurator import Phase
+from selfconf.deployment.components import Calls, Liveness, Reachability
+from selfconf.deployment.run_request import RunRequest
+from selfconf.deployment.task_context import TaskContext
+from selfconf.deployment.warm_up import warm_up_failure
+
+APPEARED_TOGETHER = 0.3
+"""Seconds for which what appears while a task runs is gathered, before it is found out what may come next."""
+
+
+class Readiness:
+    """That of one task."""
+
+    def __init__(
+        self, task: TaskContext, request: RunRequest, calls: Calls, liveness: Liveness, reachability: Reachability
+    ) -> None:
+        self._bus, self._state, self._request = task.ecology.bus, task.state, request
+        self._calls, self._liveness, self._reachability = calls, liveness, reachability
+        self._is_due = False
+        """Whether the time is set to be ready with what has appeared."""
+
+    def prepare(self) -> None:
+        """Have the inputs of what runs listen to what may feed them next, and go through a failure."""
+        state, configuration = self._state(), self._state().target
+        if state.phase is not Phase.RUNNING or configuration is None:
+            return
+
+        def work() -> None:
+            standby = self._request.standby(configuration, frozenset(state.lost))
+
+            def send() -> None:
+                now = self._state()
+                if now.epoch == state.epoch and now.phase is Phase.RUNNING and not self._reachability.unsure:
+                    self._calls.stand_by(configuration, standby)
+                    sources = {wire.component for some in standby.values() for wires in some.values() for wire in wires}
+                    self._liveness.select(sources, lambda: None)
+
+            self._bus.wake_up(send)
+            warm_up_failure(state)
+
+        self._request.aside(work)
+
+    def prepare_soon(self) -> None:
+        """Be ready with all that has appeared for a while, as a process may hold many components."""
+        if not self._is_due:
+            self._is_due = True
+            self._bus.later(APPEARED_TOGETHER, self._prepare_anew)
+
+    def _prepare_anew(self) -> None:
+        self._is_due = False
+        self.prepare()
