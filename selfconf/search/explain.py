@@ -64,6 +64,8 @@ def refusal(given: LazyReduction, steps: int = EXPLANATION_STEPS) -> Refusal:
     if oracle.complete:
         found, smallest = smallest_of(oracle, found)
     reason = _Wording(problem, given.reduced, found).reason()
+    # What recruits could supply is no constraint here: a smaller set may have some of it, unless it were of one.
+    smallest = smallest and (len(found) <= 2 or not any(problem.spared))
     return Refusal(template, (reason,), irreducible=oracle.complete, smallest=smallest)
 
 

@@ -19,6 +19,7 @@ from selfconf.search.strategies import first
 from tests.lab import PREFIXES
 from tests.search.oracle import World
 from tests.search.possibility import possible
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, component, problem, problems
 
@@ -49,6 +50,20 @@ def test_roles_that_are_crowded_because_of_what_a_third_could_feed_are_no_reason
     everyone = [component("c0"), component("c1", "p:S"), component("c2", "p:S")]
     roles = {"r0": everyone, "r1": everyone, "r2": everyone}
     _check(problem(roles, "r0>r0 r0>r1 r0>r2 r1>r0 r2>r0"))
+
+
+def test_no_reason_is_called_the_smallest_where_what_recruits_could_feed_may_be_part_of_a_smaller_one() -> None:
+    roles = {
+        "needy": [component("a", "x:X"), component("b", "y:Y"), component("c", "z:Z")],
+        "pair": [component("supplier", "s:S", "s:S"), component("user", "s:S")],
+    }
+    # Four requirements; three would do: the only supplier has to play for the pair, as one of two components.
+    helped = with_recruits(problem(roles, counts={"pair": (2, 2)}), roles["pair"][0])
+    refused = first.search(helped)
+    assert isinstance(refused, Refusal)
+    (reason,) = refused.reasons
+    assert len(reason.requirements) == 4
+    assert refused.minimality == "irreducible"
 
 
 @given(problems(roles=3, components=4))
