@@ -27,6 +27,8 @@ from selfconf.rdf.vocabulary import SC, SH, XSD
 
 _LOCAL_PART = re.compile(r"[^\s\"'<>()]*")
 _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
+_NAMING = frozenset((SH.equals, SH.disjoint, SH.lessThan, SH.lessThanOrEquals, SH.datatype, SH.nodeKind))
+"""What has the name of a property, a datatype or a kind of node as its value, which no component states as one."""
 _PLAIN = {
     STRING: re.compile(r"(?s).*"),
     XSD.integer: re.compile(r"[+-]?[0-9]+"),
@@ -200,16 +202,17 @@ def _rigid(given: TaskDocument, parameter: Parameter) -> str | None:
     """The property by which a parameter stands where no value is searched, as it is written; None if there is none.
 
     These are those properties of a role's shape that ask for a literal, paths, `sc:recruits`, the types of what roles
-    set, and the properties that a cost counts.
+    set, and the properties that a cost counts; and those that ask for a name, where the parameter lists no values.
     """
     document, template = given.document, given.task.template
+    naming = frozenset[IRI]() if document.values(parameter.iri, SH["in"]) else _NAMING
     if any(term.property == parameter.iri for level in template.cost for term in level):
         return "sc:property"
     for role in template.roles:
         if any(setting.type == parameter.iri for setting in role.settings):
             return "sc:parameterType"
         for predicate, value in shape_statements(document, role.iri):
-            if predicate in LITERAL and value == parameter.iri:
+            if predicate in LITERAL | naming and value == parameter.iri:
                 return f"sh:{predicate.short}"
             if predicate in _PATHS and parameter.iri in _steps(document, value):
                 return f"sh:{predicate.short}"

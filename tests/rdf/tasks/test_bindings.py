@@ -261,6 +261,19 @@ def test_a_limit_cannot_be_left_free(place: str) -> None:
     assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings
 
 
+@pytest.mark.parametrize("place", ["equals", "disjoint", "lessThan", "lessThanOrEquals", "datatype"])
+def test_what_is_no_value_of_a_component_cannot_be_left_free_unless_it_is_listed(place: str) -> None:
+    text = (
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
+        " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ."
+        f" :r a sc:Role ; sh:property [ sh:path :n ; sh:{place} :x ] ."
+    )
+    with pytest.raises(BindingError, match=rf"'x' cannot be left free, for it stands in sh:{place}; .*bind\(x="):
+        bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
+    listed = templates.read_task(turtle.parse(f"{text} :x sh:in ( :p :q ) .", "t.ttl"))
+    assert not bindings.complete(listed).task.bindings
+
+
 @pytest.mark.parametrize("recruits", ["[ sh:property [ sh:path :n ; sh:in ( :x ) ] ]", ":shape . :shape sh:class :x"])
 def test_a_shape_of_recruits_cannot_be_left_free(recruits: str) -> None:
     text = (
