@@ -31,7 +31,7 @@ CONNECT_VARIABLE = "SELFCONF_CONNECT"
 KEYS_VARIABLE = "SELFCONF_KEYS"
 """The variable with the folder of keys of a program to which none is given."""
 ONTOLOGY_VARIABLE = "SELFCONF_ONTOLOGY"
-"""The variable with the ontologies of a site, apart as the folders of $PATH are; its components are checked by them."""
+"""The variable with the ontologies of a site, each on a line of its own; its components are checked by them."""
 LIFE_VARIABLE = "SELFCONF_LIFE"
 """The variable with the life that a site gives to the components of a program that it starts, so that it knows them."""
 ECOLOGY_ANSWER = 3.0
@@ -58,12 +58,12 @@ def usual_endpoints(ecology: str, secure: bool = False) -> list[str]:
 def environment(ecology: str, endpoint: str, ontologies: Sequence[Path] = ()) -> dict[str, str]:
     """The variables by which a program that is started finds an ecology, and the ontologies of its parent."""
     found = {ECOLOGY_VARIABLE: ecology, CONNECT_VARIABLE: endpoint}
-    return {**found, ONTOLOGY_VARIABLE: os.pathsep.join(str(path.resolve()) for path in ontologies)}
+    return {**found, ONTOLOGY_VARIABLE: "\n".join(str(path.resolve()) for path in ontologies)}
 
 
 def site_ontologies() -> list[Path]:
     """The ontologies that the environment names: those of the site that has started this program."""
-    return [Path(path) for path in os.environ.get(ONTOLOGY_VARIABLE, "").split(os.pathsep) if path]
+    return [Path(path) for path in os.environ.get(ONTOLOGY_VARIABLE, "").split("\n") if path]
 
 
 def asked_for(ecology: str | None, connect: Sequence[str]) -> tuple[str | None, list[str]]:

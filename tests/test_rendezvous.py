@@ -127,9 +127,9 @@ def test_an_environment_that_names_an_ecology_alone_has_its_sites_looked_for_her
 def test_a_program_that_is_started_hears_of_the_ontologies_of_its_site(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = rendezvous.environment("home", "tcp/127.0.0.1:1", [tmp_path / "a.ttl", tmp_path / "b"])
+    found = rendezvous.environment("home", "tcp/127.0.0.1:1", [tmp_path / "12:30" / "a.ttl", tmp_path / "b"])
     monkeypatch.setenv(rendezvous.ONTOLOGY_VARIABLE, found[rendezvous.ONTOLOGY_VARIABLE])
-    assert rendezvous.site_ontologies() == [tmp_path / "a.ttl", tmp_path / "b"]
+    assert rendezvous.site_ontologies() == [tmp_path / "12:30" / "a.ttl", tmp_path / "b"]
     monkeypatch.setenv(rendezvous.ONTOLOGY_VARIABLE, rendezvous.environment("home", "x")[rendezvous.ONTOLOGY_VARIABLE])
     assert rendezvous.site_ontologies() == []
 
