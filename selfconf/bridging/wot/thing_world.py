@@ -80,6 +80,8 @@ class ThingWorld:
         of_sources = {_host_of(source) for source in sources if is_url(source)}
         self._hosts = of_sources.union(host.lower() for host in settings.hosts)  # as `urlsplit` has those of forms
         self._told: set[str] = set()
+        self._outages: dict[str, set[str]] = {}
+        """What was told of each source since it was fetched last."""
 
     def open(self, bridge: Bridge) -> None:
         """Begin to read the sources, and to look for the things in them."""
@@ -130,8 +132,11 @@ class ThingWorld:
             try:
                 octets = await self._client.fetch(ThingForm(source, "GET", ACCEPTED), FETCH_SECONDS)
             except ThingError as error:
-                self._tell(f"cannot fetch a description: {error}")
+                sentence = f"cannot fetch a description: {error}"
+                self._tell(sentence)
+                self._outages.setdefault(source, set()).add(sentence)
                 return None
+            self._told -= self._outages.pop(source, set())  # the next time is news
             fetched.append(document_at(source, octets))
         found, unreadable = await asyncio.to_thread(_things_in, source, fetched)  # it may take long, but never waits
         for wrong in unreadable:

@@ -34,6 +34,11 @@ def test_the_things_of_a_directory_come_and_go(thing_server: Start, living: Livi
         server.answers["/things"] = lambda handler: reply(handler, b"", 500)
         assert until(lambda: found.complained("answers 500"))
         assert found.lives("b")
+        del server.answers["/things"]
+        server.values["/things"] = [server.describe("d")]
+        assert until(lambda: found.lives("d"))
+        server.answers["/things"] = lambda handler: reply(handler, b"", 500)
+        assert until(lambda: sum("answers 500" in one for one in found.complaints) == 2), "each time is news"
 
 
 def test_a_thing_that_is_described_anew_is_another_component(
