@@ -81,7 +81,7 @@ class ThingWorld:
         self._hosts = of_sources.union(host.lower() for host in settings.hosts)  # as `urlsplit` has those of forms
         self._told: set[str] = set()
         self._outages: dict[str, set[str]] = {}
-        """What was told of each source since it was fetched last."""
+        """The complaints about each source since it was fetched last."""
 
     def open(self, bridge: Bridge) -> None:
         """Begin to read the sources, and to look for the things in them."""
