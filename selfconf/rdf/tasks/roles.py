@@ -94,7 +94,7 @@ class _RoleReader(DocumentReader):
     def _shape(self, role: IRI) -> None:
         """Raises where the shape of a role is certainly no shape."""
         for predicate, value in self.document.about(role):
-            if predicate in ONLY_WITH_A_PATH:
+            if predicate == SH.path or predicate in ONLY_WITH_A_PATH:
                 place = "which belongs into sh:property [ sh:path ... ]"
                 raise self.mistake(f"the role {worded(role)} has sh:{predicate.short}, {place}", role, predicate, value)
         wrong = misfit(self.document, shape_triples(self.document, role), self._variables)

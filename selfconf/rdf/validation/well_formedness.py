@@ -82,7 +82,7 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     shapes = _with_samples(graph)
     for role in roles:
         shapes.add((URIRef(role), RDF.type, SH.NodeShape))
-    faults = [fault for look in (_faults, _literals) for fault in look(shapes, positions)]
+    faults = [fault for look in (_with_own_path, _faults, _literals) for fault in look(shapes, positions)]
     faults += [fault for look in (_alone, _patterns, _queries) for fault in look(graph, positions)]
     faults += _too_deep(shapes, roles, positions)
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
@@ -144,6 +144,15 @@ def _faults(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
         else:
             offset, message = _malformed(shapes, positions, focus)
             yield at(positions, offset, "SC-T13", message)
+
+
+def _with_own_path(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """Node shapes, as roles are, with a path: beside one pySHACL evaluates none of the others either."""
+    for shape in set(shapes.subjects(SH.path)) & set(shapes.subjects(RDF.type, SH.NodeShape)):
+        for path in shapes.objects(shape, SH.path):
+            offsets = positions.triples.get((shape, SH.path, path))
+            message = "A role is about its component itself, so it has no sh:path: write sh:property [ sh:path ... ]."
+            yield at(positions, offsets.object if offsets else positions.offset(shape) or 0, "SC-T13", message)
 
 
 def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, str]:

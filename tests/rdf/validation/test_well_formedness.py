@@ -59,6 +59,7 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:class 5", 25, "sh:class"),
         ("sh:property [ sh:minCount 1 ]", 28, "exactly one sh:path"),
         ("sh:minCount 1", 16, "how many play a role is sc:minCount"),
+        ("sh:path :p ; sh:hasValue 1", 24, "has no sh:path: write sh:property [ sh:path ... ]"),
         ("sh:hasValue 1 ; sh:lessThan :p", 32, "write sh:property"),
         ("sh:node 'x'", 24, "sh:node"),
         ("sh:property [ sh:path :p ; sh:minCount ' 1 '^^xsd:integer ]", 55, "has to be a whole number"),
@@ -129,8 +130,9 @@ def test_a_parameter_is_judged_by_a_sample_of_its_datatype(kind: str, wrong: boo
     assert bool(malformed(text)) == wrong
 
 
-def test_of_two_roles_only_the_one_that_cannot_be_asked_is_told() -> None:
-    found = malformed(":good a sc:Role ; sh:class :A .\n:bad a sc:Role ; sh:class 5 .")
+@pytest.mark.parametrize("shape", ["sh:class 5", "sh:path :p"])
+def test_of_two_roles_only_the_one_that_cannot_be_asked_is_told(shape: str) -> None:
+    found = malformed(f":good a sc:Role ; sh:class :A .\n:bad a sc:Role ; {shape} .")
     assert [each.line - HEAD for each in found] == [2]
 
 

@@ -13,6 +13,7 @@ from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
 from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies
 from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
 from selfconf.rdf.validation.lints.templates import (
+    borrowed_parameters,
     impossible_roles,
     queried_parameters,
     signals_for_components,
@@ -68,6 +69,7 @@ TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     signals_for_components,
     unused_parameters,
     unlisted_parameters,
+    borrowed_parameters,
     queried_parameters,
     impossible_roles,
     idle_loops,

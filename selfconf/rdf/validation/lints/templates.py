@@ -9,6 +9,7 @@ from rdflib import RDF, SH, BNode, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf import vocabulary
 from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
@@ -110,12 +111,41 @@ def unlisted_parameters(file: LintedFile) -> Iterator[Diagnostic]:
         yield at(file.positions, file.offset(parameter), "SC-L15", message, hint=hint)
 
 
+def borrowed_parameters(file: LintedFile) -> Iterator[Diagnostic]:
+    """Parameters of one template that a role of another mentions, which has not listed them."""
+    graph = file.graph
+    owners: dict[Node, set[Node]] = {}
+    for template, parameter in graph.subject_objects(URIRef(SC.parameter)):
+        owners.setdefault(parameter, set()).add(template)
+    for template, head in graph.subject_objects(URIRef(SC.roles)) if owners else ():
+        for mention in {one for role in file.items(head) for one in _said_for(file, role)}:
+            if template not in owners.get(mention[2], {template}) and mention in file.positions.triples:
+                short, of = file.short(str(mention[2])), file.short(str(template))
+                message = f"{of} has no parameter {short}, so for it this stands for itself and never for a value."
+                hint = f"Say sc:parameter {short} of {of} as well."
+                yield at(file.positions, file.positions.triples[mention].object, "SC-L15", message, hint=hint)
+
+
+def _said_for(file: LintedFile, role: Node) -> Iterator[tuple[Node, Node, Node]]:
+    """The statements that make up what a role asks for, sets and recruits, also in shapes with names."""
+    seen, waiting = {role}, [role]
+    while waiting:
+        subject = waiting.pop()
+        for predicate, value in file.graph.predicate_objects(subject):
+            yield subject, predicate, value
+            inside = isinstance(value, BNode) or str(predicate) in vocabulary.SH
+            if inside and value not in seen:
+                seen.add(value)
+                waiting.append(value)
+
+
 def unused_parameters(file: LintedFile) -> Iterator[Diagnostic]:
     """Parameters that no role mentions."""
     graph = file.graph
     for parameter in graph.objects(None, URIRef(SC.parameter)):
         uses = [predicate for _, predicate in graph.subject_predicates(parameter)]
-        owners = [owner for owner in graph.subjects(URIRef(SC.parameter), parameter) if not isinstance(owner, BNode)]
+        having = graph.subjects(URIRef(SC.parameter), parameter)  # a binding names it, too
+        owners = [owner for owner in having if (owner, RDF.type, URIRef(SC.Template)) in graph]
         if owners and all(str(predicate) == SC.parameter for predicate in uses):
             offset = min(file.positions.triples[owner, URIRef(SC.parameter), parameter].object for owner in owners)
             message = f"No role mentions the parameter {file.short(str(parameter))}."

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rdflib import OWL, RDF, RDFS, SH, XSD, Literal, URIRef
 from rdflib.namespace import DefinedNamespace
@@ -51,6 +51,29 @@ _LISTS_OF_TERMS = (
 """What has a list of terms, or a path, which may be one."""
 VALUES = frozenset((SH.hasValue, SH.minInclusive, SH.minExclusive, SH.maxInclusive, SH.maxExclusive))
 """What shapes compare values with."""
+_OF_PARTS_OF_TEMPLATES: Mapping[IRI, tuple[IRI, ...]] = {
+    _SC.parameter: (_SC.Template,),
+    **dict.fromkeys((_SC.output, _SC.input), (_SC.Interaction,)),
+}
+_SAID_OF: Mapping[IRI, tuple[IRI, ...]] = {
+    **OF_PARTS,
+    **_OF_PARTS_OF_TEMPLATES,
+    _SC.template: (_SC.Grounding, _SC.Task),
+}
+"""What is passed over elsewhere than at an instance of some classes, with these."""
+_OF_TEMPLATES: Mapping[IRI, frozenset[IRI]] = {
+    _SC.Template: frozenset((_SC.parameter,)),
+    _SC.Interaction: frozenset((_SC.output, _SC.input)),
+    _SC.Task: frozenset((_SC.template,)),
+    **dict.fromkeys((_SC.Role, _SC.Parameter), frozenset[IRI]()),
+}
+"""What templates and tasks are made of, each with what is said of it among that."""
+_INSTEAD: Mapping[tuple[str, IRI], str] = {
+    (_SC.Role, _SC.optional): "A role that may stay unplayed has sc:minCount 0.",
+    (_SC.Component, _SC.parameter): "What is set of a component is its sc:hasParameter.",
+    (_SC.Task, _SC.parameter): "A task has sc:binding [ sc:parameter ... ; sc:value ... ].",
+}
+"""What is written in place of a term that says nothing of an instance of a class."""
 _MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
 
 
@@ -249,16 +272,23 @@ def typed_operations(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
-    """What is said of a component or a part of one, and is read of other parts alone."""
+    """What is said of a component or a part of one, or of a template or a part, and is read of others alone."""
+    foreign: dict[Node, frozenset[IRI]] = {}
+    for kind, own in _OF_TEMPLATES.items():
+        foreign |= dict.fromkeys(file.graph.subjects(RDF.type, URIRef(kind)), frozenset(_SAID_OF) - own)
     components = file.graph.subjects(RDF.type, URIRef(_SC.Component))
-    foreign: dict[Node, frozenset[IRI]] = dict.fromkeys(components, foreign_terms(COMPONENT))
+    foreign |= dict.fromkeys(components, foreign_terms(COMPONENT).union(_OF_PARTS_OF_TEMPLATES))
     for link, subject in LINKED.items():
         foreign |= dict.fromkeys(file.graph.objects(None, URIRef(link)), foreign_terms(subject))
     for (node, predicate, _), offsets in file.positions.triples.items():
-        if str(predicate) in foreign.get(node, ()):
-            owners = " or ".join(f"a {file.short(owner)}" for owner in OF_PARTS[IRI(str(predicate))])
-            message = f"{file.short(str(predicate))} says nothing here, so this is passed over."
-            yield at(file.positions, offsets.predicate, "SC-L25", message, hint=f"It is said of {owners}.")
+        said = IRI.unchecked(str(predicate))
+        if said in foreign.get(node, ()):
+            owners = " or ".join(f"a {file.short(owner)}" for owner in _SAID_OF[said])
+            kinds = file.graph.objects(node, RDF.type)
+            instead = (_INSTEAD[str(kind), said] for kind in kinds if (str(kind), said) in _INSTEAD)
+            hint = next(instead, f"It is said of {owners}.")
+            message = f"{file.short(said)} says nothing here, so this is passed over."
+            yield at(file.positions, offsets.predicate, "SC-L25", message, hint=hint)
 
 
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:

@@ -21,6 +21,28 @@ def test_a_parameter_that_no_template_lists_is_noticed() -> None:
     assert not lints(text + ":t sc:parameter :p .")
 
 
+BORROWED = (
+    TEMPLATE
+    + ":t sc:parameter :p . :r sh:property [ sh:path rob:place ; sh:in ( :p ) ] . :p a sc:Parameter ; sc:name 'p' .\n"
+    + ":u a sc:Template ; sc:roles ( :s ) . :s a sc:Role ; sh:class rob:Lamp ; "
+)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "sh:property [ sh:path rob:place ; sh:in ( :hall :p ) ] .",
+        "sh:node :There . :There sh:property [ sh:path rob:place ; sh:hasValue :p ] .",
+        "sc:sets [ sc:parameterType :Place ; sc:value :p ] .",
+    ],
+)
+def test_a_parameter_of_another_template_is_noticed_where_a_role_mentions_it(said: str) -> None:
+    found = only(BORROWED + said)
+    assert (found.code, found.hint) == ("SC-L15", "Say sc:parameter :p of :u as well.")
+    assert found.source[found.column - found.source_column :].startswith(":p")
+    assert not lints(BORROWED + said + " :u sc:parameter :p .")
+
+
 @pytest.mark.parametrize(
     ("condition", "noticed"),
     [

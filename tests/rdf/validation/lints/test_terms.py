@@ -215,6 +215,29 @@ def test_what_is_said_of_another_part_of_an_advertisement_is_passed_over_and_tol
 
 
 @pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        (":r sc:optional true .", "A role that may stay unplayed has sc:minCount 0."),
+        (":r sc:output 'light' .", "It is said of a sc:Interaction."),
+        (":r sc:rate [ sc:value 5 ; sc:unit <http://qudt.org/vocab/unit/HZ> ] .", "It is said of a sc:Output."),
+        (":t sc:command 'python t.py' .", "It is said of a sc:Grounding."),
+        (":t sc:template :t .", "It is said of a sc:Grounding or a sc:Task."),
+        (
+            ":k a sc:Task ; sc:template :t ; sc:parameter :p .",
+            "A task has sc:binding [ sc:parameter ... ; sc:value ... ].",
+        ),
+        (
+            ":a a sc:Component, rob:Lamp ; sc:parameter [ sc:name 'p' ; sc:parameterType :P ] .",
+            "What is set of a component is its sc:hasParameter.",
+        ),
+    ],
+)
+def test_what_is_said_of_another_part_of_a_template_is_passed_over_and_told(text: str, hint: str) -> None:
+    found = only(TEMPLATE + text)
+    assert (found.code, found.hint) == ("SC-L25", hint)
+
+
+@pytest.mark.parametrize(
     ("datatype", "value", "hint"),
     [
         ("integer", '"2"', "2"),
