@@ -32,6 +32,8 @@ MOST_COMMANDS = 16
 """How many calls of an action wait for the ones before; of what is written to a property only the newest does."""
 AGAIN = 0.2
 """Seconds from one request by which a thing is followed to the next, where the first has brought nothing."""
+POLL_ARRIVED = 0.1
+"""Seconds after which a long poll has arrived, which a thing then answers with the next change."""
 SOONEST = 0.01
 """Seconds from one to the next where it has: a thing that answers a long poll at once is followed that often."""
 
@@ -164,10 +166,22 @@ class ThingComponent(Component):
                 await self._read(output, changed=True)  # it may have changed before the thing told of changes
                 async for answer in answers:
                     self._issue(output, answer)
-        elif (found := await self._client.wait(form)) is not None:
+        elif (found := await self._polled(output, form)) is not None:
             self._issue(output, found)
             return SOONEST
         return AGAIN
+
+    async def _polled(self, output: ThingOutput, form: ThingForm) -> ThingAnswer | None:
+        """What comes of a long poll; None for nothing. What changed before the thing knew of it is read meanwhile."""
+        polling = asyncio.ensure_future(self._client.wait(form))
+        polling.add_done_callback(lambda done: done.cancelled() or done.exception())  # also where the reading fails
+        try:
+            await asyncio.wait((polling,), timeout=POLL_ARRIVED)
+            if not polling.done():
+                await self._read(output, changed=True)
+            return await polling
+        finally:
+            polling.cancel()
 
     def _issue(self, output: ThingOutput, answer: ThingAnswer) -> None:
         self._last[output.name] = answer

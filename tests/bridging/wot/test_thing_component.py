@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler
@@ -100,6 +101,27 @@ def test_what_changes_before_the_thing_tells_of_changes_is_not_missed(
         active(found)
         assert until(lambda: len(values) == 3)
     assert [value["on"] for value in values] == [False, True, False]
+
+
+def test_what_changes_between_two_long_polls_is_not_missed(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    turns = itertools.count()
+
+    def changes(handler: BaseHTTPRequestHandler) -> None:
+        if next(turns):
+            server.released.wait(60.0)
+        reply(handler, b"true")  # and by the next request it has changed back
+
+    server.answers["/on/changes"] = changes
+    forms = [{"href": "on"}, {"href": "on/changes", "op": "observeproperty", "subprotocol": "longpoll"}]
+    description = server.describe(properties={"on": {**SWITCH, "readOnly": True, "forms": forms}})
+    with bridging(living, tmp_path / "ads", written(tmp_path, description)) as found:
+        values = found.heard("lamp", "on")
+        active(found)
+        assert until(lambda: values[-2:] == [{"on": True}, {"on": False}])
 
 
 @pytest.mark.parametrize("how", ["sse", "longpoll"])
