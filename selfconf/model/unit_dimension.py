@@ -46,8 +46,25 @@ _SPELT_OUT = {
 }  # fmt: skip
 _MEANT = {word: unit for unit, words in _SPELT_OUT.items() for word in words.split()}
 """The units that words of a language stand for, in the singular."""
-_COMPOSED = {"volume": {"length": 3}, "power": {"energy": 1, "time": -1}, "frequency": {"time": -1}}
-"""The dimensions of this list that are composed of others of it."""
+_COMPOSED = {
+    "volume": {"length": 3},
+    "frequency": {"time": -1},
+    "force": {"mass": 1, "length": 1, "time": -2},
+    "pressure": {"mass": 1, "length": -1, "time": -2},
+    "energy": {"mass": 1, "length": 2, "time": -2},
+    "power": {"mass": 1, "length": 2, "time": -3},
+    "charge": {"current": 1, "time": 1},
+    "voltage": {"mass": 1, "length": 2, "time": -3, "current": -1},
+    "resistance": {"mass": 1, "length": 2, "time": -3, "current": -2},
+    "capacitance": {"mass": -1, "length": -2, "time": 4, "current": 2},
+    "inductance": {"mass": 1, "length": 2, "time": -2, "current": -2},
+    "magnetic flux density": {"mass": 1, "time": -2, "current": -1},
+    "luminous flux": {"luminous intensity": 1},
+    "illuminance": {"luminous intensity": 1, "length": -2},
+}
+"""The dimensions of this list that are composed of others of it, as in the International System of Units."""
+_NUMBERS = ("angle", "ratio")
+"""Those that are mere numbers in that system: they count where there is nothing else, so `RAD-PER-SEC` is as `HZ`."""
 
 Dimension = frozenset[tuple[str, int]]
 """Base dimensions with their powers."""
@@ -90,7 +107,9 @@ def _composed(found: Counter[str]) -> Dimension:
     for name, power in found.items():
         for part, times in _COMPOSED.get(name, {name: 1}).items():
             whole[part] += power * times
-    return frozenset((name, power) for name, power in whole.items() if power)
+    rest = {name: power for name, power in whole.items() if power}
+    measured = {name: power for name, power in rest.items() if name not in _NUMBERS}
+    return frozenset((measured or rest).items())
 
 
 def meant_unit(unit: IRI) -> str | None:

@@ -21,6 +21,18 @@ from selfconf.rdf.vocabulary import UNIT
         ("HZ", "PER-SEC"),
         ("DEG_C", "K"),
         ("M-PER-SEC2", "CentiM-PER-SEC2"),
+        ("N", "KiloGM-M-PER-SEC2"),
+        ("PA", "N-PER-M2"),
+        ("J", "N-M"),
+        ("W", "V-A"),
+        ("OHM", "V-PER-A"),
+        ("C", "A-HR"),
+        ("FARAD", "C-PER-V"),
+        ("H", "V-SEC-PER-A"),
+        ("T", "N-PER-A-M"),
+        ("LUX", "LM-PER-M2"),
+        ("RAD-PER-SEC", "REV-PER-MIN"),
+        ("DEG-PER-SEC", "HZ"),
     ],
 )
 def test_units_of_one_dimension(one: str, other: str) -> None:
@@ -28,7 +40,8 @@ def test_units_of_one_dimension(one: str, other: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("one", "other"), [("M", "SEC"), ("M", "M2"), ("N-M", "N"), ("RAD", "RAD-PER-SEC"), ("K", "W")]
+    ("one", "other"),
+    [("M", "SEC"), ("M", "M2"), ("N-M", "N"), ("RAD", "RAD-PER-SEC"), ("K", "W"), ("DEG", "PERCENT"), ("A", "C")],
 )
 def test_units_of_different_dimensions(one: str, other: str) -> None:
     assert differ_in_dimension(UNIT[one], UNIT[other]) is True
