@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from selfconf.bus.port import Replies
-from selfconf.deployment import Keeper, TaskRunner
+from selfconf.deployment import TaskRunner
+from selfconf.deployment.record_exchange import RecordExchange
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from tests.faults.kept_tasks import FAULTY, TASKS, KeptHistory, account, played
@@ -66,13 +67,13 @@ def counts_revisions_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def asks_no_site_that_comes(monkeypatch: pytest.MonkeyPatch) -> None:
-    def all_answered(self: Keeper, replies: Replies) -> None:
+    def all_answered(self: RecordExchange, replies: Replies) -> None:
         for sample in replies.samples:
             self._take(sample)
-        self._look()
+        self._keeper.caught_up()
 
-    monkeypatch.setattr(Keeper, "_all_answered", all_answered)
-    monkeypatch.setattr(Keeper, "_take_all", lambda self, replies: None)
+    monkeypatch.setattr(RecordExchange, "_all_answered", all_answered)
+    monkeypatch.setattr(RecordExchange, "_take_all", lambda self, replies: None)
 
 
 def lets_go_of_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,60 @@
+"""Tasks that a site keeps, read in advance from their records, so that going on with one takes no time."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from selfconf.bus.port import Bus
+from selfconf.errors import SelfconfError
+from selfconf.protocol.messages import TaskRecord
+
+if TYPE_CHECKING:
+    from selfconf.deployment.run_request import RunRequest
+
+log = logging.getLogger(__name__)
+
+RESPITE = 60.0
+"""Seconds after which a task is tried again that could not be read for want of room, or whose search broke."""
+
+
+class TaskRequests:
+    """Those of one site."""
+
+    def __init__(self, bus: Bus, request_for: Callable[[TaskRecord], RunRequest]) -> None:
+        """`request_for` reads a task; it raises SelfconfError for one that cannot be read, and OSError for now."""
+        self._bus, self._request_for = bus, request_for
+        self._requests: dict[str, RunRequest | None] = {}
+        self._respites: dict[str, float] = {}
+        """Until when each task is left alone that has given trouble."""
+
+    def read(self, record: TaskRecord) -> None:
+        """Read a task, unless it has ended, was read before or is left alone; one that cannot be read is never run."""
+        task = record.task
+        if record.ended:
+            self._requests.pop(task, None)
+            self._respites.pop(task, None)
+            return
+        if task in self._requests or self.is_left_alone(task):
+            return
+        try:
+            self._requests[task] = self._request_for(record)
+        except SelfconfError as error:
+            log.error("the task %s cannot be run: %s", task, error)
+            self._requests[task] = None
+        except OSError as error:
+            self.leave_alone(task, f"the task {task} cannot be read now: {error}")
+
+    def of(self, task: str) -> RunRequest | None:
+        """What was read of a task; None where it cannot be run."""
+        return self._requests.get(task)
+
+    def leave_alone(self, task: str, trouble: str) -> None:
+        """Let a task be for a while that has given trouble, and log that."""
+        log.error("%s; trying again in %.0f s", trouble, RESPITE)
+        self._respites[task] = self._bus.now() + RESPITE
+
+    def is_left_alone(self, task: str) -> bool:
+        """Whether a task is let be, as it has given trouble."""
+        return self._respites.get(task, 0.0) > self._bus.now()
