@@ -1,8 +1,8 @@
 """The records of tasks that the sites of an ecology keep, and what a site and the others tell each other of them.
 
-The keeper of a site hears of each record that is new there. Sites that come are asked what they keep, and once more: they may
-not have been reached at first. One that could hear the others, but was not heard when it asked them, learns what is
-newer all the same: a site that hears an outdated record puts the newer one.
+The keeper of a site hears of each record that is new there. Sites that come are asked what they keep, and once more:
+they may not have been reached at first. One that could hear the others, but was not heard when it asked them, learns
+what is newer all the same: a site that hears an outdated record puts the newer one.
 """
 
 from __future__ import annotations
