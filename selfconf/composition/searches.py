@@ -108,7 +108,7 @@ class Searches:
         for steps in (*(slice_ for slice_ in SLICES if slice_ < most), most):
             found = best_configuration(problem, steps, running)
             yield found
-            if isinstance(found, Refusal) or (isinstance(found, Optimum) and found.proved):
+            if isinstance(found, Refusal) or (isinstance(found, Optimum) and found.proved and found.first):
                 return
         if isinstance(found, Undecided) and self.steps is None:
             yield from answers(problem)

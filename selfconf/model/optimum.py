@@ -19,7 +19,9 @@ class Optimum:
     missing: tuple[tuple[IRI, IRI], ...]
     """Components of the solution and the properties that terms ask for in vain, with nothing said for that."""
     proved: bool
-    """Whether there is nothing better for sure."""
+    """Whether nothing costs less for sure."""
+    first: bool = True
+    """Whether none that costs as little comes before it for sure."""
 
     @property
     def unknown(self) -> int:

@@ -15,10 +15,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from selfconf.composition import searches
 from selfconf.composition.outside import with_outside, with_outside_candidate
 from selfconf.composition.searches import Searches, Strategy
 from selfconf.configuration_certificate import broken_conditions
 from selfconf.model.configuration import Configuration
+from selfconf.model.cost import CostTerm
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Input, Output, needed_operation, offered_operation
 from selfconf.model.refusal import Outcome, Refusal
@@ -31,8 +33,8 @@ from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance
 from tests.search.possibility import possible
 from tests.search.recruiting.test_recruiting import Players, Recruit
-from tests.search.strategies.test_best_recruited import PricedWorld, a_priced_problem
-from tests.search.worlds import CLASSES, SIGNALS, agreement, iri
+from tests.search.strategies.test_best_recruited import LATENCY, PricedWorld, a_priced_problem, stated
+from tests.search.worlds import CLASSES, SIGNALS, agreement, component, iri, problem
 
 Solution = tuple[Players, tuple[Recruit, ...]]
 
@@ -156,3 +158,26 @@ def after_failure(problem: Problem, running: Configuration, data: st.DataObject)
     assert isinstance(answer, Configuration) == bool(possible)
     if isinstance(answer, Configuration):
         assert not broken_conditions(left.task, left.partition, answer, left.hierarchy)
+
+
+def test_of_those_that_cost_the_least_the_first_is_named_in_a_later_slice(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pysat")
+    # Both cameras cost as much, with the one tracker that each can feed. With few steps it is soon proved that nothing
+    # costs less, but not that the dearer camera, which comes first, does not cost more in all.
+    monkeypatch.setattr(searches, "SLICES", (60, 100_000))
+    roles = {
+        "camera": [stated(component("a", outputs="o:X"), latency=2), stated(component("b", outputs="o:Y"), latency=1)],
+        "tracker": [stated(component("s", "i:X"), latency=1), stated(component("t", "i:Y"), latency=2)],
+    }
+    for role in range(8):
+        lamps = [component(f"lamp-{role}-{number}", outputs=f"o:Light{number}") for number in range(10)]
+        roles[f"light-{role}"] = [stated(lamp, latency=3 - number / 9) for number, lamp in enumerate(lamps)]
+    plain = problem(roles, "camera>tracker")
+    template = replace(plain.task.template, cost=((CostTerm(LATENCY),),))
+    quick, found = Searches(Strategy.BEST).answers(Problem(replace(plain.task, template=template), plain.partition))
+    assert isinstance(quick, Optimum)
+    assert (quick.proved, quick.first) == (True, False)
+    assert isinstance(found, Optimum)
+    assert (found.proved, found.first) == (True, True)
+    assert quick.cost == found.cost
+    assert found.configuration.components[:2] == (iri("a"), iri("s"))

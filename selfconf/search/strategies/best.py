@@ -81,9 +81,9 @@ def _best_players(given: LazyReduction, steps: int, running: Configuration | Non
         if asked.minimum
     }
     part = pruned(reduced(problem, order=order))
-    playing, bound, proved = _cheapest(problem, part, costs, playing, steps)
+    playing, bound, first = _cheapest(problem, part, costs, playing, steps)
     spent = costs.levels(playing)
-    least = spent if proved else costs.levels_of(bound, len(part.slots))
+    least = spent if first else costs.levels_of(bound, len(part.slots))
     missing = [
         (candidate.profile.component, wanted)
         for role, some in zip(problem.roles, playing, strict=True)
@@ -96,7 +96,7 @@ def _best_players(given: LazyReduction, steps: int, running: Configuration | Non
     bounds = least if tight else costs.levels_of(0, len(part.slots))
     configuration = solved(problem, playing, running)
     return Optimum(
-        configuration, spent[LEADING_LEVELS:], bounds[LEADING_LEVELS:], tuple(missing), proved=spent == least
+        configuration, spent[LEADING_LEVELS:], bounds[LEADING_LEVELS:], tuple(missing), spent == least, first
     )
 
 

@@ -94,6 +94,7 @@ def best_with_recruits(
         bounds[LEADING_LEVELS:],
         tuple(_missing(problem, found.players, [problem.supply.recruits[n].profile for n in brought])),
         proved=spent == least,
+        first=search.first,
     )
 
 
@@ -121,7 +122,8 @@ class _CheapestSearch:
         self.problem, self.part, self.costs, self.clauses, self.order = problem, part, costs, clauses, order
         """`order` is that in which recruits are preferred."""
         self.bound = _lowest(costs)
-        self.proved = False
+        self.proved = self.first = False
+        """Whether nothing costs less for sure, and whether none that costs as little comes before."""
 
     def run(self, budget: Budget) -> _Chosen | bool | None:
         """Return the cheapest that is met; False if there is no solution, None if none is met within the budget."""
@@ -173,7 +175,7 @@ class _CheapestSearch:
             place = self.part.options[option.kind.role].index(option)
             clauses.add([clauses.plays[option.kind.role][place]])
         spare = partial(self._without_spare, playing)
-        found, _ = fewest_of(clauses, self.order, spare(clauses.recruited()), spare, budget)
+        found, self.first = fewest_of(clauses, self.order, spare(clauses.recruited()), spare, budget)
         return _Chosen(assigned(self.problem, playing), found)
 
 
