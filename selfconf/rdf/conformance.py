@@ -271,7 +271,8 @@ def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
 
 
 def aimed(shapes: rdflib.Graph, wanted: Iterable[IRI], focus: Sequence[IRI]) -> rdflib.Graph:
-    """The shapes with one target: each node of `focus`, for a shape that asks by `sh:node` for those that are wanted.
+    """The shapes with one target: each node of `focus`, for a shape that asks by `sh:node` for those that are wanted,
+    or by `sh:property` where these are property shapes.
 
     So each result is about a node that does not conform to one of them, what it lacks being details. Their own results
     would not tell: those of a property shape within a property shape name the value as their focus node. And not
@@ -285,8 +286,11 @@ def aimed(shapes: rdflib.Graph, wanted: Iterable[IRI], focus: Sequence[IRI]) -> 
     found.add((_ASKING, rdflib.RDF.type, _SH.NodeShape))
     found.add((_ASKING, _SH.message, rdflib.Literal("does not conform")))  # else each result lists all that are wanted
     for aim in map(rdflib.URIRef, wanted):
-        found.add((aim, rdflib.RDF.type, _SH.NodeShape))
-        found.add((_ASKING, _SH.node, aim))
+        if (aim, _SH.path, None) in shapes:
+            found.add((_ASKING, _SH.property, aim))
+        else:
+            found.add((aim, rdflib.RDF.type, _SH.NodeShape))
+            found.add((_ASKING, _SH.node, aim))
     for node in focus:
         found.add((_ASKING, _SH.targetNode, rdflib.URIRef(node)))
     return found

@@ -165,7 +165,7 @@ class OutputShape:
         from selfconf.rdf.conformance import violations  # most shapes are compiled in full: pySHACL is not loaded
         from selfconf.rdf.rdflib_terms import to_rdflib
 
-        shapes = to_rdflib([*self._document.triples(), (_SHAPE, TYPE, SH.NodeShape)])
+        shapes = to_rdflib(self._document.triples())
         found, reasons = set[Port](), list[object]()
         own: dict[IRI, dict[Port, Node]] = {}
         for port in outputs:

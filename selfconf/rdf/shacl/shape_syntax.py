@@ -63,6 +63,7 @@ WANTED: dict[IRI, str] = {
     **dict.fromkeys(LISTS, "a list in parentheses"),
     **dict.fromkeys(LISTS_OF_SHAPES, "a list in parentheses, of one shape at least"),
     SH.languageIn: "a list in parentheses, of language tags",
+    SH.ignoredProperties: "a list in parentheses, of properties",
     **dict.fromkeys(NAMES, "an IRI"),
     **dict.fromkeys(LIMITS, "a literal"),
     **dict.fromkeys(NODES, "a shape, not a literal"),
@@ -155,9 +156,12 @@ def _is_list(document: Document, predicate: IRI, value: Term) -> bool:
     """Whether a term is a list that may be the value of one of SHACL's properties."""
     if value == NIL:
         return predicate not in LISTS_OF_SHAPES
-    members = document.items(value) if predicate == SH.languageIn else ()
-    tags = all(isinstance(member, Literal) and member.datatype == XSD.string for member in members)
-    return document.list_fault(value) is None and tags
+    members = document.items(value)
+    if predicate == SH.languageIn:
+        fit = all(isinstance(member, Literal) and member.datatype == XSD.string for member in members)
+    else:
+        fit = predicate != SH.ignoredProperties or all(isinstance(member, IRI) for member in members)
+    return document.list_fault(value) is None and fit
 
 
 def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:

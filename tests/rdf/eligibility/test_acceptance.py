@@ -31,6 +31,7 @@ def answered(accepts: str) -> Configuration | Refusal | Undecided:
     [
         ("sh:property [ sh:path ( sc:rate sc:value ) ; sh:minInclusive 5 ]", "high"),
         ("sh:property [ sh:path sc:unit ; sh:hasValue unit:M ]", "low"),
+        ("sh:path sc:unit ; sh:hasValue unit:M ; sh:disjoint :age", "low"),
         ("sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :on ) ; sh:in ( :Astrid ) ]", "high"),
         ("sh:property [ sh:path ( sc:rate sc:value ) ; sh:lessThanOrEquals :age ]", "high"),
         ("sh:property [ sh:path [ sh:inversePath sc:hasOutput ] ; sh:node [ sh:class :Good ] ]", "high"),

@@ -42,6 +42,8 @@ def recruited(recruits: str, **bound: str) -> list[str]:
         ("[ sh:property [ sh:path :power ; sh:minInclusive 2 ; sh:minCount 1 ] ]", ["base", "good"]),
         ("[ sh:property [ sh:path :power ; sh:maxInclusive 5 ; sh:minCount 1 ] ]", []),
         ('[ sh:class :Good ; sh:property [ sh:path ( sc:hasOutput sc:name ) ; sh:hasValue "o" ] ]', ["base", "good"]),
+        ("[ sh:path :power ; sh:minInclusive 2 ; sh:minCount 1 ; sh:nodeKind sh:Literal ]", ["base", "good"]),
+        ("[ sh:path :power ; sh:minInclusive 2 ; sh:minCount 1 ; sh:uniqueLang true ]", ["base", "good"]),
         (":named . :named a sh:NodeShape ; sh:class :Good", ["base", "good"]),
     ],
 )

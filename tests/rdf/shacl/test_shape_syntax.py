@@ -30,6 +30,7 @@ from tests.lab import PREFIXES, iri
         ("sh:pattern 3", "pattern"),
         ("sh:or ( )", "or"),
         ("sh:languageIn ( :en )", "languageIn"),
+        ("sh:ignoredProperties ( :a 5 )", "ignoredProperties"),
         ("sh:node 'x'", "node"),
     ],
 )

@@ -83,6 +83,7 @@ def test_the_same_setting_twice_is_one() -> None:
         "sh:class 5",
         "sh:minCount 1",
         "sh:path :p ; sh:hasValue :x",
+        "sh:closed true ; sh:ignoredProperties ( 5 )",
         "sh:property 5",
         "sh:property [ sh:minCount 1 ]",
         "sh:or :x",
