@@ -24,6 +24,7 @@ CONNECTIONS = 32
 """How many connections to one host are open at once, beside those that outputs which are followed keep, one each."""
 MOST_EVENTS = 1000
 """How many server-sent events of one stream are read in a second; a thing that sends more is held up."""
+_EVENT_STREAM = "text/event-stream"
 _LINE_END = b"\n"
 
 
@@ -122,8 +123,8 @@ class ThingClient:
         The block begins once the thing has begun to answer, so that it tells of what changes from then on.
         """
         async with self._asked(form, None) as answer:
-            if answer.content_type != "text/event-stream":
-                raise ThingError(f"{form} answers {answer.content_type}, where text/event-stream is expected")
+            if answer.content_type != _EVENT_STREAM:
+                raise ThingError(f"{form} answers {answer.content_type}, where {_EVENT_STREAM} is expected")
             yield self._events(form, answer)
 
     async def _events(self, form: ThingForm, answer: aiohttp.ClientResponse) -> AsyncIterator[ThingAnswer]:
@@ -141,7 +142,7 @@ class ThingClient:
                 if any(lines):  # an event without data says that the thing is there
                     due = max(due + 1 / MOST_EVENTS, loop.time())
                     await asyncio.sleep(due - loop.time())
-                    yield ThingAnswer(_json(form, b"\n".join(lines)))
+                    yield _said(form, b"\n".join(lines))
                 lines, size = [], 0
 
     async def reach(self, form: ThingForm) -> None:
@@ -171,7 +172,7 @@ class ThingClient:
 
         Without `seconds` something is followed: it may take as long as it wants.
         """
-        media = "text/event-stream" if form.subprotocol == "sse" else form.answered
+        media = _EVENT_STREAM if form.subprotocol == "sse" else form.answered
         headers = {"Accept": media, **form.headers, **(more or {})}
         time = aiohttp.ClientTimeout(total=seconds, sock_connect=self._limits.answer)
         try:
@@ -240,6 +241,12 @@ def _value(form: ThingForm, answer: aiohttp.ClientResponse, body: bytes) -> Thin
     if media != wanted:
         raise ThingError(f"{form} answers {media}, where {wanted} is expected")
     return ThingAnswer(body, media)
+
+
+def _said(form: ThingForm, data: bytes) -> ThingAnswer:
+    """What an event says: JSON, unless its form has another media type; that of a stream says nothing of its events."""
+    media = _bare(form.answered)
+    return ThingAnswer(_json(form, data)) if _is_json(media) or media == _EVENT_STREAM else ThingAnswer(data, media)
 
 
 def _json(form: ThingForm, body: bytes) -> Any:

@@ -228,9 +228,9 @@ def test_something_that_listens_can_be_reached(thing_server: Start) -> None:
     assert server.received == []
 
 
-async def streamed(client: ThingClient, server: ThingServer) -> list[ThingAnswer]:
+async def streamed(client: ThingClient, server: ThingServer, media: str = "application/json") -> list[ThingAnswer]:
     """What a thing streams to its end."""
-    async with client.subscribed(ThingForm(server.url + "/on", "GET", subprotocol="sse")) as answers:
+    async with client.subscribed(ThingForm(server.url + "/on", "GET", media, "sse")) as answers:
         return [answer async for answer in answers]
 
 
@@ -259,6 +259,26 @@ def test_server_sent_events_come_one_by_one(thing_server: Start) -> None:
 
     assert asked(work) == [1, {}, True]
     assert server.received[0].headers["Accept"] == "text/event-stream"
+
+
+@pytest.mark.parametrize(
+    ("media", "value"),
+    [
+        ("application/json", ThingAnswer(1)),
+        ("text/event-stream", ThingAnswer(1)),
+        ("text/plain; charset=utf-8", ThingAnswer(b"1", "text/plain")),
+    ],
+)
+def test_an_event_is_of_the_media_type_of_its_form(thing_server: Start, media: str, value: ThingAnswer) -> None:
+    server = thing_server()
+
+    def stream(handler: BaseHTTPRequestHandler) -> None:
+        begin_stream(handler)
+        handler.wfile.write(b"data: 1\n\n")
+        handler.close_connection = True
+
+    server.answers["/on"] = stream
+    assert asked(lambda client: streamed(client, server, media)) == [value]
 
 
 @pytest.mark.parametrize("text", [b"data: 1", b"data: 1\n"])
