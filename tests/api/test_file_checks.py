@@ -177,6 +177,14 @@ def test_a_memory_that_cannot_be_written_is_done_without(files: Path, tmp_path: 
     assert check([str(files)], each=Remembered(tmp_path / "file", [str(files)])) == check([str(files)])
 
 
+def test_a_memory_has_files_whose_names_are_no_utf_8(tmp_path: Path) -> None:
+    (tmp_path / "caf\udce9.ttl").write_bytes((BAD / "bound-twice.ttl").read_bytes())
+    counting = Counting()
+    first = check([str(tmp_path)], each=Remembered(tmp_path / "memory", ["."], counting))
+    assert check([str(tmp_path)], each=Remembered(tmp_path / "memory", ["."], counting)) == first
+    assert counting.names == ["caf\udce9.ttl"]
+
+
 def test_a_memory_of_other_code_is_forgotten(files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before, after = Counting(), Counting()
     check([str(files)], each=Remembered(tmp_path, [str(files)], before))

@@ -272,18 +272,29 @@ def _secured(security: Security) -> dict[str, Any]:
     settings: dict[str, Any] = {
         "transport/link/protocols": ["tls"],
         "transport/link/tls": {
-            "root_ca_certificate": str(own.authorities),
+            "root_ca_certificate": _told(own.authorities),
             "enable_mtls": True,
-            "listen_certificate": str(own.certificate),
-            "listen_private_key": str(own.key),
-            "connect_certificate": str(presented(own.certificate)),
-            "connect_private_key": str(own.key),
+            "listen_certificate": _told(own.certificate),
+            "listen_private_key": _told(own.key),
+            "connect_certificate": _told(presented(own.certificate)),
+            "connect_private_key": _told(own.key),
             "close_link_on_expiration": True,
         },
     }
     if security.access_control is not None:
         settings["access_control"] = security.access_control
     return settings
+
+
+def _told(file: Path) -> str:
+    """The path of a file of keys as a setting. Raises NetworkError for one that Zenoh cannot be told."""
+    path = str(file)
+    if re.search("[?;\ud800-\udfff]", path):
+        raise NetworkError(
+            f"Zenoh cannot read {path}: it takes a path apart at ? and ;, and knows none that is not UTF-8;"
+            " give the folder of keys another name"
+        )
+    return path
 
 
 def _check_endpoint(endpoint: str, security: Security | None) -> None:

@@ -95,7 +95,7 @@ class FileChecker:
         beside = repr([(other.name, other.base, things) for other, things in suspect.beside])
         said = (source.name, source.base, elsewhere, beside)
         octets = (source.octets, *(other.octets for other, _ in suspect.beside))
-        return _digest(self.knowledge, *octets, *(text.encode() for text in said)).hexdigest()
+        return _digest(self.knowledge, *octets, *(text.encode(errors="surrogatepass") for text in said)).hexdigest()
 
 
 CheckEach = Callable[[FileChecker, Sequence[UnclearedFile]], Iterable[list[Diagnostic]]]

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, open_session, with_port
+from selfconf.access import Authority, PrincipalKind, open_keys
+from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, open_session, with_port
 from selfconf.bus.zenoh.session import FREE_DESCRIPTORS, GREETING
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import LISTENING_PORTS, endpoint_port
@@ -25,6 +26,14 @@ def test_port_zero_becomes_a_free_port() -> None:
 
 def test_an_endpoint_with_a_port_stays_as_it_is() -> None:
     assert with_port("tcp/192.0.2.1:7447") == "tcp/192.0.2.1:7447"
+
+
+@pytest.mark.parametrize("name", ["so?", "mine;yours", "caf\udce9"])
+def test_a_folder_of_keys_that_zenoh_cannot_be_told_is_named(name: str, tmp_path: Path) -> None:
+    folder = Authority.init(tmp_path / name).path
+    shown = open_keys(folder).credentials((PrincipalKind.SITE,))
+    with pytest.raises(NetworkError, match=r"^Zenoh cannot read .*; give the folder of keys another name$"):
+        open_session("router", ["tls/127.0.0.1:0"], security=Security(shown))
 
 
 def test_an_address_of_another_host_has_no_free_port_here() -> None:
@@ -53,7 +62,8 @@ def test_an_endpoint_may_be_of_any_protocol_that_zenoh_speaks(tmp_path: Path) ->
 
 LET_GO = """
 import os, threading, time
-from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, open_session, with_port
+from selfconf.access import Authority, PrincipalKind, open_keys
+from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, open_session, with_port
 from selfconf.bus.zenoh.receivers import callback
 endpoint = with_port(ANYWHERE_ON_LOOPBACK)
 gone, hub = (open_session("router", listen=[one]) for one in (with_port(ANYWHERE_ON_LOOPBACK), endpoint))
