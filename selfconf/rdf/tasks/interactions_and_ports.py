@@ -56,16 +56,15 @@ class _InteractionReader(DocumentReader):
                 yield Interaction(role.iri, sink)
 
     def _long(self, known: frozenset[IRI]) -> Iterator[Interaction]:
-        every_role = {
-            role
-            for template in self.document.instances(SC.Template)
-            for role in self.document.items(self.document.value(template, SC.roles) or template)
-        }
+        templates: dict[Term, set[Node]] = {}  # by role, as several may share one
+        for template in self.document.instances(SC.Template):
+            for role in self.document.items(self.document.value(template, SC.roles) or template):
+                templates.setdefault(role, set()).add(template)
         for node in self._nodes():
             source = self.only(node, SC["from"], "an interaction has exactly one sc:from")
             sink = self.only(node, SC.to, "an interaction has exactly one sc:to")
             unknown = [(end, of) for end, of in ((source, SC["from"]), (sink, SC.to)) if end not in known]
-            if len(unknown) == 2 and source in every_role and sink in every_role:
+            if unknown and templates.get(source, set()) & templates.get(sink, set()):
                 continue  # it belongs to another template of the same file
             if unknown or not isinstance(source, IRI) or not isinstance(sink, IRI):
                 problem = f"an interaction speaks of {worded(unknown[0][0])}, which is no role of the template"

@@ -69,6 +69,13 @@ def test_an_interaction_between_the_roles_of_another_template_is_passed_over() -
     assert interactions(f"{LONG} . {other}") == (Interaction(EYE, MIND),)
 
 
+def test_a_role_of_two_templates_may_feed_another_role_in_each() -> None:
+    templates = ":this a sc:Template ; sc:roles ( :eye :mind ) . :other a sc:Template ; sc:roles ( :eye :hand ) . "
+    assert interactions(f"{templates} {LONG} . {LONG.replace(':mind', ':hand')} .") == (Interaction(EYE, MIND),)
+    with pytest.raises(TemplateError, match="hand"):
+        interactions(f"{templates} {LONG.replace(':eye', ':hand')} .")
+
+
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
