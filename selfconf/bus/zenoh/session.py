@@ -272,12 +272,12 @@ def _secured(security: Security) -> dict[str, Any]:
     settings: dict[str, Any] = {
         "transport/link/protocols": ["tls"],
         "transport/link/tls": {
-            "root_ca_certificate": _told(own.authorities),
+            "root_ca_certificate": _path_setting(own.authorities),
             "enable_mtls": True,
-            "listen_certificate": _told(own.certificate),
-            "listen_private_key": _told(own.key),
-            "connect_certificate": _told(presented(own.certificate)),
-            "connect_private_key": _told(own.key),
+            "listen_certificate": _path_setting(own.certificate),
+            "listen_private_key": _path_setting(own.key),
+            "connect_certificate": _path_setting(presented(own.certificate)),
+            "connect_private_key": _path_setting(own.key),
             "close_link_on_expiration": True,
         },
     }
@@ -286,8 +286,8 @@ def _secured(security: Security) -> dict[str, Any]:
     return settings
 
 
-def _told(file: Path) -> str:
-    """The path of a file of keys as a setting. Raises NetworkError for one that Zenoh cannot be told."""
+def _path_setting(file: Path) -> str:
+    """The path of a file of keys as a setting. Raises NetworkError for one that Zenoh would take apart."""
     path = str(file)
     if re.search("[?;\ud800-\udfff]", path):
         raise NetworkError(
