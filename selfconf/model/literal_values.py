@@ -69,6 +69,11 @@ _TEXTS = {
 }
 TEXT_PATTERNS = {XSD_NAMESPACE + name: re.compile(pattern) for name, pattern in _TEXTS.items()}
 """The lexical spaces of datatypes of short texts; that a month has that day is not looked at."""
+_DERIVED = {
+    XSD_NAMESPACE + "dateTime": (XSD_NAMESPACE + "dateTimeStamp",),
+    XSD_NAMESPACE + "duration": (XSD_NAMESPACE + "dayTimeDuration", XSD_NAMESPACE + "yearMonthDuration"),
+}
+"""Those of them whose values are values of another, too (XSD 1.1, part 2, section 3.4)."""
 
 
 def number_of(lexical: str, datatype: str) -> Decimal | None:
@@ -142,7 +147,8 @@ def of_range(lexical: str, datatype: str, wanted: str) -> bool:
     if wanted == BOOLEAN:
         return datatype == wanted and lexical in TRUTH
     pattern = TEXT_PATTERNS.get(wanted)
-    return pattern is None or (datatype == wanted and pattern.fullmatch(lexical) is not None)
+    datatypes = (wanted, *_DERIVED.get(wanted, ()))
+    return pattern is None or (datatype in datatypes and pattern.fullmatch(lexical) is not None)
 
 
 def as_python(term: Term) -> bool | int | float | str:

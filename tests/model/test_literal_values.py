@@ -177,6 +177,9 @@ def test_a_literal_that_is_none_of_its_datatype_is_an_error(literal: Literal) ->
         ("2026-01-31", "string", "date", False),
         ("31.1.2026", "date", "date", False),
         ("2026-01-31T12:00:00", "dateTime", "date", False),
+        ("P1D", "dayTimeDuration", "duration", True),
+        ("P1D", "duration", "dayTimeDuration", False),
+        ("2026-01-31T12:00:00Z", "dateTimeStamp", "dateTime", True),
         ("5", "integer", "anyURI", True),
     ],
 )

@@ -14,6 +14,7 @@ from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixe
 from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
 from selfconf.rdf.validation.lints.templates import (
     borrowed_parameters,
+    idle_words,
     impossible_roles,
     queried_parameters,
     signals_for_components,
@@ -70,6 +71,7 @@ TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unused_parameters,
     unlisted_parameters,
     borrowed_parameters,
+    idle_words,
     queried_parameters,
     impossible_roles,
     idle_loops,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rdflib import RDF, SH, BNode, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf import vocabulary
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, PERMITTED_IN_SHAPES, SHAPE_VALUED
 from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
@@ -19,6 +20,17 @@ from selfconf.rdf.vocabulary import ROB, SC
 
 _NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
 """An IRI in a query, or a prefix and what follows it."""
+_READ_IN_SHAPES = PERMITTED_IN_SHAPES.union(
+    vocabulary.SH[name]
+    for name in ("sparql", "prefixes", "declare", "targetNode", "targetClass", "targetSubjectsOf", "targetObjectsOf")
+)
+_INSTEAD_OF_WORDS: Mapping[str, str] = {
+    vocabulary.SH.value: "Did you mean sh:hasValue?",
+    vocabulary.SH.resultMessage: "Did you mean sh:message?",
+    vocabulary.SH.resultSeverity: "Did you mean sh:severity?",
+    **dict.fromkeys((vocabulary.SH.select, vocabulary.SH.ask), "Write sh:sparql [ sh:select ... ]."),
+}
+"""What an author meant who wrote a word that says nothing in a shape."""
 
 
 def unlisted_roles(file: LintedFile) -> Iterator[Diagnostic]:
@@ -137,6 +149,21 @@ def _said_for(file: LintedFile, role: Node) -> Iterator[tuple[Node, Node, Node]]
             if inside and value not in seen:
                 seen.add(value)
                 waiting.append(value)
+
+
+def idle_words(file: LintedFile) -> Iterator[Diagnostic]:
+    """Words of SHACL in the shape of a role that are read of other things alone, as `sh:value` is of results."""
+    roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
+    said = {one for role in roles for one in _said_for(file, role)}
+    leading = {(str(predicate), value) for _, predicate, value in said}
+    shapes = roles | {value for predicate, value in leading if predicate in (SC.recruits, *SHAPE_VALUED)}
+    shapes |= {shape for predicate, head in leading if predicate in LISTS_OF_SHAPES for shape in file.items(head)}
+    for shape, predicate, value in said:
+        word = str(predicate)
+        idle = isinstance(predicate, URIRef) and predicate in SH and word not in _READ_IN_SHAPES
+        if shape in shapes and idle and (offsets := file.positions.triples.get((shape, predicate, value))):
+            message = f"{file.short(word)} says nothing in a shape, so this is passed over."
+            yield at(file.positions, offsets.predicate, "SC-L25", message, hint=_INSTEAD_OF_WORDS.get(word))
 
 
 def unused_parameters(file: LintedFile) -> Iterator[Diagnostic]:

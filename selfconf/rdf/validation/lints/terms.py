@@ -17,7 +17,7 @@ from rdflib.term import Node
 
 from selfconf.model.curie import suggested_local_name
 from selfconf.model.diagnostic import Diagnostic, Severity
-from selfconf.model.literal_values import DATATYPES, MOST_CHARACTERS, of_range
+from selfconf.model.literal_values import DATATYPES, MOST_CHARACTERS, TRUTH, number_of, of_range
 from selfconf.model.term import IRI
 from selfconf.rdf import vocabulary
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_PARTS, foreign_terms
@@ -326,8 +326,11 @@ def _literals(file: LintedFile) -> Iterator[tuple[str, Literal, int]]:
 def _written(text: str, datatype: str, file: LintedFile) -> str:
     """A text as a literal of a datatype, if it is one; an example otherwise."""
     known = len(text) <= MOST_CHARACTERS and of_range(text, datatype, datatype)
-    if datatype in DATATYPES or datatype == str(XSD.boolean):
-        return text if known else "true or false" if datatype == str(XSD.boolean) else "a number, such as 10"
+    if datatype == str(XSD.boolean):
+        return "true or false" if text not in TRUTH else "true" if TRUTH[text] else "false"
+    if datatype in DATATYPES and (not known or number_of(text, datatype) is not None):
+        example = next(one for one in ("10", "-10") if of_range(one, datatype, datatype))
+        return text if known else f"a number, such as {example}"
     return f'"{text}"^^{file.short(datatype)}' if known else f"it as in {EXAMPLES[datatype]}"
 
 

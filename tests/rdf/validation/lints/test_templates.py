@@ -44,6 +44,25 @@ def test_a_parameter_of_another_template_is_noticed_where_a_role_mentions_it(sai
 
 
 @pytest.mark.parametrize(
+    ("shape", "hint"),
+    [
+        ("sh:property [ sh:path rob:place ; sh:value :hall ]", "Did you mean sh:hasValue?"),
+        ("sh:node [ sh:property [ sh:path :p ; sh:minCount 1 ; sh:resultMessage 'so' ] ]", "Did you mean sh:message?"),
+        ("sh:or ( [ sh:class :A ] [ sh:value :a ] )", "Did you mean sh:hasValue?"),
+        ("sh:select 'SELECT $this WHERE { $this ?p 1 }'", "Write sh:sparql [ sh:select ... ]."),
+        ("sc:recruits [ sh:class :A ; sh:focusNode :a ]", None),
+    ],
+)
+def test_a_word_of_shacl_that_says_nothing_in_a_shape_is_noticed(shape: str, hint: str | None) -> None:
+    found = only(TEMPLATE + f":r {shape} .")
+    assert (found.code, found.hint) == ("SC-L25", hint)
+
+
+def test_words_of_shacl_outside_of_the_shapes_of_roles_are_left_alone() -> None:
+    assert not lints(TEMPLATE + "[] a sh:ValidationResult ; sh:focusNode :a ; sh:value 5 ; sh:resultPath rob:place .")
+
+
+@pytest.mark.parametrize(
     ("condition", "noticed"),
     [
         ("$this rob:place home:p", True),
