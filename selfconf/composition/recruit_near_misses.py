@@ -75,11 +75,12 @@ def _kept_out(
 ) -> Iterator[NearMiss]:
     """Yield the components that issue what an input wants, and that a role does not recruit for one thing alone."""
     wanted = Input(reason.input, reason.wanted.signals, condition=reason.wanted.condition)
-    may = {recruit.component for recruit in problem.supply.recruits if number in recruit.roles}
+    passed_over = {recruit.component for recruit in problem.supply.recruits if number in recruit.roles}
+    passed_over.add(reason.component)  # which is no recruit for itself
     issuing = [
         advertisement
         for advertisement in ecology.values()
-        if advertisement.component not in may
+        if advertisement.component not in passed_over
         and any(problem.hierarchy.pairs(output, wanted) for output in advertisement.profile.outputs)
     ]
     for advertisement in sorted(issuing, key=lambda one: candidate_order(one.profile)):

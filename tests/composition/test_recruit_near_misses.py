@@ -111,6 +111,13 @@ def test_where_nobody_is_near_nobody_is_named() -> None:
     assert nearest(source("camera", "Image")) == ("", [])
 
 
+def test_a_component_that_issues_what_it_needs_itself_is_not_near_to_being_recruited_for_that() -> None:
+    mapper = converter("mapper", "Scan", "Scan").replace(":Source", ":Source , :Localiser")
+    refusal = refused(" ; sc:recruits [ sh:class :Camera ]", mapper)
+    assert str(refusal.reasons[0]).endswith("no recruit that can be fed itself issues a Scan")
+    assert not refusal.near_misses
+
+
 def test_who_could_be_recruited_is_not_advised_as_a_player() -> None:
     refusal = refused(" ; sc:recruits true", NEEDY.format(""), source("sonar", "Echo"))
     assert not [one for one in refusal.repairs if one.code in ("accept-near-miss", "let-recruit")]

@@ -1,8 +1,7 @@
 """Templates and tasks: from triples to the roles, interactions, parameters and costs of a task.
 
-What makes a template
-readable is checked here, with one sentence per mistake; the authority is `shapes/template.ttl`, and a test holds
-the two together: of a file with a wrong template or task nothing is read.
+What makes a template readable is checked here, with one sentence per mistake; the authority is `shapes/template.ttl`,
+and a test holds the two together: no wrong template or task is read. Others of the same file may be wrong.
 """
 
 from __future__ import annotations
