@@ -9,10 +9,10 @@ notices.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 
 from selfconf.bus.port import Bus, Undo
-from selfconf.discovery import Beliefs, Discovery, EcologyView
+from selfconf.discovery import Beliefs, Discovery, EcologyView, FoundAdvertisement
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.rdf import turtle
@@ -88,6 +88,7 @@ class EcologyWatcher:
         self._discovering = False
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
         before, self.view.discovery = self.view.discovery.found, discovery
+        discovery.found.update(list(self._kept(before, discovery)))
         gone: dict[IRI, None] = {c: None for c in before if c not in discovery.found}
         new = {c: found for c, found in discovery.found.items() if before.get(c) != found}
         for component in gone:
@@ -109,6 +110,15 @@ class EcologyWatcher:
             self._discover()
         elif discovery.missing:
             self._ask_again = self.bus.later(ASKED_AGAIN, self._discover)
+
+    def _kept(
+        self, before: Mapping[IRI, FoundAdvertisement], discovery: Discovery
+    ) -> Iterator[tuple[IRI, FoundAdvertisement]]:
+        """What was advertised by sites that live and have not answered in full: they are busy, and it may act."""
+        silent = discovery.site_tokens - discovery.answered
+        for component, found in before.items():
+            if component not in discovery.found and self.keys.site_life(found.site, found.site_life) in silent:
+                yield component, found
 
     def _changed_sites(self, discovery: Discovery) -> dict[str, Body | None]:
         before, self._sites = self._sites, {site: {"missing": site in discovery.missing} for site in discovery.sites}

@@ -13,6 +13,7 @@ from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.serve.watching.change import EcologyChange
 from selfconf.serve.watching.task_watcher import LOOK_ANEW
 from selfconf.serve.watching.watcher import ASKED_AGAIN, EcologyWatcher
+from selfconf.site.site import Site
 from tests.lab import Lab, iri
 
 
@@ -173,6 +174,28 @@ def test_a_site_that_does_not_answer_is_asked_again_at_one_interval_whatever_els
     asked.clear()
     lab.let_pass(10 * ASKED_AGAIN)
     assert len(asked) <= 10 * DISCOVERY_ATTEMPTS
+
+
+def test_what_a_site_advertises_is_there_while_it_is_too_busy_to_answer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answer, busy = Site._answer, set[str]()
+    monkeypatch.setattr(
+        Site, "_answer", lambda site, request: request.finish() if site.name in busy else answer(site, request)
+    )
+    lab = Lab(tmp_path)
+    lab.navigation()
+    seen = Seen(lab)
+    lab.let_pass(1.0)
+    before = dict(seen.components)
+    busy.add("astrid")
+    lab.network.node().publisher(lab.keys.changed("living-room"), Urgency.EVENT).put(b"")
+    lab.let_pass(4.0)
+    assert seen.sites["astrid"] == {"missing": True}
+    assert seen.components == before
+    busy.clear()
+    lab.let_pass(2 * ASKED_AGAIN)
+    assert seen.sites["astrid"] == {"missing": False}
 
 
 def test_over_another_link_everything_is_looked_at_anew(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
