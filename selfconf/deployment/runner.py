@@ -90,7 +90,7 @@ log = logging.getLogger(__name__)
 RETURN = 3.0
 """Seconds for which a task that does not wait is not refused for lack of what has gone without a word.
 
-By then that has turned itself off (`selfconf.deployment.components.calls.GONE`), so the refusal need not doubt it."""
+By then that has turned itself off (`GONE` of `selfconf.deployment.components.releases`): no refusal need doubt it."""
 LOSSES_TOLD = 1000
 """How many losses are named at most, the newest: where ever new components come and go they have no end."""
 

@@ -14,7 +14,7 @@ from itertools import chain, combinations
 from selfconf.bus.memory import LEASE, MemoryBus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import TaskRunner
-from selfconf.deployment.components.calls import RELEASE_AGAIN
+from selfconf.deployment.components.releases import RELEASE_AGAIN
 from selfconf.model.configuration import Configuration
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.refusal import Refusal

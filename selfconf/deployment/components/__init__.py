@@ -1,7 +1,8 @@
 """How one task deals with the components of its ecology: what it asks of them, what they say, and whether they live.
 
 * `Calls` makes the calls to components: be reserved, act with these inputs, turn off; how one is made, and what becomes
-  of it, is in `calling`. `Waking` has those live that are dormant.
+  of it, is in `calling`, and what follows where one does not obey its release in `releases`. `Waking` has those live
+  that are dormant.
 * `ComponentMessages` receives what components say of themselves; `Liveness` follows their lives, and decides when one
   is believed to be dead, by the `LivingSites` and as far as `Reachability` lets it: an ecology that cannot be reached
   seems to be dead. `Audits` ask those that live whether they act.

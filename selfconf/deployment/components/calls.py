@@ -1,16 +1,13 @@
 """The calls that a configurator makes to components: reserve, activate and connect, turn off, stand by.
 
-How one call is made, and what becomes of it, is in `calling`.
+How one call is made, and what becomes of it, is in `calling`, what follows where a component does not obey its release
+in `releases`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-
 from selfconf.bus.port import Replies
 from selfconf.configurator import (
-    Answered,
     Appeared,
     ApplyTo,
     AwaitRelease,
@@ -24,9 +21,10 @@ from selfconf.configurator import (
     WaitedLong,
     plan_of,
 )
-from selfconf.deployment.components.calling import CALL, Calling
+from selfconf.deployment.components.calling import Calling
 from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.components.port_ends import PortEnds
+from selfconf.deployment.components.releases import Releases
 from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.run_request import Standby, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
@@ -35,33 +33,20 @@ from selfconf.model.immutable import replace
 from selfconf.model.run_event import (
     ActivationSent,
     ComponentAwaited,
-    ComponentReleased,
     ComponentUnreachable,
     InputConnected,
 )
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import (
     Apply,
     CallAnswer,
     Cause,
-    End,
     Release,
     Reserve,
-    Verdict,
 )
 
-SITE_ENDS = 2.5
-"""Seconds for which a site is waited for that ends the process of a component that has not obeyed its release: it kills
-a process that takes more than two."""
-END_SEEN = 0.1
-"""Seconds after which the end of a life is seen whose process its site has ended."""
-GONE = 2.5
-"""Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
 HELD_BACK = 0.3
 """Seconds for which a component that was adopted waits at most for a composite to say what stands behind it."""
-RELEASE_AGAIN = 2.5
-"""Seconds after which a component that lives and has not obeyed its release is called again: it may act until then."""
 RESERVE_AGAIN = 0.5
 """Seconds after which a component that another task holds is asked again: what it says when it is free may be lost."""
 
@@ -81,8 +66,9 @@ class Calls:
         self.bus, self.ecology, self.keys = task.ecology.bus, task.ecology, task.ecology.keys
         self.supervisor = supervisor
         self._state, self._step, self._report = task.state, task.step, task.report
-        self._lives, self._waking, self._ends = lives, waking, ends
+        self._lives, self._ends = lives, ends
         self._calling = Calling(task, identity, supervisor, lives, self._acts)
+        self._releases = Releases(task, lives, waking, self._calling)
         self.look = self._calling.look
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""
@@ -90,8 +76,6 @@ class Calls:
         """By which call each component listens to what may come next, until it is applied to anew."""
         self._held_back: list[ApplyTo] = []
         """What is applied to once it is known what stands behind the composites that it is connected to."""
-        self._ending: set[IRI] = set()
-        """The components whose sites were asked to end their processes, and have not answered yet."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
 
@@ -237,112 +221,11 @@ class Calls:
     # Turning off.
 
     def release(self, effect: ReleaseFrom) -> None:
-        """Turn a component off; one that lives but does not obey is called again as long as it is owed the release."""
-        component = effect.component
-        self._connections.pop(component, None)
-        self._awaited.discard(component)
-        message = Release(**self._calling.claim(component, effect.epoch))
-        if not self._lives.lives_on(component):
-            self._lives.leave_behind(component)
-            never_acted = self._lives.never_acted(component)
-            off = Answered(component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE if never_acted else None)
-            self.bus.wake_up(lambda: self._step(off))
-            if not never_acted:
-                self._release_unseen(effect, message)
-            return
-        self.bus.later(RELEASE_AGAIN, partial(self._release_again, effect))
-        self._calling.call(component, Call.RELEASE, message, partial(self._end, component, message))
-
-    def _release_unseen(self, effect: ReleaseFrom, message: Release) -> None:
-        """Tell a component whose life seems to have ended that it is released, as it may hear this without being heard.
-
-        It is sent again only if a life was asked and did not answer. One that cannot be reached has lost sight of its
-        configurator as well, and turns itself off; one that is frozen is released when its life shows again.
-        """
-        component = effect.component
-
-        def answered(replies: Replies) -> None:
-            answer = self._calling.answer_in(replies, message.life)
-            if answer is not None:
-                self._calling.answered(component, Call.RELEASE, message, answer)
-            elif not replies.complete:
-                self.bus.later(CALL, partial(self._release_again, effect))
-
-        self._calling.ask(component, Call.RELEASE, message, answered)
-
-        def gone() -> None:
-            """A life that has been gone for longer than its grace acts for no task, unless this node is cut off."""
-            if self.bus.link and not self._lives.lives_on(component):
-                self._lives.gone(component)
-
-        self.bus.later(GONE, gone)
+        """Turn a component off."""
+        self._connections.pop(effect.component, None)
+        self._awaited.discard(effect.component)
+        self._releases.release(effect)
 
     def woken(self, component: IRI, life: str) -> None:
         """A component lives; perhaps it was frozen and has not been released."""
-        if self._lives.was_left_behind(component, life):
-            self._release_left_behind(component, life)
-
-    def _release_left_behind(self, component: IRI, life: str) -> None:
-        """Tell a life that was frozen that it is released, whatever other lives of the component have received since.
-
-        Unless it is wanted again: then it hears that.
-        """
-        left = self._lives.was_left_behind(component, life) and self.ecology.lives_on(component, life)
-        if not left or self._state().ended:
-            return
-        again = partial(self._release_left_behind, component, life)
-        wanted = component in self._waking or component in self._state().held
-        if wanted and self._lives.life(component) == life:
-            self.bus.later(CALL, again)
-            return
-        message = replace(Release(**self._calling.claim(component, self._state().epoch)), life=life)
-
-        def answered(replies: Replies) -> None:
-            answer = self._calling.answer_in(replies, life)
-            if answer is not None and answer.life == life:
-                self._lives.caught_up(component, life)
-            else:
-                self.bus.later(CALL, again)
-
-        self._calling.ask(component, Call.RELEASE, message, answered)
-
-    def _release_again(self, effect: ReleaseFrom) -> None:
-        if self._state().ended or self._state().owed.get(effect.component) != effect.epoch:
-            return
-        if effect.component in self._ending:
-            self.bus.later(RELEASE_AGAIN, partial(self._release_again, effect))
-        else:
-            self.release(effect)
-
-    def _end(self, component: IRI, message: Release, otherwise: Callable[[], None]) -> None:
-        """Have the site end a life of a component that does not obey its release: it may act on without a task.
-
-        `otherwise` is called if the site cannot do so, or has not within `SITE_ENDS` seconds; it may do so later.
-        """
-        found = self.ecology.discovery.found.get(component)
-        if found is None or not found.startable or not message.life:
-            otherwise()
-            return
-
-        def answered(replies: Replies) -> None:
-            if replies.samples:
-                self.bus.later(END_SEEN, ended)
-            else:
-                self._ending.discard(component)
-                otherwise()
-
-        def ended() -> None:
-            self._ending.discard(component)
-            if self.ecology.lives_on(component, message.life):
-                otherwise()  # it was no process of the site that lives this life
-                return
-            self._lives.leave_behind_if_ended(component)
-            if not self._lives.lives_on(component):
-                self._lives.gone(component)
-            detail = "its site has ended its process"
-            self._report(ComponentReleased(component, detail))
-            self._step(Answered(component, Call.RELEASE, message.epoch, Verdict.OTHER_LIFE, detail=detail))
-
-        self._lives.lost(component, message.life)
-        self._ending.add(component)
-        self.bus.ask(self.keys.end(found.site), encode(End(component, message.life)), SITE_ENDS, answered)
+        self._releases.woken(component, life)

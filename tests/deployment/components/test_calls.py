@@ -7,19 +7,16 @@ from typing import Any
 
 import pytest
 
-from selfconf.bus.port import Request
 from selfconf.configurator.state import Phase
-from selfconf.deployment.components.calling import CALL, STARTING
-from selfconf.deployment.components.calls import SITE_ENDS
+from selfconf.deployment.components.calling import CALL
 from selfconf.deployment.components.reachability import SETTLING
-from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import End, Page, Release, Wake
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Release
 from selfconf.sdk.runtime.runtime import LIFE_ENDS
 from selfconf.sdk.runtime.supervision import GRACE
-from selfconf.site.component_program import TERMINATION
 from tests.deployment.simulated import home, living_room, slow_code
 from tests.deployment.tasks import TASK
-from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, Lab, Recorder, iri
+from tests.lab import NAVIGATE, Lab, Recorder, iri
 
 
 def test_nothing_acts_before_everything_is_reserved(lab: Lab) -> None:
@@ -51,75 +48,6 @@ def test_components_start_after_those_that_feed_them_and_actuators_last_and_rest
     assert (off[:2], set(off[2:])) == (["drive", "control"], {"sonar", "encoder", "tracker"})
 
 
-@pytest.mark.parametrize(
-    ("seconds", "in_time"),
-    [
-        pytest.param(0.3, True, id="soon"),
-        pytest.param(TERMINATION + 0.1, True, id="killed"),
-        pytest.param(2 * SITE_ENDS, False, id="late"),
-    ],
-)
-def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(
-    tmp_path: Path, seconds: float, in_time: bool
-) -> None:
-    """It is out of control if the site takes too long for that."""
-    lab = Lab(tmp_path)
-    lab.site("astrid", *TASK, "odometry")
-    for name in ADVERTISEMENTS:
-        lab.component(name)
-    node, tracker = lab.network.node(), iri("person-tracker")
-    page = encode(Page(0, 1, 1, tracker, "tracker.ttl", startable=True))
-    ended: list[End] = []
-
-    def advertise(request: Request) -> None:
-        payload = (PREFIXES + ADVERTISEMENTS["tracker"]).encode()
-        request.reply(lab.keys.advertisement("living-room", tracker), payload, page)
-        request.finish()
-
-    def end(request: Request) -> None:
-        ended.append(decode(request.payload, End))
-        node.later(seconds, lambda: gone(request))
-
-    def gone(request: Request) -> None:
-        lab.crash("tracker")
-        request.reply(lab.keys.end("living-room"), b"ended")
-        request.finish()
-
-    node.announce(lab.keys.site_life("living-room", "1"))
-    node.serve(lab.keys.advertisements("living-room"), advertise)
-    node.serve(lab.keys.end("living-room"), end)
-    agent = lab.agent()
-    assert lab.running(agent)
-    assert "tracker" in lab.active()
-    runtime = lab.runtimes["tracker"]
-    runtime.calls.close()
-    runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
-    agent.stop()
-    assert lab.until(lambda: bool(lab.ended))
-    assert ended == [End(tracker, runtime.life)]
-    (stopped,) = lab.acts("stopped")
-    assert stopped.owed == (() if in_time else (tracker,))
-    off = [event.detail for event in lab.acts("released") if event.component == tracker]
-    assert off == (["its site has ended its process"] if in_time else [])
-    assert lab.until(lambda: lab.active() == set())
-
-
-def test_a_task_that_is_stopped_while_it_waits_says_of_no_component_that_it_is_off(lab: Lab) -> None:
-    first = lab.agent()
-    assert lab.running(first)
-    second = lab.agent(patient=True)
-    assert lab.until(lambda: second.state.phase is Phase.REFUSED)
-    lab.let_pass(1.0)
-    assert second.state.queued
-    second.stop()
-    assert lab.until(lambda: second.state.ended)
-    assert lab.acts("released") == []
-    first.stop()
-    assert lab.until(lambda: first.state.ended)
-    names = TASK | {"tracker"}
-    assert {event.component for event in lab.acts("released")} == {lab.profile(name).component for name in names}
-
-
 def test_a_task_waits_for_a_component_whose_life_is_ending_and_has_its_site_start_it_again(tmp_path: Path) -> None:
     """Its code is in `started` for another task; its process is told to end meanwhile, and ends as that returns."""
     lab = home(tmp_path)
@@ -136,45 +64,6 @@ def test_a_task_waits_for_a_component_whose_life_is_ending_and_has_its_site_star
     assert lab.active() == TASK | {"tracker"}
     assert {event.cause for event in lab.acts("lost")} == {"crash"}
     assert lab.acts("lost")[0].detail == LIFE_ENDS
-
-
-def hangs_in_reach_of_a_site(lab: Lab, lives: list[str]) -> None:
-    """The tracker answers no call in its first lives, and its site ends it and starts it again, whenever asked to."""
-    tracker = iri("person-tracker")
-
-    def begin(node: object = None) -> None:
-        lab.component("tracker")
-        runtime = lab.runtimes["tracker"]
-        lives.append(runtime.life)
-        if len(lives) < 3:
-            runtime.calls.close()
-            runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
-
-    def end(request: Request) -> None:
-        if decode(request.payload, End).life == lab.runtimes["tracker"].life:
-            lab.crash("tracker")
-        request.finish()
-
-    lab.site("astrid", *TASK)
-    for name in TASK:
-        lab.component(name)
-    living_room(lab, "1", begin).serve(lab.keys.end("living-room"), end)
-    begin()
-
-
-def test_a_component_that_hangs_is_started_again_each_time_that_its_site_does_so(tmp_path: Path) -> None:
-    lab, lives, woken = Lab(tmp_path), list[str](), list[Wake]()
-    hangs_in_reach_of_a_site(lab, lives)
-
-    def listen(request: Request) -> None:
-        woken.append(decode(request.payload, Wake))
-        request.finish()
-
-    lab.network.node().serve(lab.keys.wake("living-room"), listen)
-    agent = lab.agent()
-    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 4 * (STARTING + 2 * CALL))
-    assert lab.active() == TASK | {"tracker"}
-    assert [wake.after for wake in woken] == lives[:2]  # so that the site counts them
 
 
 def test_connections_that_are_made_again_are_reported_again(lab: Lab) -> None:

@@ -9,7 +9,7 @@ import pytest
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Urgency
 from selfconf.configurator import Phase
-from selfconf.deployment.components.calls import GONE
+from selfconf.deployment.components.releases import GONE
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail
 from tests.deployment.simulated import living_room, slow_code
