@@ -1,7 +1,7 @@
 """Templates and tasks: from triples to the roles, interactions, parameters and costs of a task.
 
 What makes a template readable is checked here, with one sentence per mistake; the authority is `shapes/template.ttl`,
-and a test holds the two together: no wrong template or task is read. Others of the same file may be wrong.
+and a test holds the two together: no wrong template or task is read, whatever else the file has.
 """
 
 from __future__ import annotations
