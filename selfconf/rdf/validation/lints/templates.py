@@ -16,6 +16,7 @@ from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.contradictions import ShapeContradiction, contradictions, entails
 from selfconf.rdf.validation.lints.normal_form import NormalForm
+from selfconf.rdf.validation.term_index import OWN, STANDARD, namespace
 from selfconf.rdf.vocabulary import ROB, SC
 
 _NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
@@ -149,6 +150,23 @@ def _said_for(file: LintedFile, role: Node) -> Iterator[tuple[Node, Node, Node]]
             if inside and value not in seen:
                 seen.add(value)
                 waiting.append(value)
+
+
+def properties_of_roles(file: LintedFile) -> Iterator[Diagnostic]:
+    """Properties of components that are said of a role, which by that asks for nothing.
+
+    These are the properties of selfconf's own ontologies, and what shapes of the file ask for.
+    """
+    asked = set(file.graph.objects(None, SH.path))
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        for predicate, value in file.graph.predicate_objects(role):
+            property_, home = str(predicate), namespace(str(predicate))
+            ours = home.startswith(OWN) and property_ in file.index.properties
+            if (ours or predicate in asked) and property_ not in SC and home not in STANDARD:
+                statement = (role, predicate, value)
+                message = f"{file.short(property_)} is said of the role, which asks no component for it by that."
+                hint = f"Write sh:property [ sh:path {file.short(property_)} ; sh:hasValue ... ]."
+                yield at(file.positions, file.positions.triples[statement].predicate, "SC-L25", message, hint=hint)
 
 
 def idle_words(file: LintedFile) -> Iterator[Diagnostic]:

@@ -58,6 +58,22 @@ def test_a_word_of_shacl_that_says_nothing_in_a_shape_is_noticed(shape: str, hin
     assert (found.code, found.hint) == ("SC-L25", hint)
 
 
+@pytest.mark.parametrize(
+    ("said", "property_"),
+    [
+        (":r rob:place :hall .", "rob:place"),
+        (":r :floor 2 ; sh:property [ sh:path :floor ; sh:minCount 1 ] .", ":floor"),
+    ],
+)
+def test_a_property_of_components_that_is_said_of_a_role_is_noticed(said: str, property_: str) -> None:
+    found = only(TEMPLATE + said)
+    assert (found.code, found.hint) == ("SC-L25", f"Write sh:property [ sh:path {property_} ; sh:hasValue ... ].")
+
+
+def test_what_else_is_said_of_a_role_is_left_alone() -> None:
+    assert not lints(TEMPLATE + ":r rdfs:label 'lamp' ; :drawnAs :Bulb ; rdfs:seeAlso :r2 .")
+
+
 def test_words_of_shacl_outside_of_the_shapes_of_roles_are_left_alone() -> None:
     assert not lints(TEMPLATE + "[] a sh:ValidationResult ; sh:focusNode :a ; sh:value 5 ; sh:resultPath rob:place .")
 
