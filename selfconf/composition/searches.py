@@ -45,14 +45,15 @@ class Searches:
         """Yield better and better answers to a problem, beside what runs; the last one holds."""
         yield from self._with_additions(self._search, problem, running)
 
-    def after(self, problem: Problem, running: Configuration) -> Configuration | Refusal:
+    def after(self, problem: Problem, running: Configuration) -> Configuration | Refusal | Undecided:
         """Return what comes after a configuration that runs, as a running configurator would decide it."""
         if self.strategy is Strategy.BEST:
             *_, found = self._with_additions(self._best, problem, running)
             if not isinstance(found, Undecided):
                 return found.configuration if isinstance(found, Optimum) else found
         *_, near = self._with_additions(self._nearest, problem, running)
-        return near if isinstance(near, Configuration | Refusal) else Refusal(problem.task.template.iri, ())
+        assert not isinstance(near, Optimum)  # for the nearest is not chosen by what it costs
+        return near
 
     def _with_recruits(
         self, problem: Problem, found: Iterator[Optimum | Outcome], running: Configuration | None

@@ -6,18 +6,18 @@ from collections.abc import Callable
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 
 
 @immutable
 class Consequence:
-    """A component that may fail, the role it plays, and the configuration after that, or why there is none."""
+    """A component that may fail, the role it plays, and the configuration after that, or why none is known."""
 
     component: IRI
     role: IRI | None
     """None for a recruit, which plays none."""
-    after: Configuration | Refusal
+    after: Configuration | Refusal | Undecided
     started: tuple[IRI, ...] = ()
     """Components that would begin to play a part, in the order of the roles."""
     stopped: tuple[IRI, ...] = ()
@@ -34,6 +34,8 @@ class Consequence:
         """What would come instead, with names for things."""
         if self.fatal:
             return "NONE, a single point of failure"
+        if isinstance(self.after, Undecided):
+            return "not decided"
         changes = [", ".join(map(name, self.started))] if self.started else []
         changes += [f"{name(one)} as {'recruit' if role is None else name(role)}" for one, role in self.moved]
         instead = ", ".join(changes) or "no component needed"

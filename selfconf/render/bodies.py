@@ -48,6 +48,7 @@ def consequences_body(consequences: Sequence[Consequence]) -> list[dict[str, Any
             "component": one.component,
             **({} if one.role is None else {"role": one.role}),
             "single_point_of_failure": one.fatal,
+            **({"undecided": True} if isinstance(one.after, Undecided) else {}),
             "started": list(one.started),
             "stopped": list(one.stopped),
             "moved": [{"component": moved, **({} if role is None else {"role": role})} for moved, role in one.moved],

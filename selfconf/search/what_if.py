@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.search import reconfigure
 from selfconf.search.problem import Problem
@@ -15,7 +15,7 @@ from selfconf.search.problem import Problem
 def consequences(
     problem: Problem,
     running: Configuration,
-    search: Callable[[Problem, Configuration], Configuration | Refusal] = reconfigure.nearest_configuration,
+    search: Callable[[Problem, Configuration], Configuration | Refusal | Undecided] = reconfigure.nearest_configuration,
 ) -> Iterator[Consequence]:
     """Yield what the loss of each component of a configuration would bring, one by one, in the order of the roles."""
     players = [
@@ -27,9 +27,9 @@ def consequences(
 
 
 def _consequence(
-    component: IRI, role: IRI | None, running: Configuration, after: Configuration | Refusal
+    component: IRI, role: IRI | None, running: Configuration, after: Configuration | Refusal | Undecided
 ) -> Consequence:
-    if isinstance(after, Refusal):
+    if not isinstance(after, Configuration):
         return Consequence(component, role, after)
     before, now = dict.fromkeys(running.components), dict.fromkeys(after.components)
     played = {one: assignment.role for assignment in running.assignments for one in assignment.components}

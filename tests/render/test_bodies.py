@@ -10,6 +10,7 @@ from typing import Any, get_args
 
 import pytest
 
+from selfconf.model.consequence import Consequence
 from selfconf.model.literal_values import DATATYPES, WHOLE_NUMBERS
 from selfconf.model.refusal import Reason, Refusal, TooFewEligible, Undecided
 from selfconf.model.relaxation import Relaxation
@@ -77,6 +78,8 @@ def test_the_consequences_of_failures_say_who_comes_goes_and_moves() -> None:
     assert (replaced["started"], replaced["stopped"]) == ([LAMP], [CLOCK])
     assert replaced["moved"] == [{"component": CLOCK, "role": SPARE}]
     assert not replaced["single_point_of_failure"]
+    (open_,) = consequences_body([Consequence(CLOCK, SOURCE, Undecided(5))])
+    assert (open_["single_point_of_failure"], open_["undecided"]) == (False, True)
 
 
 def test_a_cost_has_its_levels_its_bound_and_what_is_not_known() -> None:

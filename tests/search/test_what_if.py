@@ -13,6 +13,7 @@ from selfconf.search.problem import Problem
 from selfconf.search.strategies import first
 from selfconf.search.what_if import consequences
 from tests.search.oracle import World
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.worlds import agreement, component, problem, problems
 
 
@@ -55,6 +56,19 @@ def test_a_component_that_would_play_another_role_is_named_with_it() -> None:
         "b (second): no component needed",
         "x (second): no component needed",
     ]
+
+
+def test_what_is_not_decided_is_no_single_point_of_failure() -> None:
+    own = component("own", "s:S", "s:S")
+    user = problem({"user": [component("lost"), component("a", "s:S"), own, component("b", "p:S")]}, "user>user")
+    helped = with_recruits(user, own)
+    running = first.search(helped)
+    assert isinstance(running, Configuration)
+    (loss,) = consequences(helped, running, Searches(Strategy.FIRST, steps=1).after)
+    assert not loss.fatal
+    assert str(loss) == "lost (user): not decided"
+    (loss,) = consequences(helped, running, Searches(Strategy.FIRST).after)
+    assert str(loss) == "lost (user): own"
 
 
 def test_a_player_that_would_be_recruited_is_named() -> None:
