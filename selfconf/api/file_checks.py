@@ -13,7 +13,9 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterable, Iterator, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -28,18 +30,32 @@ if TYPE_CHECKING:
 
 WORTH = 16
 """Full checks that take about as long as starting a process."""
+ENDING_THREAD = 0.1
+"""Seconds that the system may take to end a thread whose work is over."""
 PROGRAMS = ("pyshacl", "rdflib", "pyoxigraph")
 _checker: FileChecker | None = None
 
 
-def shared(checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
-    """Check each suspect, in as many processes as there are processors to use, where that pays and can be."""
+def shared(
+    checker: FileChecker,
+    suspects: Sequence[UnclearedFile],
+    forking: Callable[[], AbstractContextManager[None]] = nullcontext,
+) -> Iterator[list[Diagnostic]]:
+    """Check each suspect, in as many processes as there are processors to use, where that pays and can be.
+
+    They are forked inside of a `forking()`, which a program with a thread of its own can have rest meanwhile.
+    """
     processes = min(os.cpu_count() or 1, len(suspects) // WORTH)
-    if processes < 2 or _threads() > 1:
+    if processes < 2:
         yield from map(checker, suspects)
         return
     yield checker(suspects[0])  # loads what each process will need
-    with _pool(processes, checker) as pool:
+    with forking():
+        pool = _pool(processes, checker) if _has_one_thread() else None
+    if pool is None:
+        yield from map(checker, suspects[1:])
+        return
+    with pool:
         yield from pool.imap(_checked, suspects[1:], chunksize=4)
         # They end by themselves: a program may have a handler of SIGTERM, which they have, too, until they begin.
         pool.close()
@@ -53,6 +69,14 @@ def _pool(processes: int, checker: FileChecker) -> Pool:
         return multiprocessing.get_context("fork").Pool(processes, _begin, (checker,))
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _has_one_thread() -> bool:
+    """Whether this program has no other thread; one that has just ended may be there for a moment still."""
+    deadline = time.monotonic() + ENDING_THREAD
+    while _threads() > 1 and threading.active_count() == 1 and time.monotonic() < deadline:
+        time.sleep(0.001)  # nothing tells when the system has taken it away
+    return _threads() == 1
 
 
 def _threads() -> int:

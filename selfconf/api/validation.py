@@ -72,9 +72,13 @@ def validate(paths: Paths, *, ontologies: Paths = (), cache: bool = False) -> Va
     >>> validate(["examples/clock"]).conforms
     True
     """
+    return validated(paths, ontologies, checked_flag(cache, "cache"), shared)
+
+
+def validated(paths: Paths, ontologies: Paths, cache: bool, each: CheckEach) -> ValidationReport:
+    """What `validate` answers; `each` spreads the work."""
     names = [str(path) for path in listed_paths(paths)]
-    each = _remembered(names) if checked_flag(cache, "cache") else shared
-    found = check(names, map(str, listed_paths(ontologies)), each)
+    found = check(names, map(str, listed_paths(ontologies)), _remembered(names, each) if cache else each)
     return ValidationReport(found.files, found.diagnostics)
 
 
@@ -114,10 +118,10 @@ def _validated(sources: Iterable[SourceText], ontologies: Iterable[str], each: C
     return validation.validate_texts(sources, shapes, known, each)
 
 
-def _remembered(paths: Iterable[str]) -> CheckEach:
+def _remembered(paths: Iterable[str], each: CheckEach) -> CheckEach:
     from selfconf.entailment import cache_folder  # loads a parser, which a run without a memory may not need
 
-    return Remembered(cache_folder(), paths)
+    return Remembered(cache_folder(), paths, each)
 
 
 def _ontologies(given: Iterable[str]) -> Iterator[SourceText]:

@@ -29,6 +29,8 @@ class ProgressLine:
     def __init__(self) -> None:
         is_shown = isinstance(sys.stderr, Terminal) and os.environ.get("TERM") != "dumb"
         self._terminal = sys.stderr if is_shown else None
+        self._doing: tuple[str, float] | None = None
+        """What is done, and since when."""
         self._showing: tuple[threading.Thread, threading.Event] | None = None
 
     def __enter__(self) -> ProgressLine:
@@ -40,24 +42,38 @@ class ProgressLine:
     def begin(self, what: str) -> None:
         """From now on this is done, and not what was done before."""
         self.end()
-        if self._terminal is not None:
+        self._doing = what, time.monotonic()
+        self._begin_to_show()
+
+    def _begin_to_show(self) -> None:
+        if self._terminal is not None and self._doing is not None:
             over = threading.Event()
-            thread = threading.Thread(target=self._show, args=(what, over), name="progress", daemon=True)
+            thread = threading.Thread(target=self._show, args=(*self._doing, over), name="progress", daemon=True)
             thread.start()
             self._showing = thread, over
 
+    @contextmanager
+    def paused(self) -> Iterator[None]:
+        """No thread shows anything in the block, in which the process is forked; then it goes on."""
+        self._end_to_show()
+        yield
+        self._begin_to_show()
+
     def end(self) -> None:
         """What was done is over: its line is gone, unless the terminal is held."""
+        self._doing = None
+        self._end_to_show()
+
+    def _end_to_show(self) -> None:
         showing, self._showing = self._showing, None
         if showing is not None:
             thread, over = showing
             over.set()
             thread.join(HELD)
 
-    def _show(self, what: str, over: threading.Event) -> None:
+    def _show(self, what: str, began: float, over: threading.Event) -> None:
         assert isinstance(self._terminal, Terminal)
-        began = time.monotonic()
-        if over.wait(SHOWN_AFTER):
+        if over.wait(max(0.0, began + SHOWN_AFTER - time.monotonic())):
             return
         with suppress(OSError):  # the terminal is gone
             while True:

@@ -7,10 +7,11 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.cli.progress import progress
+from selfconf.cli.progress import ProgressLine
 from selfconf.cli.terminal import complain, display
 from selfconf.errors import AuthorError
 from selfconf.model.wording import one_line
@@ -73,11 +74,14 @@ def run(arguments: argparse.Namespace) -> int:
     paths = arguments.paths or _project_paths(arguments.project)
     if not paths:
         raise AuthorError("there is nothing to validate; name a Turtle file or a folder, or write a selfconf.toml")
-    from selfconf.api.validation import validate
+    from selfconf.api.file_checks import shared
+    from selfconf.api.validation import validated
     from selfconf.cli.reports import RENDERERS, text
 
-    with progress("validating"):
-        result = validate(paths, ontologies=_ontologies(arguments, paths), cache=arguments.cache)
+    with ProgressLine() as shown:
+        shown.begin("validating")
+        each = partial(shared, forking=shown.paused)
+        result = validated(paths, _ontologies(arguments, paths), arguments.cache, each)
     illustrated = arguments.format == "text" and sys.stdout.isatty()
     display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
     complain(text.summary(result))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from io import StringIO
 from pathlib import Path
@@ -88,6 +89,20 @@ def test_what_is_over_soon_is_not_shown(screen: Screen, monkeypatch: pytest.Monk
     with progress("searching"):
         pass
     assert screen.getvalue() == ""
+
+
+def test_no_thread_shows_anything_while_it_is_paused(screen: Screen, monkeypatch: pytest.MonkeyPatch) -> None:
+    with ProgressLine() as shown:
+        shown.begin("validating")
+        assert screen.shows("validating, 0 s so far")
+        with shown.paused():
+            assert screen.getvalue().endswith("\r\x1b[2K")
+            assert "progress" not in [thread.name for thread in threading.enumerate()]
+            monkeypatch.setattr(module.time, "monotonic", lambda now=time.monotonic: now() + 60)
+        assert screen.shows("validating, 60 s so far")
+    with shown.paused():
+        pass
+    assert shown._showing is None
 
 
 def test_a_file_a_program_and_a_simple_terminal_are_shown_nothing(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import pty
 import re
 import subprocess
 import sys
@@ -161,3 +162,42 @@ def test_warnings_count_where_they_are_to_be_errors(folder: Path, capsys: pytest
     assert main(["validate", "empty"]) == 0
     assert main(["validate", "empty", "--warnings-as-errors"]) == 1
     assert "warning[SC-S04]" in capsys.readouterr().out
+
+
+FORKING = """
+import os, sys
+from selfconf.api import file_checks
+from selfconf.cli.main import main
+forked = []
+os.register_at_fork(before=lambda: forked.append(1))
+file_checks.WORTH = 1
+os.cpu_count = lambda: 4
+main(["validate", *sys.argv[1:]])
+print(len(forked))
+"""
+"""Validates files, and says how often it has forked."""
+
+
+@pytest.mark.process
+@pytest.mark.slow
+@pytest.mark.parametrize("options", [[], ["--cache"]])
+def test_files_are_shared_among_processes_on_a_terminal_too(
+    options: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setenv("TERM", "xterm")
+    files = [str(path) for path in sorted(BAD.glob("*.ttl"))[:8]]
+    screen, terminal = pty.openpty()
+    try:
+        ended = subprocess.run(
+            [sys.executable, "-c", FORKING, *options, *files],
+            stdout=subprocess.PIPE,
+            stderr=terminal,
+            text=True,
+            timeout=60,
+            check=True,
+        )
+    finally:
+        os.close(terminal)
+        os.close(screen)
+    assert int(ended.stdout.splitlines()[-1]) == 4
