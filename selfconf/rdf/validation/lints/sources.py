@@ -1,6 +1,7 @@
 """Inputs that no output in sight can feed: units of other dimensions, shapes that no output of the type conforms to.
 
-Only what stands in one file is in sight. Where it has no output of a type, nothing is said of the inputs that want it.
+Only what stands in one file is in sight, and what a component issues is not what it is fed by. Where there is no output
+of a type, nothing is said of the inputs that want it.
 """
 
 from __future__ import annotations
@@ -76,9 +77,14 @@ class _Outputs:
                 self._by_type.setdefault(str(offered), []).append(output)
 
     def of(self, port: Node) -> list[Node]:
-        """The outputs that serve a signal type of an input, in the widest sense, each once."""
-        wanted = [str(signal) for signal in self._file.graph.objects(port, _SIGNAL)]
-        return list(dict.fromkeys(output for signal in wanted for output in self._of_type(signal) if output != port))
+        """The outputs of others that serve a signal type of an input, in the widest sense, each once."""
+        graph = self._file.graph
+        owners = set(graph.subjects(_INPUT, port))
+        own = {output for owner in owners for output in graph.objects(owner, _OUTPUT)}
+        wanted = [str(signal) for signal in graph.objects(port, _SIGNAL)]
+        return [
+            one for one in dict.fromkeys(one for signal in wanted for one in self._of_type(signal)) if one not in own
+        ]
 
     def _of_type(self, wanted: str) -> list[Node]:
         if wanted not in self._serving:

@@ -57,3 +57,10 @@ def test_a_shape_that_no_output_conforms_to_is_told(tmp_path: Path, outputs: lis
     text = component("in", "hasInput", SHAPE)
     text += "".join(component(f"o{n}", "hasOutput", said) for n, said in enumerate(outputs))
     assert found(tmp_path, text) == codes
+
+
+@pytest.mark.parametrize("wanted", [" ; sc:unit unit:M", SHAPE])
+def test_what_a_component_issues_itself_is_no_source_of_its_inputs(tmp_path: Path, wanted: str) -> None:
+    itself = component("filter", "hasInput", wanted) + component("filter", "hasOutput", " ; sc:unit unit:KiloGM")
+    assert found(tmp_path, itself) == []
+    assert len(found(tmp_path, itself + component("other", "hasOutput", " ; sc:unit unit:KiloGM"))) == 1
