@@ -10,9 +10,10 @@ the composite gets a source, or loses its last one, the inside is configured aga
 
 Neither signals nor calls pass here. The inputs inside that are those of the composite follow what feeds it, and a
 configurator that asks the composite to act hears which outputs stand behind its own, and which components inside call
-what it needs (`CallAnswer`, and `Moved` when they change). Where what stood behind an output is lost and not replaced
-within `REPLACING`, nothing does: an input that follows it is not to take a component that rests for one that has
-nothing to say. Those outside that may call an operation of the composite may call the one that stands behind it.
+what it needs (`CallAnswer`, and `Moved` when they change). Where what stood behind an output, or what feeds that, is
+lost and not replaced within `REPLACING`, nothing does: an input that follows it is not to take a component that rests,
+or knows nothing new, for one that has nothing to say. Those outside that may call an operation of the composite may
+call the one that stands behind it.
 """
 
 from __future__ import annotations
@@ -99,13 +100,13 @@ class InsideOfComposite:
         self.issued: Mapping[str, tuple[Wire, ...]] = {}
         self.callers: Mapping[str, tuple[IRI, ...]] = {}
         self._standing: Mapping[IRI, frozenset[str]] = {}
-        """The components inside that issue outputs of the composite, with these outputs."""
+        """The components inside on which outputs of the composite depend, with these outputs."""
         self._undo_silence: Undo = lambda: None
         """Undoes the plan to tell that nothing stands behind some outputs."""
         self.prospect: InsideProspect | None = None
         """What may come of the last inside that was refused."""
         self._silent: frozenset[str] = frozenset()
-        """The outputs behind which nothing stands since a component inside was lost, or came to rest."""
+        """The outputs behind which nothing stands since a component inside that they need was lost, or came to rest."""
         self.settled = False
         self.has_run = False
         """Whether an inside has run in this life."""
@@ -224,12 +225,17 @@ class InsideOfComposite:
             self._tell_moved()
 
     def _issuing(self) -> dict[IRI, frozenset[str]]:
-        """The components inside that issue outputs of the composite, with these outputs."""
+        """The components inside that issue outputs of the composite, or feed what does, with these outputs."""
         configuration, whole = None if self.runner is None else self.runner.configuration, self.profile.component
+        connections = () if configuration is None else configuration.connections
         found: dict[IRI, frozenset[str]] = {}
-        for one in () if configuration is None else configuration.connections:
-            if one.sink == whole:
-                found[one.source] = found.get(one.source, frozenset()) | {one.input}
+        before: dict[IRI, frozenset[str]] | None = None
+        while found != before:
+            before = dict(found)
+            for one in connections:
+                issued = frozenset({one.input}) if one.sink == whole else found.get(one.sink, frozenset())
+                if issued and one.source != whole:
+                    found[one.source] = found.get(one.source, frozenset()) | issued
         return found
 
     def _tell_silence(self) -> None:

@@ -396,3 +396,47 @@ def test_an_actuator_inside_rests_as_soon_as_one_outside_would(
     assert (turns[0.8], turns[1.3]) == (["started"], ["started", "stopped"])
     assert agent.state.phase is Phase.RUNNING
     assert turns[5.9] == ["started", "stopped", "started"]
+
+
+SEEN = {
+    "sight": """:sight a sc:Component, :Sight ; sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] ;
+        sc:grounding [ sc:template :seeing ] .
+        :seeing a sc:Template ; sc:roles ( :eye :tracker-role ) ;
+            sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker-role ] .
+        :eye a sc:Role ; sh:class :Camera ; sc:feeds :tracker-role .
+        :tracker-role a sc:Role ; sh:class :Tracker .""",
+    "tracker": ':tracker a sc:Component, :Tracker ; sc:hasInput [ sc:name "image" ; sc:signalType :Image ] ;'
+    ' sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] .',
+    "motor": ':motor-1 a sc:Component, :Motor ; sc:hasInput [ sc:name "pose" ; sc:signalType :Pose ] .',
+} | {
+    f"camera{number}": f":camera{number} sc:preference {-number} ; a sc:Component, :Camera ;"
+    ' sc:hasOutput [ sc:name "image" ; sc:signalType :Image ] .'
+    for number in (0, 1)
+}
+"""A composite that finds positions by a camera, and an actuator outside of it that follows these."""
+
+
+def test_an_actuator_outside_rests_while_what_feeds_it_inside_of_a_composite_lacks_a_part(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=SEEN)
+    lab.site("home", *SEEN)
+    for name in sorted(SEEN.keys() - {"sight"}):
+        lab.component(name)
+    lab.let_pass(3.0)
+    slow_code(lab, "camera1")
+    lab.components["camera1"].slow = 4.0
+    agent = lab.agent(
+        f"""{LAB_PREFIXES}
+        :drive a sc:Template ; sc:roles ( :sight-role :motor-role ) .
+        :sight-role a sc:Role ; sh:class :Sight ; sc:feeds :motor-role . :motor-role a sc:Role ; sh:class :Motor .""",
+        (),
+    )
+    assert lab.running(agent)
+    lab.components["tracker"].emit("pose", 0)
+    lab.components["camera0"].fail("a cloth covers the lens")
+    turns = dict[float, list[str]]()
+    for tenth in range(70):
+        lab.let_pass(0.1)
+        turns[tenth / 10] = [said[0] for said in lab.components["motor"].said if said[0] != "pose"]
+    assert (turns[0.9], turns[1.8]) == (["started"], ["started", "stopped"])
+    assert turns[6.9] == ["started", "stopped", "started"]
+    assert agent.state.phase is Phase.RUNNING
