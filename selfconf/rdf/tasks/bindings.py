@@ -58,9 +58,8 @@ def read_term(text: str, prefixes: Mapping[str, str]) -> Term:
         if prefix in ("http", "https", "urn", "file", "mailto", "tag"):
             raise BindingError(f"{words} looks like an IRI; write it in angle brackets: '<{words}>'")
         known = ", ".join(f"{name}:" for name in sorted(prefixes)) or "none"
-        raise BindingError(
-            f"the template declares no prefix {prefix}: (it has {known}); for a string write '\"{words}\"'"
-        )
+        string = Literal(words).turtle(str)
+        raise BindingError(f"the template declares no prefix {prefix}: (it has {known}); for a string write '{string}'")
     return Literal(text)
 
 

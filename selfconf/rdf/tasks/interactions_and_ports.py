@@ -18,7 +18,7 @@ from selfconf.model.profile import (
 )
 from selfconf.model.template import Interaction, Role, TemplatePort
 from selfconf.model.term import IRI, STRING, Literal, Term
-from selfconf.rdf.permitted_fields import NAME_TEXT
+from selfconf.rdf.permitted_fields import NAME_TEXT, NAMED_OR_TEXT
 from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, TYPE
@@ -151,7 +151,7 @@ class _PortReader(DocumentReader):
         if not signals or not all(isinstance(one, IRI) for one in signals):
             raise self.mistake(f"{what} has signal types, which are IRIs", node, SC.signalType, *signals)
         types = tuple(sorted(one for one in signals if isinstance(one, IRI)))
-        unit, frame = self._at_most_one(SC.unit, node, what), self.document.value(node, SC.frame)
+        unit, frame = self._at_most_one(SC.unit, node, what), self._frame(node, what)
         if link == SC.hasOutput:
             return Output(name, types, unit=unit, frame=frame)
         return Input(name, types, condition=Condition(unit, frame) if unit or frame else None)
@@ -161,3 +161,10 @@ class _PortReader(DocumentReader):
         if not self.document.values(node, predicate):
             return None
         return self.iri(node, predicate, f"{what} has at most one sc:{predicate.short}, an IRI")
+
+    def _frame(self, node: Term, what: str) -> Term | None:
+        """The frame that a port refers to, if it says one."""
+        frames = self.document.values(node, SC.frame)
+        if len(frames) > 1 or not all(map(NAMED_OR_TEXT.allows, frames)):
+            raise self.mistake(f"{what} has at most one sc:frame, {NAMED_OR_TEXT.words}", node, SC.frame, *frames[-1:])
+        return frames[0] if frames else None

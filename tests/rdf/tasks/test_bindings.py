@@ -56,6 +56,14 @@ def test_a_term_that_is_none_is_refused_with_what_to_write(text: str, words: str
         bindings.read_term(text, KNOWN)
 
 
+def test_the_string_that_is_proposed_for_what_looks_like_a_curie_is_read_as_it_was_meant() -> None:
+    meant = r"C:\maps"
+    with pytest.raises(BindingError) as caught:
+        bindings.read_term(meant, KNOWN)
+    proposed = str(caught.value).partition("for a string write '")[2].removesuffix("'")
+    assert bindings.read_term(proposed, KNOWN) == Literal(meant)
+
+
 def test_a_prefix_and_its_names_may_be_of_any_script() -> None:
     assert bindings.read_term("дом:кухня", {"дом": "urn:d:"}) == IRI("urn:d:кухня")
 

@@ -147,6 +147,11 @@ def test_operations_and_what_is_said_of_units_are_read_as_a_component_has_them()
         ('sc:needsOperation [ sc:name "a" ; sc:response :A , :B ; sc:of :eye ]', "at most one sc:response, an IRI"),
         ('sc:hasInput [ sc:name "a" ; sc:signalType :A ; sc:unit "m" ; sc:of :eye ]', "at most one sc:unit, an IRI"),
         ('sc:hasOutput [ sc:name "a" ; sc:signalType "a" ; sc:of :eye ]', "has signal types, which are IRIs"),
+        ('sc:hasInput [ sc:name "a" ; sc:signalType :A ; sc:frame "" ; sc:of :eye ]', "at most one sc:frame, an IRI"),
+        (
+            'sc:hasOutput [ sc:name "a" ; sc:signalType :A ; sc:frame :map , :odom ; sc:of :eye ]',
+            "at most one sc:frame, an IRI or a string",
+        ),
         (
             'sc:hasInput [ sc:name "a" ; sc:signalType :A ; sc:of :eye ] , [ sc:name "a" ; sc:of :eye ]',
             "is called 'a', and another one as well",
