@@ -113,6 +113,8 @@ def document_at(url: str, octets: bytes) -> SourceDocument:
 
 def _body(url: str, reply: HTTPResponse, deadline: float) -> bytes:
     """The body of a reply, piece by piece, so that neither a long nor a slow one is waited for without end."""
+    if reply.headers.get("Content-Encoding", "identity") != "identity":
+        raise AuthorError(f"{url} answers in a compressed form, though it was asked not to")
     pieces, size = [], 0
     while piece := reply.read1(1 << 16):
         size += len(piece)

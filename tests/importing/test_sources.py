@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -31,6 +32,11 @@ class Things(BaseHTTPRequestHandler):
             self.send_header("Content-Length", "9")
             self.end_headers()
             self.wfile.write(b"[]")
+        elif self.path == "/packed.json":
+            self.send_response(200)
+            self.send_header("Content-Encoding", "gzip")
+            self.end_headers()
+            self.wfile.write(gzip.compress(b"{}"))
         elif self.path == "/endless":
             self.send_response(200)
             self.end_headers()
@@ -107,6 +113,7 @@ def test_a_url_is_fetched_and_named_after_its_last_part(server: str) -> None:
     [
         ("moved", "no redirect is followed"),
         ("gone", "answers 404"),
+        ("packed.json", "answers in a compressed form"),
         ("half.json", "breaks off 7 bytes before its end"),
     ],
 )
