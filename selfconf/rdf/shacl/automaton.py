@@ -242,7 +242,8 @@ def _stands(state: _State, before: str, symbol: str) -> bool:
     if place in (_parser.AT_BOUNDARY, _parser.AT_NON_BOUNDARY):
         words = _ASCII_WORD if state.ascii else _WORD
         differ = bool(words.match(before)) != bool(words.match(symbol[:1]))
-        return differ == (place is _parser.AT_BOUNDARY)
+        is_one = _EMPTY_TEXT_IS_NO_BOUNDARY or before or symbol
+        return differ if place is _parser.AT_BOUNDARY else bool(is_one) and not differ
     raise NotRegular
 
 
@@ -255,4 +256,6 @@ def _kind(character: str) -> str:
     return "a" if _ASCII_WORD.match(character) else "\N{GREEK SMALL LETTER ALPHA}"
 
 
+_EMPTY_TEXT_IS_NO_BOUNDARY = re.search(r"\B", "") is not None
+"""Whether `\\B` is found in an empty text, as from Python 3.14 on."""
 _WORD, _ASCII_WORD = re.compile(r"\w"), re.compile(r"\w", re.ASCII)
