@@ -172,7 +172,7 @@ class Component:
         was stopped meanwhile. Nothing happens while not active. Raises ProgrammerError for an operation that is not
         advertised, for what no request can carry, and for a time that is not above zero.
         """
-        self._attached().operations.call(operation, request, seconds, answered, media)
+        self._attached().needed_operations.call(operation, request, seconds, answered, media)
 
     def fail(self, reason: str) -> None:
         """Raise FAIL: the component cannot act in its role any more, or not begin to. The configurator turns it off."""

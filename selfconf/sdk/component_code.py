@@ -105,7 +105,7 @@ class ComponentCode:
         def start() -> None:
             self._resting = False
             trouble = self._over(turn) or self._set(values) or self._over(turn) or self._start(turn)
-            self._report(done, trouble)
+            self.run_on_bus(done, trouble)
 
         self._values = dict(values)
         self._thread.call(start)
@@ -119,7 +119,7 @@ class ComponentCode:
             if trouble is not None:  # a call that is made again is to hear the same, and not that all is done
                 for name in changed:
                     self._values.pop(name, None)
-            self._report(done, trouble)
+            self.run_on_bus(done, trouble)
 
         self._values |= values
         if changed:
@@ -143,7 +143,7 @@ class ComponentCode:
                 rests = self._stop()
             finally:
                 if rests:
-                    self._report(lambda _: at_rest(), None)
+                    self.run_on_bus(at_rest)
 
         self._thread.call(stop)
 
@@ -342,8 +342,9 @@ class ComponentCode:
             log.exception("%s broke", self._name)
             self._fail(f"{type(error).__name__}: {error}")
 
-    def _report(self, done: Done, trouble: str | None) -> None:
+    def run_on_bus(self, action: Callable[..., None], *arguments: Any) -> None:
+        """Do something on the bus's thread; at once where the code has no other, and else soon."""
         if self._thread.inline:
-            done(trouble)
+            action(*arguments)
         else:
-            self._bus.wake_up(lambda: done(trouble))
+            self._bus.wake_up(partial(action, *arguments))

@@ -24,7 +24,7 @@ from selfconf.protocol.activation import ActivationPhase, ActivationStep
 from selfconf.protocol.messages import Apply, Verdict, Wire
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import Inputs
-from selfconf.sdk.operations import Operations
+from selfconf.sdk.operations import NeededOperations
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.faults.ecologies import COMPOSED, LATCHED, PAPER, FaultyEcology
 from tests.faults.histories import History
@@ -34,7 +34,7 @@ from tests.lab import iri
 
 CLAIM, FOLLOW, SET, START = Calling.claim, Inputs.follow, ComponentCode._set, ComponentCode._start
 LOSE = losing.lose
-FOLLOW_CALLS, REPORT = Operations.follow, InsideOfComposite._report
+FOLLOW_CALLS, REPORT = NeededOperations.follow, InsideOfComposite._report
 LATER = Action(20.0, "emit", "sonar")
 """Until then the faults go on."""
 
@@ -70,7 +70,7 @@ def lets_go_silently(self: ComponentRuntime, tasks: Sequence[str], why: str) -> 
     self._when_at_rest(self._waiting.offer)
 
 
-def calls_a_stranger(self: Operations, message: Apply) -> None:
+def calls_a_stranger(self: NeededOperations, message: Apply) -> None:
     """A component that calls one that it is not connected to."""
     FOLLOW_CALLS(self, message)
     self._wires = {name: (Wire(iri("odometry"), "where()"),) for name in self._wires}
@@ -179,7 +179,7 @@ MUTATIONS = {
     "the last signal is heard": Mutation({"selfconf.sdk.inputs.input_subscription.InputSubscription._read": nothing}),
     "who calls is connected": Mutation(
         {
-            "selfconf.sdk.operations.Operations.follow": calls_a_stranger,
+            "selfconf.sdk.operations.NeededOperations.follow": calls_a_stranger,
             f"{RUNTIME}.callers": lambda self, operation: frozenset((iri("drive"), iri("screen"))),
         },
         (Action(2.0, "begin", "task-3"), Action(5.0, "ask", "drive")),
@@ -190,7 +190,9 @@ MUTATIONS = {
         (Action(2.0, "crash", "camera-1"),),
         ecology=COMPOSED,
     ),
-    "what is needed is answered": Mutation({"selfconf.sdk.operations.Operations._ask": nothing}, ecology=COMPOSED),
+    "what is needed is answered": Mutation(
+        {"selfconf.sdk.operations.NeededOperations._ask": nothing}, ecology=COMPOSED
+    ),
     "nothing rests for nothing": Mutation(
         {"selfconf.sdk.inputs.input_subscription.InputSubscription._ask_if_lost": nothing},
         (Action(2.0, "mute", "planner", "mower"), Action(3.0, "mend", "planner", "mower")),

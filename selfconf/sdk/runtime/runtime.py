@@ -37,7 +37,7 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
-from selfconf.sdk.operations import Operations
+from selfconf.sdk.operations import NeededOperations, OfferedOperations, OperationSignals
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
 from selfconf.sdk.runtime.call_answers import CallAnswers
 from selfconf.sdk.runtime.component_timers import ComponentTimers
@@ -105,17 +105,27 @@ class ComponentRuntime:
         )
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
         self.inputs: InputFollower = inputs or Inputs(bus, keys, thread, profile, heard, self.code.read_value)
-        self.operations = Operations(
+        signals = OperationSignals(profile.component, self.life)
+        self.offered_operations = OfferedOperations(
             bus,
             keys,
             thread,
             profile,
-            self.life,
+            signals,
             self.code,
             fields or {},
             self.callers,
             partial(self.fail, cause=Cause.MALFORMED),
-            self.code.read_value,
+        )
+        self.needed_operations = NeededOperations(
+            bus,
+            keys,
+            thread,
+            profile,
+            signals,
+            self.code,
+            fields or {},
+            partial(self.fail, cause=Cause.MALFORMED),
         )
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
@@ -164,7 +174,7 @@ class ComponentRuntime:
         self._token()
         self._other_lives.close()
         self.outputs.close()
-        self.operations.close()
+        self.offered_operations.close()
         self._fail.undeclare()
         self._waiting.close()
         self._when_at_rest(closed)
@@ -258,7 +268,7 @@ class ComponentRuntime:
             return
         if hold.claim.inputs != last.claim.inputs:
             self.inputs.follow(hold.claim)
-            self.operations.follow(hold.claim)
+            self.needed_operations.follow(hold.claim)
 
     def _apply(self, message: Apply, step: ActivationStep, reply: Reply) -> None:
         """Have the code start, or take what has changed, and connect the inputs meanwhile."""
@@ -302,7 +312,7 @@ class ComponentRuntime:
             if self.activation.queue:
                 self._waiting.tell("")
         self.inputs.follow(message)
-        self.operations.follow(message)
+        self.needed_operations.follow(message)
         self._rest_or_act()  # once what it lost is known to be unfed
 
     def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
@@ -318,7 +328,7 @@ class ComponentRuntime:
         served, self.activation = table.served(self.activation, activation), activation
         if step in (ActivationStep.STOP, ActivationStep.RESTART):
             self._stop()
-        self.operations.callers_changed()
+        self.offered_operations.callers_changed()
         self.inputs.holders_changed()
         if step is ActivationStep.RAISE_FAIL:
             self.code.end_acting()  # again: another thread's FAIL may have been overtaken by a release and an apply
@@ -353,7 +363,8 @@ class ComponentRuntime:
         """Be off: no timers, no inputs, and the component's code at rest."""
         self._timers.end()
         self.inputs.end()
-        self.operations.end()
+        self.needed_operations.end()
+        self.offered_operations.end()
         self.code.stop(self.at_rest)
 
     def _when_at_rest(self, action: Callable[[], None]) -> None:

@@ -10,7 +10,7 @@ from selfconf.bus.port import Request
 from selfconf.protocol.stamps import StampWriter
 from selfconf.sdk.component import CallStatus
 from selfconf.sdk.operations import MOST_CALLS, MOST_PAYLOAD
-from tests.sdk.photographs import (
+from tests.sdk.operations.photographs import (
     ALBUM,
     CALLING,
     CAMERA,

@@ -12,7 +12,7 @@ from selfconf.protocol.messages import Cause, Reserve, Verdict
 from selfconf.sdk.component import CallStatus
 from selfconf.sdk.operations import MOST_PAYLOAD
 from tests.sdk.living import PATIENCE, LivingStage, until
-from tests.sdk.photographs import (
+from tests.sdk.operations.photographs import (
     ALBUM,
     ALBUM_SAYS,
     CALLING,

@@ -18,7 +18,7 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.operations import MOST_PAYLOAD
 from selfconf.sdk.runtime import ComponentRuntime
-from tests.sdk.photographs import (
+from tests.sdk.operations.photographs import (
     ALBUM,
     ALBUM_PROFILE,
     CALLING,

@@ -19,7 +19,7 @@ from selfconf.sdk.operations import MOST_PAYLOAD
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import REPORT_LAG, MemoryRun
 from tests.sdk.living import PATIENCE
-from tests.sdk.photographs import (
+from tests.sdk.operations.photographs import (
     ALBUM,
     ALBUM_SAYS,
     CAMERA,

@@ -1,0 +1,135 @@
+"""The operations that a component needs: the component that is connected to each is called, once, by its key."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from selfconf.bus.port import Bus, Replies
+from selfconf.errors import PeerError, ProgrammerError
+from selfconf.model.profile import CALL_MARK, Profile
+from selfconf.model.signal_fields import SignalFields
+from selfconf.model.term import IRI
+from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Apply, Wire
+from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.component import CallStatus, Response
+from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.operations.operation_signals import (
+    LONGEST_PATIENCE,
+    MOST_CALLS,
+    MOST_PAYLOAD,
+    NotOfItsTypeError,
+    OperationSignals,
+    operation_fields,
+    read_signal,
+)
+from selfconf.sdk.payloads import UnsayableError
+
+
+class NeededOperations:
+    """Those of one component in one life."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        keys: Keys,
+        thread: CodeThread,
+        profile: Profile,
+        signals: OperationSignals,
+        code: ComponentCode,
+        fields: Mapping[IRI, SignalFields],
+        malformed: Callable[[str], None],
+    ) -> None:
+        """`fields` are those of the kinds of requests; `malformed` hears what is wrong with one of this component."""
+        self._bus, self._keys, self._thread, self._profile, self._code = bus, keys, thread, profile, code
+        self._signals, self._malformed = signals, malformed
+        self._needed = operation_fields(profile.needed_operations, fields)
+        self._wires: Mapping[str, tuple[Wire, ...]] = {}
+        self._calls = 0
+        """How many calls wait for their answers."""
+
+    def follow(self, message: Apply) -> None:
+        """Call from now on what a call of the configurator names."""
+        before, self._wires = (
+            self._wires,
+            {
+                port.removesuffix(CALL_MARK): wires
+                for port, wires in message.inputs.items()
+                if port.endswith(CALL_MARK) and wires
+            },
+        )
+        for name in sorted(before.keys() ^ self._wires.keys()):
+            self._code.connection_changed(name, name in self._wires)
+
+    def end(self) -> None:
+        """Call nothing."""
+        self._wires = {}
+
+    def call(
+        self, name: str, value: Any, seconds: float, answered: Callable[[Response], None], media: str = ""
+    ) -> None:
+        """Ask for an operation; may be called from any thread. The answer is heard on the thread of the code.
+
+        Raises ProgrammerError for an operation that is not advertised, for what no request can carry, and for a time in
+        which no answer can come.
+        """
+        who = self._profile.component.short
+        if name not in self._needed:
+            raise ProgrammerError(f"{who} advertises no need of an operation {name!r}")
+        if not seconds > 0.0:
+            raise ProgrammerError(f"`call` waits for more than zero seconds, not {seconds!r}")
+        if not self._code.active:
+            return
+        try:
+            request = self._signals.request(value, self._needed[name].request, media)
+        except NotOfItsTypeError as error:
+            self._malformed(f"what it sends along with {name!r} {error}")
+            return
+        except UnsayableError as error:
+            raise ProgrammerError(f"{who} cannot send that along with {name!r}: it {error}") from None
+        hear = partial(self._heard, self._code.turn, answered)
+        self._code.run_on_bus(self._ask, name, request, min(seconds, LONGEST_PATIENCE), hear)
+
+    def _ask(self, name: str, request: bytes, seconds: float, hear: Callable[[Response], None]) -> None:
+        wire = next(iter(self._wires.get(name, ())), None)
+        if wire is None:
+            hear(Response(CallStatus.NOT_CONNECTED, detail=f"no component is connected to {name!r}"))
+            return
+        if self._calls >= MOST_CALLS:
+            hear(Response(CallStatus.REFUSED, detail=f"{MOST_CALLS} calls wait for their answers already"))
+            return
+        self._calls += 1
+
+        def done(replies: Replies) -> None:
+            self._calls -= 1
+            hear(_answer(wire.component, replies, seconds))
+
+        key = self._keys.operation(wire.component, wire.output.removesuffix(CALL_MARK), self._profile.component)
+        self._bus.ask(key, request, seconds, done, f"{seconds:g}".encode())
+
+    def _heard(self, turn: int, answered: Callable[[Response], None], answer: Response) -> None:
+        self._thread.signal(partial(self._code.answered, turn, partial(answered, answer)))
+
+
+def _answer(component: IRI, replies: Replies, seconds: float) -> Response:
+    """What has become of a call to a component."""
+    for sample in replies.samples[:1]:
+        if len(sample.payload) > MOST_PAYLOAD:
+            detail = f"its answer has {len(sample.payload)} bytes, and {MOST_PAYLOAD} are allowed"
+            return Response(CallStatus.REFUSED, source=component, detail=detail)
+        try:
+            _, signal = read_signal(sample.attachment, sample.payload)
+        except (PeerError, ValueError, RecursionError) as error:
+            return Response(CallStatus.REFUSED, source=component, detail=f"what it answers is no answer: {error}")
+        if signal.source == component:
+            return Response(CallStatus.ANSWERED, signal.value, component)
+        detail = f"what it answers is no answer: it is one of {signal.source.short}"
+        return Response(CallStatus.REFUSED, source=component, detail=detail)
+    if replies.errors:
+        return Response(CallStatus.REFUSED, source=component, detail=replies.errors[0])
+    if not replies.complete:
+        detail = f"{component.short} has not answered within {seconds:g} s"
+        return Response(CallStatus.LATE, source=component, detail=detail)
+    return Response(CallStatus.GONE, source=component, detail=f"{component.short} ended before it answered")
