@@ -74,11 +74,14 @@ class NodeLifecycle:
         self._resting = True
         """Whether no task wants the node to be active."""
         self._unfollow: Undo = lambda: None
+        self._waits_until = 0.0
+        """When a transition that the node is in, not by a request from here, has taken too long."""
 
     def activate(self) -> None:
         """Have the node be active."""
         self._turn += 1
         self._activated = self._active = self._resting = False
+        self._waits_until = self._domain.bus.now() + TRANSITION_SECONDS
         event = self._endpoints.event
         if event is not None:
             key = event.key(self._domain.number)
@@ -101,17 +104,20 @@ class NodeLifecycle:
         state, label = answer["current_state"]["id"], answer["current_state"]["label"]
         if state == ACTIVE:
             self._active = True
-        elif state in PASSING:
+        elif state in PASSING and self._domain.bus.now() < self._waits_until:
             turn = self._turn
             self._domain.bus.later(STATE_AGAIN, lambda: self._look() if turn == self._turn else None)
         elif state in STEPS:
             late = self._activated_late if state == INACTIVE else lambda: None
             self._change(STEPS[state], partial(self._changed, state), self._fail, late)
         else:
-            self._fail(f"the lifecycle node {self._name} is {label or state}, from where it cannot be activated")
+            long = state in PASSING
+            why = f"for longer than {TRANSITION_SECONDS:g} s" if long else "from where it cannot be activated"
+            self._fail(f"the lifecycle node {self._name} is {label or state}, {why}")
 
     def _changed(self, before: int) -> None:
         self._activated = before == INACTIVE
+        self._waits_until = self._domain.bus.now() + TRANSITION_SECONDS
         self._look()
 
     def _activated_late(self) -> None:

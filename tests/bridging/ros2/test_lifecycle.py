@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import ros2
+from selfconf.bridging.ros2 import lifecycle
 from selfconf.bridging.ros2.lifecycle import LIFECYCLE_TYPES, lifecycle_of
 from selfconf.bridging.ros2.tokens import RosEndpoint
 from selfconf.bus.port import Urgency
@@ -17,7 +18,7 @@ from tests.bridging.ros2.nodes import DOMAIN, BridgedDomain, StandIn, bridging_d
 from tests.sdk.living import LivingStage, until
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
-LABELS = {1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized"}
+LABELS = {1: "unconfigured", 2: "inactive", 3: "active", 4: "finalized", 13: "activating"}
 NEXT = {(1, 1): 2, (2, 3): 3, (3, 4): 2}
 """The state that a transition leads to from another one."""
 
@@ -139,6 +140,17 @@ def test_a_node_that_is_finalized_cannot_be_activated(living: LivingStage, tmp_p
     with bridging_domain(living, tmp_path / "ads") as found:
         managed = complete(found, Managed(found.node("map"), state=4))
         assert failed(found, managed).startswith("the lifecycle node /map is finalized, from where")
+
+
+def test_a_node_that_stays_in_a_transition_is_waited_for_no_longer_than_one_may_take(
+    living: LivingStage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lifecycle, "TRANSITION_SECONDS", 2.0)
+    with bridging_domain(living, tmp_path / "ads") as found:
+        managed = complete(found, Managed(found.node("map"), 13))
+        found.activate("map")
+        assert until(lambda: found.causes() == ["the lifecycle node /map is activating, for longer than 2 s"])
+        assert managed.made == []
 
 
 def test_a_node_that_leaves_the_active_state_by_itself_has_failed(living: LivingStage, tmp_path: Path) -> None:
