@@ -11,9 +11,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import chain
 
-from selfconf.model.hierarchy import Upward
 from selfconf.model.literal_values import of_range
-from selfconf.model.term import IRI
+from selfconf.model.strong_components import strong_components
 from selfconf.rdf.validation.prefilter import Prefiltered
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, XSD
 
@@ -49,6 +48,13 @@ def one_slip_apart(one: str, other: str) -> bool:
     return a[1:] == b[1:] or a[1:] == b or a == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])
 
 
+def _adjacent(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for lower, upper in pairs:
+        found.setdefault(lower, []).append(upper)
+    return found
+
+
 @dataclass
 class TermIndex:
     """The terms that are known in one run."""
@@ -64,8 +70,10 @@ class TermIndex:
     """What the files say of the hierarchies of classes and properties: one of them, and one right above it."""
     equal: set[tuple[str, str]] = field(default_factory=set)
     """Those of `above` that are said to be equal."""
-    _upward: tuple[Upward, Upward] | None = None
-    """The closures of `above` and of `equal`."""
+    _upper: dict[str, list[str]] = field(default_factory=dict)
+    """By `above`: what is right above a class or property."""
+    _circles: tuple[dict[str, str], dict[str, str]] = ({}, {})
+    """The strongly connected components of `above` and of `equal`."""
     _strange: dict[str, bool] = field(default_factory=dict)
     _confused: dict[str, str | None] = field(default_factory=dict)
 
@@ -87,7 +95,7 @@ class TermIndex:
             self.covered |= {namespace(term) for term in seen.terms} - {""}  # as of urn:x
         self._strange.clear()
         self._confused.clear()
-        self._upward = None
+        self._upper.clear()
 
     def strange(self, iri: str) -> bool:
         """Whether an IRI lies in a covered or standard namespace, but is not known there at first sight."""
@@ -116,24 +124,37 @@ class TermIndex:
         """Whether a class is another or lies below it, by what the loaded ontologies say."""
         return wanted in self.at_or_above(offered)
 
-    def at_or_above(self, offered: str) -> frozenset[str]:
+    def at_or_above(self, offered: str) -> set[str]:
         """A class or property with all that the loaded ontologies put above it."""
-        return self._closures()[0].above(IRI.unchecked(offered))
+        upper = self._hierarchy()
+        found, waiting = {offered}, [offered]
+        while waiting:
+            higher = set(upper.get(waiting.pop(), ())) - found
+            found |= higher
+            waiting += higher
+        return found
 
-    def closes_a_circle(self, lower: str, upper: str) -> bool:
-        """Whether one lies above another as well as below it, though the two are not said to be equal."""
-        placed, equal = self._closures()
-        below, above = IRI.unchecked(lower), IRI.unchecked(upper)
-        return below in placed.above(above) and below not in equal.above(above)
+    def circle(self, lower: str, upper: str) -> str | None:
+        """A name for the circle in which one lies above another as well as below it; None where there is none.
 
-    def _closures(self) -> tuple[Upward, Upward]:
-        if self._upward is None:
-            placed, equal = (
-                Upward((IRI.unchecked(one), IRI.unchecked(upper)) for one, upper in pairs)
-                for pairs in (self.above, self.equal)
-            )
-            self._upward = placed, equal
-        return self._upward
+        What is said to be equal is in no circle because of that.
+        """
+        self._hierarchy()
+        placed, equal = self._circles
+        if placed.get(lower) is None or placed[lower] != placed.get(upper):
+            return None
+        return None if lower in equal and equal[lower] == equal.get(upper) else placed[lower]
+
+    def in_circle(self, circle: str) -> list[str]:
+        """All that lie in a circle."""
+        return [term for term, name in self._circles[0].items() if name == circle]
+
+    def _hierarchy(self) -> dict[str, list[str]]:
+        """By `above`: what is right above a class or property."""
+        if not self._upper:
+            self._upper, equal = _adjacent(self.above), _adjacent(self.equal)
+            self._circles = strong_components(self._upper), strong_components(equal)
+        return self._upper
 
     def confused(self, iri: str) -> str | None:
         """The known namespace that this one is easily confused with, if it is another.

@@ -16,6 +16,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from typing import Generic, TypeVar
 
 from selfconf.model.immutable import immutable
+from selfconf.model.strong_components import strong_components
 
 Pooled = TypeVar("Pooled", bound=Hashable)
 """By what components are known here: their names, or the numbers of groups of which each stands for one."""
@@ -48,7 +49,7 @@ def unmatchable(slots: Sequence[int], options: Sequence[Sequence[Pooled]]) -> Ha
     # component of the other.
     edges = {role: {matched[c] for c in options[role] if c in matched} for role in dict.fromkeys(slots)}
     free = _reaching({role for role in edges if any(c not in matched for c in options[role])}, edges)
-    group = _strong_components(edges)
+    group = strong_components(edges)
     return {
         (role, component)
         for role in edges
@@ -70,40 +71,6 @@ def _reaching(goals: set[int], edges: Mapping[int, set[int]]) -> set[int]:
                 found.add(role)
                 waiting.append(role)
     return found
-
-
-def _strong_components(edges: Mapping[int, set[int]]) -> dict[int, int]:
-    """Return the strongly connected component of each node, named by one of its nodes (Tarjan 1972), no recursion."""
-    order: dict[int, int] = {}
-    low: dict[int, int] = {}
-    group: dict[int, int] = {}
-    stack: list[int] = []
-    for root in edges:
-        work = [(root, iter(edges[root]))] if root not in order else []
-        if work:
-            order[root] = low[root] = len(order)
-            stack.append(root)
-        while work:
-            role, others = work[-1]
-            for other in others:
-                if other not in order:
-                    order[other] = low[other] = len(order)
-                    stack.append(other)
-                    work.append((other, iter(edges[other])))
-                    break
-                if other not in group:
-                    low[role] = min(low[role], order[other])
-            else:
-                work.pop()
-                if work:
-                    low[work[-1][0]] = min(low[work[-1][0]], low[role])
-                if low[role] == order[role]:
-                    while True:
-                        member = stack.pop()
-                        group[member] = role
-                        if member == role:
-                            break
-    return group
 
 
 class MaintainedMatching(Generic[Pooled]):

@@ -29,21 +29,16 @@ _BETWEEN: dict[Node, tuple[str, URIRef]] = {
 
 def circular_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
     """Classes, or properties, each of which lies below the next, and the last below the first: once for each circle."""
-    index = file.index
-    circles: dict[str, frozenset[str]] = {}
-    last: dict[frozenset[str], tuple[int, bool]] = {}
+    last: dict[str, tuple[int, bool]] = {}
     for (lower, predicate, upper), offsets in file.positions.triples.items():
-        if predicate != RDFS.subClassOf and predicate != RDFS.subPropertyOf:
+        if lower == upper or (predicate != RDFS.subClassOf and predicate != RDFS.subPropertyOf):
             continue
-        below, above = str(lower), str(upper)
-        if below != above and isinstance(upper, URIRef) and index.closes_a_circle(below, above):
-            if below not in circles:
-                circle = frozenset(one for one in index.at_or_above(below) if below in index.at_or_above(one))
-                circles |= dict.fromkeys(circle, circle)
+        circle = file.index.circle(str(lower), str(upper))
+        if circle is not None:
             found = offsets.object, predicate == RDFS.subClassOf
-            last[circles[below]] = max(last.get(circles[below], found), found)
+            last[circle] = max(last.get(circle, found), found)
     for circle, (offset, classes) in last.items():
-        names = listed(sorted(file.short(one) for one in circle if not one.startswith("_:")))
+        names = listed(sorted(file.short(one) for one in file.index.in_circle(circle) if not one.startswith("_:")))
         kind, word = (_CLASSES, "owl:equivalentClass") if classes else (_PROPERTIES, "owl:equivalentProperty")
         message = f"The {kind} {names} lie below each other, so that each matches where another is wanted."
         yield at(file.positions, offset, "SC-L29", message, hint=f"If that is meant, say so by {word}.")
