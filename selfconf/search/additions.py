@@ -111,19 +111,38 @@ def _chosen(problem: Problem, optional: Problem, steps: int) -> Counter[int] | U
 def _needed(problem: Problem) -> dict[int, int]:
     """Return the optional roles that may help, by number, with how many of their components could be of use at most.
 
-    Each that is asked for feeds an input that none of the others feeds, of a player or of recruits.
+    Each that is asked for feeds an input that none of the others feeds, of a player or of recruits. If it is one of a
+    player, none of the others feeds any that wants the same in the same role, either.
     """
     unvalued = {number for number, _ in problem.unvalued}
     roles = (number for number in range(len(problem.roles)) if number not in unvalued)
     room = {number: some for number in roles if (some := _room(problem, number))}
     inputs = [max((len(c.profile.required) for c in some), default=0) for some in problem.candidates]
     of_recruits = _needs_of_recruits_fed(problem, room)
-    needed = dict.fromkeys(room, 0)
-    for _ in room:  # along a chain of optional roles
+    of_roles = _needs_of_roles_fed(problem, room)
+    # More than are asked for of a role are not told apart, so that a circle of optional roles ends soon.
+    most = {n: min(some, of_roles[n] + of_recruits[n], MOST_OF_A_ROLE + 1) for n, some in room.items()}
+    needed, before = dict.fromkeys(room, 0), dict[int, int]()
+    while needed != before:  # along a chain of optional roles, or around a circle
+        before = needed
         slots = [needed.get(number, role.minimum) for number, role in enumerate(problem.roles)]
         of_players = {number: sum(slots[sink] * inputs[sink] for sink in problem.sinks[number]) for number in room}
-        needed = {number: min(room[number], of_players[number] + of_recruits[number]) for number in room}
+        needed = {number: min(most[number], of_players[number] + of_recruits[number]) for number in room}
     return {number: count for number, count in needed.items() if count}
+
+
+def _needs_of_roles_fed(problem: Problem, roles: Iterable[int]) -> dict[int, int]:
+    """Return for some roles, by number, how many inputs that want different of the roles that they feed they may feed.
+
+    Inputs of one role that want the same, and that the same interactions feed, count once.
+    """
+    found: dict[int, set[object]] = {role: set() for role in roles}
+    for sink in set().union(*(problem.sinks[role] for role in found)):
+        for port in {port for candidate in problem.candidates[sink] for port in candidate.profile.required}:
+            sources = problem.feeding(sink, port.name)
+            for role in {source.role for source in sources} & found.keys():
+                found[role].add((sink, sources, port.wanted))
+    return {role: len(some) for role, some in found.items()}
 
 
 def _needs_of_recruits_fed(problem: Problem, roles: Iterable[int]) -> dict[int, int]:

@@ -81,6 +81,25 @@ def test_one_role_may_be_asked_for_several_components() -> None:
     assert [role.minimum for role in found.roles] == [1, 1, 1]
 
 
+def test_optional_roles_that_feed_each_other_are_asked_for_as_many_as_it_takes() -> None:
+    user, first = component("user", "i:S"), component("first", "t:T", "s:S")
+    counts: dict[str, tuple[int, int | None]] = {"aid": (0, None), "other": (0, None)}
+    itself = problem({"user": [user], "aid": [first, component("last", "", "t:T")]}, "aid>user aid>aid", counts)
+    found = with_additions(itself)
+    assert isinstance(found, Problem)
+    assert [role.minimum for role in found.roles] == [1, 2]
+    between = {"aid": [first, component("last", "", "u:U")], "other": [component("middle", "u:U", "t:T")]}
+    found = with_additions(problem({"user": [user], **between}, "aid>user aid>other other>aid", counts))
+    assert isinstance(found, Problem)
+    assert [role.minimum for role in found.roles] == [1, 2, 1]
+
+
+def test_of_many_that_want_the_same_of_each_other_few_are_tried() -> None:
+    peers = [component(f"peer{number}", "in:T", "out:T") for number in range(2 * MOST_OF_A_ROLE)]
+    given_ = problem({"peer": peers, "user": [component("user", "i:S")]}, "peer>peer peer>user", {"peer": (0, None)})
+    assert with_additions(given_) is None
+
+
 def test_more_of_one_role_than_are_tried_is_not_decided() -> None:
     many = MOST_OF_A_ROLE + 1
     sources = [component(f"s{k:02}", outputs=f"o:S{k}") for k in range(many)]
