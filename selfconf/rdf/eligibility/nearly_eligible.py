@@ -57,8 +57,9 @@ def exclusions(
     }
     passed = [advertisement for advertisement, (_, obstacles) in outside.items() if not obstacles]
     if passed and not role.complete:
-        judged = partitioner.violations(role, passed, ecology, {})
-        outside |= {a: (outside[a][0], judged[a.component]) for a in passed if a.component in judged}
+        outside |= {
+            a: (outside[a][0], obstacles) for a, obstacles in _least(partitioner, role, passed, ecology).items()
+        }
     return sorted(
         (
             Exclusion(a.component, reasons or (partitioner.unjudged(a.profile) or NoCommonValue(),), of_its_class)
@@ -66,6 +67,24 @@ def exclusions(
         ),
         key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
     )
+
+
+def _least(
+    partitioner: Partitioner, role: CompiledRole, passed: Sequence[Advertisement], ecology: AdvertisementIndex
+) -> dict[Advertisement, tuple[Obstacle, ...]]:
+    """What pySHACL finds to keep some components out, with the value of a free parameter that leaves the least of it.
+
+    Where no value leaves less than the parameter itself, the parameter is named.
+    """
+    judged = partitioner.violations(role, passed, ecology, {})
+    unbound: dict[Advertisement, tuple[Obstacle, ...]] = {a: judged.get(a.component, ()) for a in passed}
+    parameter = partitioner.mentioned(role)
+    if parameter is None:
+        return unbound
+    reasons = _reasons(partitioner, role, ecology, parameter, dict.fromkeys(passed, ()))
+    by_number = {a: sorted(map(tuple, by_value.values()), key=len) for a, by_value in reasons.items()}
+    least = {a: some[0] if some else () for a, some in by_number.items()}
+    return {a: unbound[a] if 0 < len(unbound[a]) <= len(some) else some for a, some in least.items()}
 
 
 def near_misses(

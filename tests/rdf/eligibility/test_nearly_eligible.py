@@ -180,6 +180,17 @@ def test_a_value_that_a_free_parameter_may_not_have_is_one_thing_that_keeps_out(
     assert [str(obstacle) for obstacle in first.obstacles] == ["wants room to be hall, which it may not be"]
 
 
+def test_a_free_parameter_that_pyshacl_judges_keeps_out_by_the_value_that_leaves_the_least() -> None:
+    room = ':t a sc:Template ; sc:parameter :room . :room a sc:Parameter ; sc:name "room" .'
+    path = "[ sh:alternativePath ( :place :near ) ]"
+    shape = f"sh:property [ sh:path {path} ; sh:hasValue :room ] , [ sh:path :name ; sh:uniqueLang true ]"
+    asked = partitioner(f"{room} {ROLE} sh:class :A ; {shape} .")
+    ads = (":a a sc:Component, :A ; :place :hall ; :name 'a'@en , 'b'@en .", ":b a sc:Component, :A .")
+    found = {one.component.short: one.obstacles for one in exclusions(asked, asked.roles[0], (), read(ads))}
+    assert [str(one) for one in found["a"]] == ["violates: More than one String shares the same Language"]
+    assert [str(one).endswith("#room>']") for one in found["b"]] == [True]
+
+
 def test_what_an_input_accepts_and_cannot_be_judged_is_what_keeps_its_component_out() -> None:
     text = f"{ROLE} sh:class :A ."
     shape = '[ sh:property [ sh:path sc:name ; sh:pattern "(" ] ]'
