@@ -101,6 +101,15 @@ class ThingInteractions:
         """Whether the probe can be read; else it is only looked whether something listens there."""
         return any(output.read is self.probe for output in self.outputs)
 
+    def offers(self, other: ThingInteractions) -> bool:
+        """Whether everything that can be done with another one can be done with this one, in the same way."""
+        mine = (self.component.types, *self._ports(), self.outputs, self.inputs, self.operations)
+        others = (other.component.types, *other._ports(), other.outputs, other.inputs, other.operations)
+        return all(one in here for here, there in zip(mine, others, strict=True) for one in there)
+
+    def _ports(self) -> tuple[tuple[object, ...], ...]:
+        return self.component.outputs, self.component.inputs, self.component.operations
+
 
 def interactions(
     thing: DescribedThing, forms: ThingForms, rate: float, ontologies: tuple[Path, ...] = ()

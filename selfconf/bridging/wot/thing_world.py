@@ -168,12 +168,15 @@ class ThingWorld:
     def _watch(self, iri: IRI, thing: DescribedThing, before: ThingWatch | None) -> None:
         """Look for a thing that is new or described anew; not anew where a bridge does with it what it did before.
 
-        A directory may say with each answer when it was asked (`registration`).
+        A directory may say with each answer when it was asked (`registration`). What a task holds and is described with
+        more, or in other words, goes on as long as it is held.
         """
         found = self._interactions(thing)
         if before is not None and before.found == found:
             before.thing = thing
             return
+        if before is not None and before.is_held and found.offers(before.found):
+            return  # it is advertised anew at a reading after it was released
         if before is not None:
             before.end(f"{thing.source.shown} describes it anew")
         try:
@@ -224,6 +227,11 @@ class ThingWatch:
         document = ImportedDocument("", thing.source.shown, (found.component.described(),), thing.prefixes)
         bridge.advertise(self._iri, document)
         self._looking = asyncio.ensure_future(self._look())
+
+    @property
+    def is_held(self) -> bool:
+        """Whether the thing acts for a task."""
+        return self._code is not None and self._code.active
 
     def end(self, reason: str) -> None:
         """Look no more, and say why to the task that holds it: the thing is described no more, or otherwise."""

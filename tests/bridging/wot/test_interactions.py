@@ -166,3 +166,12 @@ def test_a_thing_that_cannot_be_read_is_looked_for_where_it_takes_something() ->
     assert thing.probe is not None
     assert thing.probe.method == "POST"
     assert not thing.readable
+
+
+def test_what_is_described_with_more_offers_what_it_did_before() -> None:
+    on, off = {**SWITCH, "forms": [{"href": "on"}]}, {**SWITCH, "forms": [{"href": "off"}]}
+    before = found(properties={"on": on})
+    assert found(properties={"off": off, "on": on}, description="by the door").offers(before)
+    assert not before.offers(found(properties={"on": on, "off": off}))
+    assert not found(properties={"on": {**on, "forms": [{"href": "elsewhere"}]}}).offers(before)
+    assert not found(properties={"on": {**on, "@type": "rob:Text"}}).offers(before)

@@ -15,11 +15,13 @@ import pytest
 from selfconf.bridging.wot.thing_client import ThingLimits
 from selfconf.bridging.wot.thing_world import is_url
 from selfconf.files import advertisements
+from selfconf.protocol.messages import Release
 from tests.bridging.thing_server import ThingServer, reply
 from tests.bridging.wot.bridged import HASTY, active, bridging, written
 from tests.sdk.living import LivingStage, until
 
 Start = Callable[[], ThingServer]
+FORM = {"forms": [{"href": "blink"}]}
 
 
 def test_the_things_of_a_directory_come_and_go(thing_server: Start, living: LivingStage, tmp_path: Path) -> None:
@@ -53,6 +55,25 @@ def test_a_thing_that_is_described_anew_is_another_component(
         written(tmp_path, server.describe(**{"@type": "rob:Display"}))
         assert until(lambda: "rob:Display" in path.read_text() and found.lives("lamp"))
         assert len(list(found.folder.glob("*.ttl"))) == 1
+
+
+def test_a_thing_that_is_described_with_more_is_advertised_anew_once_no_task_holds_it(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values.update({"/on": True, "/things": [server.describe()]})
+    with bridging(living, tmp_path / "ads", f"{server.url}/things") as found:
+        active(found)
+        (path,) = found.folder.glob("*.ttl")
+        asked = len(server.received)
+        server.values["/things"] = [server.describe(description="by the door", actions={"blink": FORM})]
+        assert until(lambda: sum(one.path == "/things" for one in server.received[asked:]) > 5)
+        assert "blink" not in path.read_text()
+        assert found.causes() == []
+        released = living.call("urn:thing:lamp", "release", Release(2, living.supervisor, "task~1"))
+        assert until(lambda: released)
+        assert until(lambda: "blink" in path.read_text() and "by the door" in path.read_text())
+        assert found.causes() == []
 
 
 @pytest.mark.parametrize(("then", "words"), [("rob:Display", "describes it anew"), (None, "describes it no more")])
