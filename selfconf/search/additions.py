@@ -119,9 +119,7 @@ def _needed(problem: Problem) -> dict[int, int]:
     room = {number: some for number in roles if (some := _room(problem, number))}
     inputs = [max((len(c.profile.required) for c in some), default=0) for some in problem.candidates]
     of_recruits = _needs_of_recruits_fed(problem, room)
-    of_roles = _needs_of_roles_fed(problem, room)
-    # More than are asked for of a role are not told apart, so that a circle of optional roles ends soon.
-    most = {n: min(some, of_roles[n] + of_recruits[n], MOST_OF_A_ROLE + 1) for n, some in room.items()}
+    most = _most_of_use(problem, room, of_recruits)
     needed, before = dict.fromkeys(room, 0), dict[int, int]()
     while needed != before:  # along a chain of optional roles, or around a circle
         before = needed
@@ -129,6 +127,15 @@ def _needed(problem: Problem) -> dict[int, int]:
         of_players = {number: sum(slots[sink] * inputs[sink] for sink in problem.sinks[number]) for number in room}
         needed = {number: min(most[number], of_players[number] + of_recruits[number]) for number in room}
     return {number: count for number, count in needed.items() if count}
+
+
+def _most_of_use(problem: Problem, room: Mapping[int, int], of_recruits: Mapping[int, int]) -> dict[int, int]:
+    """Return for roles, by number, how many components could be of use at most, however many play the others.
+
+    More than are asked for of a role are not told apart, so that going around a circle of optional roles ends soon.
+    """
+    of_roles = _needs_of_roles_fed(problem, room)
+    return {n: min(some, of_roles[n] + of_recruits[n], MOST_OF_A_ROLE + 1) for n, some in room.items()}
 
 
 def _needs_of_roles_fed(problem: Problem, roles: Iterable[int]) -> dict[int, int]:
