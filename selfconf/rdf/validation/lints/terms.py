@@ -117,9 +117,10 @@ def _holders_of_terms(file: LintedFile) -> set[Node]:
     cells: set[Node] = set()
     while waiting:
         for cell in file.cells(waiting.pop()):
-            if cell not in cells:
-                cells.add(cell)
-                waiting += graph.objects(cell, RDF.first)  # a path may be a list in a list
+            if cell in cells:
+                break
+            cells.add(cell)
+            waiting += graph.objects(cell, RDF.first)  # a path may be a list in a list
     return shapes | cells
 
 
@@ -292,19 +293,25 @@ def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
-    """Literals where the property wants a thing."""
-    for predicate, value, offset in _literals(file):
-        ours = predicate in _SC  # what selfconf's own properties want is a matter of the shapes
-        if not ours and predicate in file.index.object_properties:
+    """Literals where the property wants a thing, and parameters that stand for literals."""
+    for predicate, value, offset in _values(file):
+        # What selfconf's own properties want is a matter of the shapes.
+        if predicate in _SC or predicate not in file.index.object_properties:
+            continue
+        if isinstance(value, Literal):
             message = f"The value of {file.short(predicate)} is a thing with an IRI, not a literal."
             hint = f"Write an IRI, such as :{suggested_local_name(value) or 'kitchen'}."
             yield at(file.positions, offset, "SC-L07", message, hint=hint)
+        elif value in file.source.parameters and (value, SH.datatype, None) in file.graph:
+            short = file.short(str(value))
+            message = f"The value of {file.short(predicate)} is a thing with an IRI, and {short} stands for a literal."
+            yield at(file.positions, offset, "SC-L07", message, hint=f"Say sh:nodeKind sh:IRI of {short}.")
 
 
 def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:
     """Literals that are not of the datatype that their property has, or not written as that is."""
-    for predicate, value, offset in _literals(file):
-        if file.index.unfit(predicate, str(value.datatype or XSD.string), str(value)):
+    for predicate, value, offset in _values(file):
+        if isinstance(value, Literal) and file.index.unfit(predicate, str(value.datatype or XSD.string), str(value)):
             wanted = sorted(file.index.ranges[predicate])
             kinds = " or ".join(map(file.short, wanted))
             message = f"The value of {file.short(predicate)} is of the datatype {kinds}, and this is none."
@@ -312,15 +319,14 @@ def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:
             yield at(file.positions, offset, "SC-L26", message, hint=hint)
 
 
-def _literals(file: LintedFile) -> Iterator[tuple[str, Literal, int]]:
-    """The literals, each with the property of which it is a value, or is asked to be one by a shape."""
+def _values(file: LintedFile) -> Iterator[tuple[str, Node, int]]:
+    """The values in a file, each with the property of which it is one, or is asked to be one by a shape."""
     listed = {cell: shape for shape, values in file.graph.subject_objects(SH["in"]) for cell in file.cells(values)}
     for (node, predicate, value), offsets in file.positions.triples.items():
-        if isinstance(value, Literal):
-            shape = listed.get(node) if predicate == RDF.first else node if predicate in VALUES else None
-            of = predicate if shape is None else file.graph.value(shape, SH.path)
-            if isinstance(of, URIRef):
-                yield str(of), value, offsets.object
+        shape = listed.get(node) if predicate == RDF.first else node if predicate in VALUES else None
+        of = predicate if shape is None else file.graph.value(shape, SH.path)
+        if isinstance(of, URIRef):
+            yield str(of), value, offsets.object
 
 
 def _written(text: str, datatype: str, file: LintedFile) -> str:

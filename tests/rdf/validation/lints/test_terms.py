@@ -174,6 +174,15 @@ def test_a_literal_where_a_thing_is_wanted_is_noticed_in_every_known_ontology() 
     assert only(':a a sc:Component, rob:Tuner ; rob:support "Astrid" .').code == "SC-L07"
 
 
+@pytest.mark.parametrize("asked", ["sh:hasValue :p", "sh:in ( :hall :p )"])
+def test_a_parameter_that_stands_for_a_literal_where_a_thing_is_wanted_is_noticed(asked: str) -> None:
+    text = TEMPLATE + f":t sc:parameter :p . :r sh:property [ sh:path rob:place ; {asked} ] . :p a sc:Parameter ; "
+    found = only(text + "sc:name 'p' ; sh:datatype xsd:string .")
+    assert (found.code, found.hint) == ("SC-L07", "Say sh:nodeKind sh:IRI of :p.")
+    assert not lints(text + "sc:name 'p' .")
+    assert not lints(text.replace("rob:place", ":floor") + "sc:name 'p' ; sh:datatype xsd:integer .")
+
+
 def test_a_label_is_a_literal_and_stays_one() -> None:
     assert not lints(':a a sc:Component, rob:Tuner ; rdfs:label "tuner" ; :note "x" .')
 
