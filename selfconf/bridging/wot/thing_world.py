@@ -162,7 +162,7 @@ class ThingWorld:
             self._bridge.withdraw(iri)
         for iri, thing in list(here.items())[:MOST_THINGS]:
             watch = self._watches.get(iri)
-            if watch is None or watch.thing != thing:
+            if watch is None or watch.has_ended or watch.thing != thing:
                 self._watch(iri, thing, watch)
 
     def _watch(self, iri: IRI, thing: DescribedThing, before: ThingWatch | None) -> None:
@@ -172,7 +172,7 @@ class ThingWorld:
         more, or in other words, goes on as long as it is held.
         """
         found = self._interactions(thing)
-        if before is not None and before.found == found:
+        if before is not None and before.found == found and not before.has_ended:
             before.thing = thing
             return
         if before is not None and before.is_held and found.offers(before.found):
@@ -227,6 +227,11 @@ class ThingWatch:
         document = ImportedDocument("", thing.source.shown, (found.component.described(),), thing.prefixes)
         bridge.advertise(self._iri, document)
         self._looking = asyncio.ensure_future(self._look())
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether it looks no more: what has taken its place could not be advertised."""
+        return self._looking.done()
 
     @property
     def is_held(self) -> bool:

@@ -121,6 +121,12 @@ def test_a_thing_that_cannot_be_advertised_for_now_is_so_later(
         assert until(lambda: found.complained("lamp cannot be advertised: No such file or directory"))
         away.rename(folder)
         assert until(lambda: found.lives("lamp"))
+        folder.rename(away)
+        written(source, server.describe(**{"@type": "rob:Display"}))
+        assert until(lambda: not found.lives("lamp"))
+        written(source, server.describe())
+        away.rename(folder)
+        assert until(lambda: found.lives("lamp"))
 
 
 def test_a_thing_lives_as_long_as_it_answers(
