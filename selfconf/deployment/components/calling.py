@@ -114,7 +114,7 @@ class Calling:
         the component's state.
         """
         self._latest[component] = message
-        _Attempt(self, component, call, message, unanswered).make()
+        _PendingCall(self, component, call, message, unanswered).make()
 
     def stands(self, component: IRI, message: Reserve | Apply | Release) -> bool:
         """Whether a call holds in later epochs as well: it brings to rest what is held, and is the last one to that."""
@@ -191,8 +191,8 @@ class Calling:
         return min(answers, key=lambda answer: answer.life != life, default=None)
 
 
-class _Attempt:
-    """One call to one component, from when it is made until it is known what has become of it."""
+class _PendingCall:
+    """One call to one component, made once or several times, until it is known what has become of it."""
 
     def __init__(
         self,
@@ -201,17 +201,17 @@ class _Attempt:
         call: Call,
         message: Reserve | Apply | Release,
         unanswered: Unanswered | None,
-        left: int = CALL_ATTEMPTS,
-        first: float | None = None,
     ) -> None:
-        """`left` is how often the call may be made, with this time, and `first` when it was for the first time."""
         self._calling, self._component, self._call, self._message = calling, component, call, message
-        self._unanswered, self._left = unanswered, left
-        self._began = calling.bus.now()
-        self._first = self._began if first is None else first
+        self._unanswered = unanswered
+        self._left = CALL_ATTEMPTS
+        """How often the call may be made, with the last time."""
+        self._first = self._last = calling.bus.now()
+        """When it was made for the first time, and for the last."""
 
     def make(self) -> None:
-        """Make the call."""
+        """Make the call, once more where it was made before."""
+        self._last = self._calling.bus.now()
         if self._call is not Call.RELEASE:
             self._calling.lives.called(self._component)
         self._calling.ask(self._component, self._call, self._message, self._answered)
@@ -265,10 +265,9 @@ class _Attempt:
             if self._takes_longer(answer, replies):
                 self._calling.bus.later(PAUSE, self._inspect)
                 return
-            left = self._calls_left(answer)
-            if left:
-                again = self._component, self._call, self._message, self._unanswered, left, self._first
-                _Attempt(self._calling, *again).make()
+            self._left = self._calls_left(answer)
+            if self._left:
+                self.make()
                 return
         if not (current or self._hasty):
             return
@@ -283,7 +282,7 @@ class _Attempt:
 
     def _takes_longer(self, answer: CallAnswer | None, replies: Replies) -> bool:
         """Whether to ask once more in a moment: its inside is being started, or itself, for all that is known."""
-        elapsed = self._calling.bus.now() - self._began
+        elapsed = self._calling.bus.now() - self._last
         if answer is not None:
             return elapsed < min(answer.patience, MOST_PATIENCE)
         # It may be in `started`; if its life ends, it is lost at once.
