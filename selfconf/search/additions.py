@@ -1,7 +1,8 @@
 """Roles that ask for no component, used when that is what it takes.
 
-A role with `sc:minCount 0` that feeds another may be left unplayed. Where there is no solution without its components,
-but one with some of them, the fewest are asked for: by their number, and of equally few by the order of the roles.
+A role with `sc:minCount 0` that feeds another, or recruits, may be left unplayed. Where there is no solution without
+its components, but one with some of them, the fewest are asked for: by their number, and of equally few by the order
+of the roles.
 
 *How they are found.* Each optional role is given slots, and for each slot a candidate that is absent: it has no ports,
 and stands for a slot that stays empty. To ask for the fewest components is then a matter of cost: the fewest slots that
@@ -67,7 +68,7 @@ def with_optional_slots(problem: Problem) -> Problem:
 
 
 def asking_for_all(problem: Problem) -> Problem:
-    """Return a problem in which optional roles that feed others ask for as many components as may be tried of them."""
+    """Return a problem in which optional roles that may feed others ask for as many components as may be tried."""
     rooms = {number: min(_room(problem, number), MOST_OF_A_ROLE) for number in range(len(problem.roles))}
     return asking_for(problem, {number: room for number, room in rooms.items() if room})
 
@@ -166,9 +167,9 @@ def _needs_of_recruits_fed(problem: Problem, roles: Iterable[int]) -> dict[int, 
 
 
 def _room(problem: Problem, number: int) -> int:
-    """Return how many components may play a role at most that is optional and feeds another; else zero."""
+    """Return how many components may play a role at most that is optional, and may feed others; else zero."""
     role, candidates = problem.roles[number], len(problem.candidates[number])
-    if role.minimum or not problem.sinks[number]:
+    if role.minimum or not (problem.sinks[number] or problem.supply.recruits):
         return 0
     return candidates if role.maximum is None else min(role.maximum, candidates)
 

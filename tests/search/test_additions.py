@@ -139,15 +139,16 @@ def test_of_equally_few_the_first_role_is_asked() -> None:
     assert [role.minimum for role in found.roles] == [1, 0, 1]
 
 
-def test_a_role_is_asked_for_of_which_only_recruits_need_what_it_issues() -> None:
-    """It feeds another role as well, which needs nothing of it."""
+@pytest.mark.parametrize(("interactions", "joining"), [("", ["m1"]), ("many>screen", [])])
+def test_a_role_is_asked_for_of_which_only_recruits_need_what_it_issues(interactions: str, joining: list[str]) -> None:
+    """Where it feeds another role as well, that needs nothing of it; in no interaction, all that fit join it."""
     plain = problem(
         {
             "many": [component(f"m{k}", outputs=f"o:S{k}") for k in range(3)],
             "screen": [component("screen")],
             "user": [component("user", "i:T")],
         },
-        "many>screen",
+        interactions,
         counts={"many": (0, None)},
     )
     roles = tuple(replace(role, recruits=role.iri.short == "user") for role in plain.roles)
@@ -158,7 +159,7 @@ def test_a_role_is_asked_for_of_which_only_recruits_need_what_it_issues() -> Non
     )
     *_, answer = Searches(Strategy.FIRST).answers(given_)
     assert isinstance(answer, Configuration)
-    assert [component.short for component in answer.components] == ["m0", "m2", "screen", "user", "converter"]
+    assert [one.short for one in answer.components] == ["m0", "m2", *joining, "screen", "user", "converter"]
 
 
 def test_where_a_role_lacks_candidates_nothing_is_tried() -> None:
