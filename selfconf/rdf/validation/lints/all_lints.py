@@ -32,6 +32,7 @@ from selfconf.rdf.validation.lints.terms import (
     misplaced_terms,
     ownerless_ports,
     prefixes,
+    properties_as_classes,
     repeated_descriptions,
     typed_operations,
     undeclared_prefixes,
@@ -49,6 +50,7 @@ def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
 
 WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unknown_terms,
+    properties_as_classes,
     repeated_descriptions,
     prefixes,
     undeclared_prefixes,

@@ -129,6 +129,19 @@ def _last_step(file: LintedFile, path: Node) -> str:
     return str([path, *file.items(path)][-1])
 
 
+def properties_as_classes(file: LintedFile) -> Iterator[Diagnostic]:
+    """Properties of selfconf as types, and any where a role asks for a class: `sc:component` is no unknown term."""
+    classes, properties = file.index.classes, file.index.properties
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        iri = str(value)
+        asked = predicate == SH["class"] or (predicate == RDF.type and iri in _SC)
+        if asked and iri in properties and iri not in classes:
+            meant = next((one for one in sorted(classes) if one.lower() == iri.lower()), None)
+            hint = f"Did you mean {file.short(meant)}?" if meant else None
+            message = f"{file.short(iri)} is a property, where a class has to stand."
+            yield at(file.positions, offsets.object, "SC-L01" if iri in _SC else "SC-L02", message, hint=hint)
+
+
 def _known(iri: str, index: TermIndex) -> bool:
     if not index.strange(iri):
         return True

@@ -80,6 +80,20 @@ def test_a_misspelt_term_of_a_loaded_ontology_is_a_warning(text: str, meant: str
     assert (found.code, found.severity, found.hint) == ("SC-L02", Severity.WARNING, f"Did you mean {meant}?")
 
 
+@pytest.mark.parametrize(
+    ("text", "code", "hint"),
+    [
+        (":a a sc:component, rob:Tuner .", "SC-L01", "Did you mean sc:Component?"),
+        (TEMPLATE + ":r sh:class rob:place .", "SC-L02", "Did you mean rob:Place?"),
+        (TEMPLATE + ":r sh:class rob:support .", "SC-L02", None),
+    ],
+)
+def test_a_property_in_the_place_of_a_class_is_noticed(text: str, code: str, hint: str | None) -> None:
+    found = only(text)
+    assert (found.code, found.hint) == (code, hint)
+    assert "is a property, where a class has to stand" in found.message
+
+
 def test_a_value_that_a_role_asks_for_is_no_term_of_a_vocabulary() -> None:
     assert not lints(
         TEMPLATE + ":r sh:property [ sh:path rob:place ; sh:in ( rob:kitchen rob:hall ) ; sh:hasValue rob:hall ] ."
