@@ -22,7 +22,7 @@ READ = (*HIERARCHY, OWL.intersectionOf, FIRST, REST)
 _BELOW = (RDFS.subClassOf, OWL.equivalentClass)
 _ABOVE_ALL = (OWL.Thing, RDFS.Resource)
 """What the rules of OWL put above every class that is declared; it counts where an ontology states it."""
-_INTERSECTION = OWL.intersectionOf  # a name here, as a taxonomy asks for it a hundred thousand times
+_INTERSECTION, _EQUIVALENT = OWL.intersectionOf, OWL.equivalentClass  # a taxonomy asks for them 100,000 times
 Entailment = Callable[[Iterable[Triple]], Iterable[Triple]]
 
 
@@ -93,6 +93,8 @@ def intersections(document: Document) -> Iterator[tuple[IRI, IRI]]:
     for subject, predicate, value in document.triples():
         if isinstance(subject, IRI) and predicate in _BELOW:
             named.setdefault(value, []).append(subject)
+        elif isinstance(value, IRI) and predicate == _EQUIVALENT:
+            named.setdefault(subject, []).append(value)
     for subject, predicate, value in document.triples():
         if predicate == _INTERSECTION:
             for lower in [subject] if isinstance(subject, IRI) else named.get(subject, ()):

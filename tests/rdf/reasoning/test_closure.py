@@ -91,6 +91,7 @@ def test_owl_rl_infers_what_subclass_mode_does_not() -> None:
     [
         ":A owl:intersectionOf ( :B :C [ a owl:Restriction ] ) .",
         ":A owl:equivalentClass [ owl:intersectionOf ( :B :C ) ] .",
+        "[ owl:intersectionOf ( :B :C ) ] owl:equivalentClass :A .",
         ":A rdfs:subClassOf [ a owl:Class ; owl:intersectionOf ( [ a owl:Restriction ] :B :C ) ] .",
     ],
 )
