@@ -18,11 +18,11 @@ from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.model.wording import in_full
 from selfconf.rdf import turtle
-from selfconf.rdf.shacl import LITERAL
+from selfconf.rdf.shacl import LITERAL, misfit
 from selfconf.rdf.tasks.parameters import misfits
-from selfconf.rdf.tasks.roles import mentions, shape_statements
+from selfconf.rdf.tasks.roles import mentions, shape_statements, shape_triples, substituted
 from selfconf.rdf.tasks.templates import TaskDocument
-from selfconf.rdf.turtle import Document
+from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import SC, SH, XSD
 
 _LOCAL_PART = re.compile(r"[^\s\"'<>()]*")
@@ -166,7 +166,29 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
                 )
         if parameter.iri in bindings:
             _check(parameter, bindings[parameter.iri], document)
+    _check_shapes(task.template, bindings, document)
     return TaskDocument(replace(task, template=_with_values(task.template, bindings), bindings=bindings), document)
+
+
+def _check_shapes(template: Template, bindings: Mapping[IRI, Term], document: Document) -> None:
+    """Raises BindingError where the shape of a role would be none with the values of its parameters."""
+    values = {one.iri: bindings[one.iri] for one in template.parameters if one.in_shape and one.iri in bindings}
+    free = frozenset[Term](one.iri for one in template.parameters) - values.keys()
+    for role in template.roles:
+        if not values or not mentions(document, role.iri, frozenset(values)):
+            continue
+        shape: dict[Node, list[tuple[IRI, Term]]] = {}
+        for subject, predicate, value in shape_triples(document, role.iri):
+            shape.setdefault(subject, []).append((predicate, value))
+        bound = substituted(replace(document, statements=shape), values)
+        wrong = misfit(bound, bound.triples(), free)
+        if wrong is not None:
+            (subject, predicate, value), problem = wrong
+            named = [one.name for one in template.parameters if (predicate, one.iri) in shape[subject]]
+            what = f"with these values the shape of the role {role.iri!r} is not well-formed"
+            if named:
+                what = f"{in_full([value])} cannot stand for the parameter {named[0]!r} in the shape of {role.iri!r}"
+            raise BindingError(f"{what}: {_plain(problem)}")
 
 
 def _with_values(template: Template, bindings: Mapping[IRI, Term]) -> Template:

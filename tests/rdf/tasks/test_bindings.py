@@ -266,7 +266,35 @@ def test_a_limit_cannot_be_left_free(place: str) -> None:
     task = templates.read_task(turtle.parse(text, "t.ttl"))
     with pytest.raises(BindingError, match=rf"'x' cannot be left free, for it stands in sh:{place}; .*bind\(x="):
         bindings.complete(task)
-    assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings
+    value = '"3"' if place == "pattern" else "3"
+    assert bindings.complete(bindings.bind(task, [("x", value)])).task.bindings
+
+
+@pytest.mark.parametrize(
+    ("said", "value", "sentence"),
+    [
+        (
+            "sh:class :x",
+            "3",
+            r"3 cannot stand for the parameter 'x' in the shape of .*: the value of sh:class has to be",
+        ),
+        ("sh:pattern :x", "3", "the value of sh:pattern has to be a regular expression"),
+        ("sh:property [ sh:path :n ; sh:minInclusive :x ]", ":y", "<urn:x:y> cannot stand for the parameter 'x'"),
+        ("sh:or ( [ sh:property [ sh:path :n ; sh:minLength :x ] ] )", "long", '"long" cannot stand for the parameter'),
+        ("sh:property [ sh:path ( :n :x ) ; sh:minCount 1 ]", "3", "with these values the shape of the role"),
+    ],
+)
+def test_a_value_with_which_the_shape_of_a_role_would_be_none_cannot_be_bound(
+    said: str, value: str, sentence: str
+) -> None:
+    text = (
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
+        " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ."
+        f" :r a sc:Role ; {said} ."
+    )
+    task = bindings.bind(templates.read_task(turtle.parse(text, "t.ttl")), [("x", value)])
+    with pytest.raises(BindingError, match=sentence):
+        bindings.complete(task)
 
 
 @pytest.mark.parametrize("place", ["equals", "disjoint", "lessThan", "lessThanOrEquals", "datatype"])
