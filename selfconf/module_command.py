@@ -11,5 +11,6 @@ import sys
 
 def module_command(module: str, *arguments: str) -> list[str]:
     """The command that runs a module as `python -m` does, but finds what it imports where this program does."""
-    run = f"import sys; sys.path[:] = {sys.path!a}; from runpy import run_module as run"
+    path = [folder for folder in sys.path if isinstance(folder, str)]  # else Python passes over it, as over a Path
+    run = f"import sys; sys.path[:] = {path!a}; from runpy import run_module as run"
     return [sys.executable, "-c", f"{run}; run({module!r}, run_name='__main__', alter_sys=True)", *arguments]
