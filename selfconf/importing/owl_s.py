@@ -113,8 +113,6 @@ class _ServiceReader:
         if self.document.values(service, self.service.supports):
             reason = "they say how a service is reached, an advertisement says what it is"
             self.ledger.leave_out("groundings", reason, self.source)
-        own = [kind for kind in self.document.values(profile, TYPE) if isinstance(kind, IRI)]
-        kinds = (kind for kind in own if kind not in self.profile and not kind.startswith("http://www.w3.org/"))
         inputs, outputs = (self._parameters(service, profile, link) for link in ("hasInput", "hasOutput"))
         known = {*inputs, *outputs}
         further = [each for each in self.document.values(profile, self.profile.hasParameter) if each not in known]
@@ -122,13 +120,22 @@ class _ServiceReader:
         others = (said for subject in dict.fromkeys((service, profile)) for said in self._other_terms(subject))
         return ImportedComponent(
             self.ledger.names.component(service, self.source),
-            tuple(dict.fromkeys((self.service.Service, *kinds))),
+            tuple(dict.fromkeys((self.service.Service, *self._kinds(profile)))),
             labels=tuple(self._words(profile, self.profile.serviceName)),
             properties=(*comments, *others),
             inputs=tuple(self._ports(inputs)),
             outputs=tuple(self._ports(outputs)),
             parameters=tuple(self._operational(further)),
         )
+
+    def _kinds(self, profile: Node) -> list[IRI]:
+        """The types of a profile that say what kind of service it is."""
+        own = [
+            kind for kind in self.document.values(profile, TYPE) if isinstance(kind, IRI) and kind not in self.profile
+        ]
+        kinds = [kind for kind in own if kind not in SC]
+        self.ledger.leave_out("types of selfconf", "an import states those itself", self.source, len(own) - len(kinds))
+        return [kind for kind in kinds if not kind.startswith("http://www.w3.org/")]
 
     def _words(self, subject: Node, predicate: IRI) -> Iterator[Literal]:
         """Texts with their languages; that a text is typed as xsd:string makes no difference."""

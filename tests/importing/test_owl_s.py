@@ -44,7 +44,7 @@ TURTLE = """
 @prefix profile: <http://www.daml.org/services/owl-s/1.2/Profile.owl#> .
 @prefix process: <http://www.daml.org/services/owl-s/1.2/Process.owl#> .
 <#s> a service:Service ; service:presents <#p> ; service:describedBy <#process> .
-<#p> a profile:Profile, <http://example.org/Selling> .
+<#p> a profile:Profile, <http://example.org/Selling>, <https://w3id.org/selfconf#Template> .
 <#process> process:hasInput <#a>, <#b/a> ; process:hasOutput [ process:parameterType "no IRI" ] .
 <#a> process:parameterType <http://example.org/A> .
 [] a profile:Profile .
@@ -76,7 +76,7 @@ def test_a_profile_without_parameters_has_those_of_the_process(workshop: Worksho
     assert "<urn:selfconf:owl-s:s/x#s> a sc:Component, service:Service, <http://example.org/Selling> ;" in text
     assert '[ sc:name "a" ; sc:signalType <http://example.org/A> ] ,\n        [ sc:name "a-2" ]' in text
     assert 'sc:hasOutput [ sc:name "parameter" ] .' in text
-    assert left_out(report) == {"types that are no IRIs": 1, "services without an IRI": 1}
+    assert left_out(report) == {"types that are no IRIs": 1, "services without an IRI": 1, "types of selfconf": 1}
 
 
 def test_a_profile_is_found_by_its_service_and_a_process_by_either_of_them(workshop: Workshop) -> None:

@@ -118,7 +118,11 @@ class _ThingReader:
     def component(self, position: tuple[str, ...]) -> ImportedComponent:
         ports = list(self.affordances.ports(self.thing))
         types = dict.fromkeys((THING, *self.affordances.types(self.thing, "thing")))
-        types.pop(SC.Component, None)  # every component is said to be one
+        of_selfconf = [kind for kind in types if kind in SC]
+        for kind in of_selfconf:
+            del types[kind]
+        others = len(of_selfconf) - (SC.Component in of_selfconf)  # every component is said to be one
+        self.ledger.leave_out("types of selfconf", "an import states those itself", self.source, others)
         for member, (what, why) in _UNUSED.items():
             if member in self.thing:
                 self.ledger.leave_out(what, why, self.source)

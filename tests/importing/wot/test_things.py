@@ -70,6 +70,13 @@ def test_titles_that_are_no_text_are_named(workshop: Workshop) -> None:
     assert left_out(report) == {"titles that are no text": 2, "descriptions that are no text": 1}
 
 
+def test_a_thing_is_no_template_however_it_calls_itself(workshop: Workshop) -> None:
+    kinds = [f"https://w3id.org/selfconf#{name}" for name in ("Component", "Template", "Role")]
+    report = workshop.imported("wot", {"lamp.json": described(**{"@type": kinds})})
+    assert "a sc:Component, td:Thing" in only(workshop, report)
+    assert left_out(report) == {"types of selfconf": 2}
+
+
 def test_an_array_holds_several_things_as_a_directory_answers(workshop: Workshop) -> None:
     report = workshop.imported("wot", {"things.json": f"[{described()}, {described(id='urn:dev:b')}, 5]"})
     text = only(workshop, report)
