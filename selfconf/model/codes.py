@@ -757,7 +757,7 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
-        "SC-L25", "What is said of a part of a component stands at that part.",
+        "SC-L25", "What is said of a part of a component or of a template stands at that part.",
         "A term has one place where it is read; at another it says nothing, though it is spelt right.",
         f'{_TUNER} ; sc:command "python tuner.py" ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         f'{_TUNER} ; sc:grounding [ sc:command "python tuner.py" ] ;\n'
