@@ -36,10 +36,9 @@ class Variable:
     """Whether the parameter lists its values itself (`sh:in`): it may have any of them, and no other."""
 
     def first(self, mask: int) -> Term | None:
-        """The first value that a mask allows, or None if it allows values outside the domain."""
-        if mask < 0:
-            return None
-        return self.domain[(mask & -mask).bit_length() - 1]
+        """The first value that a mask allows, or None if it allows any outside the domain, or one by a further bit."""
+        place = (mask & -mask).bit_length() - 1
+        return None if mask < 0 or place >= len(self.domain) else self.domain[place]
 
 
 @immutable

@@ -66,6 +66,8 @@ def test_a_variable_takes_the_first_value_that_a_mask_allows() -> None:
     variable = Variable(IRI("urn:p"), (IRI("urn:a"), IRI("urn:b"), IRI("urn:c")))
     assert variable.first(0b110) == IRI("urn:b")
     assert variable.first(ANY_VALUE) is None
+    # A near miss may state a value that no candidate states: a bit of its own beyond the domain.
+    assert variable.first(1 << len(variable.domain)) is None
 
 
 def test_a_partition_with_one_candidate_for_a_role_keeps_the_others_and_only_the_values_that_are_stated() -> None:

@@ -22,6 +22,7 @@ from selfconf.search.relaxations.relaxed_problem import relaxed_by
 from selfconf.search.strategies import first
 from tests.search.recruiting.test_recruiting import RecruitingWorld, recruiting, with_recruits
 from tests.search.test_additions import choices, solvable
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import agreement, component, iri, problem, problems
 
 OF_PIPPI = PropertyUnmet(iri("support"), (NotAmong(frozenset((iri("Pippi"),)), frozenset((iri("Astrid"),))),))
@@ -80,6 +81,19 @@ def test_a_near_miss_that_would_do_is_offered_first() -> None:
     offered = with_relaxations(given_, refused, [(near, candidate)]).repairs[0]
     assert isinstance(offered, AcceptNearMiss)
     assert str(offered) == "let the role position take tracker, although its support is Pippi, not Astrid"
+
+
+def test_a_near_miss_of_a_value_of_its_own_is_tried_beside_recruits_without_a_solver() -> None:
+    roles = {"user": [component("user", "s:S"), component("of-pippi", "s:S")], "other": []}
+    plain = problem(roles, values={"user": {"of-pippi": 1}}, domain=["Pippi"])
+    helped = with_recruits(plain, component("supplier", "", "s:S"))
+    near = component("near"), (0b10,)
+    miss = NearMiss(iri("other"), iri("near"), OF_PIPPI)
+    with without_solvers():
+        refused = first.search(helped)
+        assert isinstance(refused, Refusal)
+        found = with_relaxations(helped, refused, [(miss, Candidate(*near))]).repairs
+    assert isinstance(found[0], AcceptNearMiss)
 
 
 def test_a_near_miss_that_is_the_first_of_its_class_elsewhere_is_distinguished() -> None:
