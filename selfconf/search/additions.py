@@ -27,7 +27,7 @@ from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.search.budget import Budget
 from selfconf.search.engines import any_by_clauses
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, recruits_that_matter
+from selfconf.search.reduction import LazyReduction, pruned, recruits_that_matter, reduced
 from selfconf.search.strategies import best_configuration, solution
 from selfconf.search.supply import Issued
 
@@ -54,7 +54,9 @@ def with_additions(problem: Problem, steps: int | None = None) -> Problem | Unde
     most = max(needed.values())
     found = _fewest(problem, needed, min(most, MOST_OF_A_ROLE), steps)
     if found is None and most > MOST_OF_A_ROLE:
-        return Undecided(steps)
+        # What arc consistency finds out does not depend on how many there are.
+        tried = pruned(reduced(_optional(problem, needed, MOST_OF_A_ROLE)))
+        return Undecided(steps) if tried.wiped_out() is None else None
     return asking_for(problem, found) if isinstance(found, Counter) else found
 
 

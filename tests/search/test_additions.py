@@ -100,6 +100,14 @@ def test_of_many_that_want_the_same_of_each_other_few_are_tried() -> None:
     assert with_additions(given_) is None
 
 
+def test_where_none_issues_what_is_lacking_more_than_are_tried_do_not_help() -> None:
+    peers = [component(f"peer{number}", f"in:T{number}", f"out:T{number + 1}") for number in range(2 * MOST_OF_A_ROLE)]
+    given_ = problem({"peer": peers, "user": [component("user", "i:S")]}, "peer>peer peer>user", {"peer": (0, None)})
+    assert with_additions(given_) is None
+    helped = problem({"peer": peers, "user": [component("user", "i:T1")]}, "peer>peer peer>user", {"peer": (0, None)})
+    assert with_additions(helped) is None  # `peer0` lacks what none issues
+
+
 def test_more_of_one_role_than_are_tried_is_not_decided() -> None:
     many = MOST_OF_A_ROLE + 1
     sources = [component(f"s{k:02}", outputs=f"o:S{k}") for k in range(many)]
