@@ -32,6 +32,11 @@ STRETCH = 256
 """Characters after which a set of states that is still the same is taken to stay for long."""
 MOST_COMPILED = 16
 """How often it may be worked out anew which characters do not lead away from a set."""
+STEPS, STEPS_OF_A_CHARACTER = 50_000, 10
+"""Looks at states while sets are made, for a text and for each of its characters: few texts need a tenth of them.
+
+Of `a[ab]{900}c` each character makes another set of hundreds of states.
+"""
 _REPEATS = frozenset((_parser.MAX_REPEAT, _parser.MIN_REPEAT))
 _CHARACTERS = frozenset((_parser.LITERAL, _parser.NOT_LITERAL, _parser.ANY, _parser.IN))
 _IN_LINE = {_parser.AT_BEGINNING: _parser.AT_BEGINNING_LINE, _parser.AT_END: _parser.AT_END_LINE}
@@ -42,6 +47,10 @@ _CharacterTest = Callable[[str], object]
 
 class NotRegular(Exception):
     """There is no automaton for an expression, or it would have too many states."""
+
+
+class TooManySteps(Exception):
+    """A text leads to too many sets of states that have not been met."""
 
 
 def parsed(pattern: str, flags: int) -> Any:
@@ -162,9 +171,12 @@ class Automaton:
         self._start = builder.sequence(tree, tree.state.flags, 0)
         self._states = builder.states
         self._sets: dict[tuple[tuple[int, ...], str], _Set] = {}
+        self._left = 0
+        """How many looks at states are left for the text that is read."""
 
     def finds(self, text: str) -> bool:
-        """Whether there is a match anywhere in a text."""
+        """Whether there is a match anywhere in a text. Raises TooManySteps."""
+        self._left = STEPS + STEPS_OF_A_CHARACTER * len(text)
         here, there = self._set((self._start,), ""), None
         end = len(text) - 1 if text.endswith("\n") else len(text)
         position = 0
@@ -200,6 +212,9 @@ class Automaton:
         if symbol in here.then:
             return here.then[symbol]
         reached = self._closure(here, symbol)
+        self._left -= len(reached)
+        if self._left < 0:
+            raise TooManySteps
         there: _Set | None = None
         if 0 not in reached:
             after = {self._start}

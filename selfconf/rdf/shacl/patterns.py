@@ -1,9 +1,10 @@
 """Whether a regular expression is found in a text of a stranger, at a cost that the text cannot choose.
 
-Most expressions meet most texts at a cost that is known beforehand: then `re` is asked. Where its backtracking could
-go on for long, an automaton is (`selfconf.rdf.shacl.automaton`), which says the same in linear time. What is left are
-expressions beyond regular languages, and texts of megabytes: `re` may try them for a moment of processor time, which
-becomes shorter the more such texts there are, and then they are not decided.
+Most expressions meet most texts at a cost that is known beforehand: then `re` is asked. Where its backtracking could go
+on for long, an automaton is (`selfconf.rdf.shacl.automaton`), which says the same in linear time. What is left are
+expressions beyond regular languages, texts of megabytes, and those that lead an automaton to ever more states: `re` may
+try them for a moment of processor time, which becomes shorter the more such texts there are, and then they are not
+decided.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from functools import lru_cache
 from typing import Any
 
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
-from selfconf.rdf.shacl.automaton import Automaton, NotRegular, parsed
+from selfconf.rdf.shacl.automaton import Automaton, NotRegular, TooManySteps, parsed
 
 CHEAP = 10_000
 """Steps of backtracking that `re` may always take: a tenth of a millisecond."""
@@ -70,7 +71,12 @@ class Pattern:
         if len(text) <= self._short:
             return self._expression.search(text) is not None
         automaton = self._made() if len(text) <= LONGEST_TEXT else None
-        return self._tried(text) if automaton is None else automaton.finds(text)
+        if automaton is not None:
+            try:
+                return automaton.finds(text)
+            except TooManySteps:
+                pass
+        return self._tried(text)
 
     def _made(self) -> Automaton | None:
         if self._automaton is None and self._regular:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 import warnings
+from random import Random
 
 import pytest
 
@@ -50,6 +51,19 @@ def test_beyond_regular_languages_a_harmless_text_is_decided_whatever_came_befor
     pattern._left = 0.0
     assert pattern.finds("Password1 and more")
     assert not pattern.finds("password1 and more")
+
+
+def test_a_text_that_leads_to_ever_more_states_costs_little_and_the_others_are_decided() -> None:
+    pattern = Pattern("a[ab]{900}c", 0)
+    letters = Random(1)
+    long = "".join(letters.choice("ab") for _ in range(LONGEST_TEXT))
+    began = time.process_time()
+    for _ in range(3):
+        with pytest.raises(MatchTooCostly, match="takes too long"):
+            pattern.finds(long)
+    assert time.process_time() - began < 3
+    assert pattern.finds(f"{'a' * 901}c")
+    assert not pattern.finds("b" * LONGEST_TEXT)
 
 
 @pytest.mark.parametrize("text", ["", "a"])
