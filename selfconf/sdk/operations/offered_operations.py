@@ -51,6 +51,7 @@ class _Promise:
     """A future that the code has returned in the place of an answer to one request; it may be that of others, too."""
 
     future: Future[Any]
+    request: Request
     operation: str
     caller: IRI
 
@@ -152,9 +153,9 @@ class OfferedOperations:
             turn = self._code.turn
             answer = self._code.serve(name, replace(signal, value=value))
             if isinstance(answer, Future):
-                promise = _Promise(answer, name, signal.source)
+                promise = _Promise(answer, request, name, signal.source)
                 self._promised.add(promise)
-                answer.add_done_callback(lambda _: self._kept(request, promise, turn))
+                answer.add_done_callback(lambda _: self._kept(promise, turn))
                 if patience < math.inf:
                     self._code.run_on_bus(self._limit, promise, max(0.0, waits_until - self._bus.now()))
                 if not self._code.active:  # it was stopped while it returned the future
@@ -169,16 +170,28 @@ class OfferedOperations:
         promise.future.add_done_callback(lambda _: self._code.run_on_bus(undo))
 
     def _abandon(self, promise: _Promise) -> None:
-        """Wait for a future no more; it is cancelled, unless another request waits for it as well."""
-        self._promised.discard(promise)
-        if all(other.future is not promise.future for other in list(self._promised)):
-            promise.future.cancel()
+        """Wait for a future no more; it is cancelled, unless another request waits for it as well.
 
-    def _kept(self, request: Request, promise: _Promise, turn: int) -> None:
+        Then the request is refused at once: until the future came to something, it would count as one that waits.
+        """
+        if all(other is promise or other.future is not promise.future for other in list(self._promised)):
+            promise.future.cancel()
+        elif self._takes_back(promise):
+            self._refuse(promise.request, f"{self._profile.component.short} ended the call before it answered", True)
+
+    def _kept(self, promise: _Promise, turn: int) -> None:
         """Answer a request with what a future has come to; on whatever thread it does."""
-        self._promised.discard(promise)
-        outcome = partial(self._code.outcome, promise.operation, promise.future, turn)
-        self._answer(request, promise.operation, outcome, kept=True)
+        if self._takes_back(promise):
+            outcome = partial(self._code.outcome, promise.operation, promise.future, turn)
+            self._answer(promise.request, promise.operation, outcome, kept=True)
+
+    def _takes_back(self, promise: _Promise) -> bool:
+        """Whether a promise stands no more from now on, and did until now: its request is answered once."""
+        try:
+            self._promised.remove(promise)
+        except KeyError:
+            return False
+        return True
 
     def _answer(self, request: Request, name: str, answered: Callable[[], Any], kept: bool = False) -> None:
         """Answer a request with a value, or refuse it as `answered` does; nothing yet if the value is a future.

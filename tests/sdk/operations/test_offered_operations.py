@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 import pytest
@@ -16,7 +17,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Apply, Cause
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
-from selfconf.sdk.operations import MOST_PAYLOAD
+from selfconf.sdk.operations import MOST_CALLS, MOST_PAYLOAD
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.sdk.operations.photographs import (
     ALBUM,
@@ -137,6 +138,31 @@ def test_an_answer_that_nobody_waits_for_is_cancelled(ended: str, shared: bool) 
     promises[1].set_result("a photo")
     served.stage.let_pass(0.1)
     assert [sample.payload for sample in replies[-1].samples] == [b'"a photo"']
+
+
+def test_who_waits_no_longer_for_an_answer_of_several_is_refused_at_once_and_keeps_none_out() -> None:
+    promise: Future[Any] = Future()
+    served, replies = Served(Camera(reply=lambda request: promise)), dict[int, Replies]()
+    served.stage.call(apply(2, callers={"takePhoto" + CALL_MARK: (ALBUM, DIARY)}))
+
+    def ask(caller: IRI, number: int, attachment: bytes) -> None:
+        key = KEYS.operation(CAMERA, "takePhoto", caller)
+        served.stage.caller.ask(key, request_of(caller), 60.0, partial(replies.setdefault, number), attachment)
+        served.stage.let_pass(0.05)
+
+    ask(ALBUM, 1, b"")
+    for number in range(2, MOST_CALLS + 5):
+        ask(DIARY, number, b"0.1")
+    served.stage.let_pass(0.2)
+    assert {one.errors for one in replies.values()} == {("camera ended the call before it answered",)}
+    assert replies.keys() == {*range(2, MOST_CALLS + 5)}
+    ask(DIARY, 0, b"")
+    served.stage.call(apply(3, callers={"takePhoto" + CALL_MARK: (DIARY,)}))
+    served.stage.let_pass(0.1)
+    assert replies[1].errors
+    promise.set_result("a photo")
+    served.stage.let_pass(0.1)
+    assert [sample.payload for sample in replies[0].samples] == [b'"a photo"']
 
 
 @pytest.mark.parametrize("ended", ["the caller is connected no more", "the caller waits no longer"])
