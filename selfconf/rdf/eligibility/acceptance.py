@@ -19,6 +19,7 @@ from selfconf.model.partition import Candidate, Partition, Recruit, Unissuable
 from selfconf.model.profile import Input, Output, Ports, Profile, WantedSignal, shared_ports
 from selfconf.model.template import Template
 from selfconf.model.term import IRI
+from selfconf.rdf.deadline import ProcessorTimeUp, processor_limit
 from selfconf.rdf.eligibility.output_shapes import OutputShape, Port, Seen, SeenOutputs
 
 SECONDS = 5.0
@@ -80,8 +81,8 @@ class Acceptance:
                     [(p.component, o.name) for p in profiles for o in p.signal_outputs if self._could_feed(o, signals)]
                 )
                 for text in some if lists[-1] else ():
-                    in_time = time.process_time() - began < SECONDS
-                    for one in self._conforming(text, lists[-1], seen, in_time):
+                    left = SECONDS - (time.process_time() - began)
+                    for one in self._conforming(text, lists[-1], seen, left):
                         met.setdefault(one, set()).add(text)
         return met
 
@@ -93,16 +94,22 @@ class Acceptance:
             or any(signal in signals for signal in self._hierarchy.served(output.signals))
         )
 
-    def _conforming(self, text: str, outputs: Sequence[Port], seen: SeenOutputs, in_time: bool) -> set[Port]:
-        """The outputs, among some, that conform to a shape; none where it cannot be judged, which is noted."""
+    def _conforming(self, text: str, outputs: Sequence[Port], seen: SeenOutputs, left: float) -> set[Port]:
+        """The outputs, among some, that conform to a shape; none where it cannot be judged, which is noted.
+
+        `left` is the processor time that it may take.
+        """
         shape = self._shape(text)
         if isinstance(shape, OutputShape):
-            if not in_time:
-                self._shapes[text] = NotJudged("the shapes that inputs accept take too long to be judged")
-                return set()
             slow: dict[Port, NotJudged] = {}
             try:
-                conforming = shape.conforming(outputs, seen, slow)
+                if left <= 0:
+                    raise ProcessorTimeUp
+                with processor_limit(left):
+                    conforming = shape.conforming(outputs, seen, slow)
+            except ProcessorTimeUp:
+                self._shapes[text] = NotJudged("the shapes that inputs accept take too long to be judged")
+                return set()
             except AuthorError as error:
                 self._shapes[text] = _cannot_be_judged(error)
                 return set()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from random import Random
+
 import pytest
 
 from selfconf import configure, read, template
@@ -9,6 +11,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.rdf.advertisements import read_advertisements
+from selfconf.rdf.eligibility import acceptance
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.partitioner import Partitioner
 from tests.lab import PREFIXES
@@ -19,11 +22,23 @@ TASK = f"""{PREFIXES}:t a sc:Template ; sc:roles ( :sensor :display ) .
 :sensor a sc:Role ; sh:class :Sensor ; sc:feeds :display . :display a sc:Role ; sh:class :Display ."""
 
 
-def answered(accepts: str) -> Configuration | Refusal | Undecided:
+def answered(accepts: str, others: str = "") -> Configuration | Refusal | Undecided:
     """The answer to who feeds a display that accepts some outputs."""
     port = f'[ sc:name "i" ; sc:signalType :Pose ; sc:accepts [ {accepts} ] ]'
     display = f":show a sc:Component, :Display ; sc:hasInput {port} ."
-    return configure(template(TASK), read(PREFIXES + OUTPUTS + display))
+    return configure(template(TASK), read(PREFIXES + OUTPUTS + display + others))
+
+
+def test_one_shape_takes_no_longer_than_all_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(acceptance, "SECONDS", 0.2)
+    letters = Random(1)
+    labels = ("".join(letters.choice("ab") for _ in range(2000)) for _ in range(300))
+    many = "".join(
+        f' , [ sc:name "{n}" ; sc:signalType :Pose ; rdfs:label "{label}" ]' for n, label in enumerate(labels)
+    )
+    hostile = f':hostile a sc:Component, :Sensor ; sc:hasOutput [ sc:name "o" ; sc:signalType :Pose ]{many} .'
+    answer = answered('sh:path rdfs:label ; sh:pattern "a[ab]{900}c"', hostile)
+    assert isinstance(answer, Refusal)  # the display is left out, as its shape takes too long
 
 
 @pytest.mark.parametrize(
