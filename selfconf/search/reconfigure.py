@@ -85,12 +85,12 @@ def nearest(problem: Problem, running: Configuration, steps: int | None = None) 
     fixed = all(role.minimum == role.maximum for role in problem.roles) and solver_available()
     search = _NearestSearch(problem, running)
     found, budget = search.without_losses(steps, fixed)
-    if found is None:
+    if found is None or (fixed and not budget.steps and search.meet(found) < (search.whole, search.possible)):
         given = LazyReduction(problem)
         playing = solution(given, Budget())
         if not isinstance(playing, list):
             return explain.refusal(given)
-        found = search.with_fewest_losses(budget)
+        found = search.with_fewest_losses(budget) if found is None else found
         if not budget.steps and fixed:
             search.meet(found)
             budget = Budget(steps)

@@ -206,6 +206,23 @@ def test_all_steps_are_for_some_losses_where_it_is_soon_seen_that_there_are_any(
     assert found.proved
 
 
+def test_a_connection_is_kept_though_many_that_keep_none_come_before() -> None:
+    pytest.importorskip("pysat")
+    many = [component(f"new{number:04}", outputs="o:S") for number in range(2_500)]
+    moving, other, user = component("x", outputs="o:S"), component("other", outputs="o:S"), component("user", "i:S")
+    interactions = "one>user two>user"
+    before = {"one": [moving], "two": [component("lost", outputs="o:S")], "user": [user]}
+    running = first.search(problem(before, interactions))
+    assert isinstance(running, Configuration)
+    # It is no longer eligible for its own role, and the last of another one: there its connection stays.
+    found = reconfigure.nearest(
+        problem({"one": [other], "two": [*many, moving], "user": [user]}, interactions), running
+    )
+    assert isinstance(found, reconfigure.Reconfiguration)
+    assert [one.short for one in found.configuration.components] == ["other", "x", "user"]
+    assert (found.connections, found.proved) == (1, True)
+
+
 def test_what_runs_stays_where_it_is_enough_by_itself_though_many_could_come_before_it() -> None:
     """Six roles in a ring, each with room for all: c0 is lost, and what is left of those that run needs no other."""
     names = [f"r{number}" for number in range(6)]
