@@ -34,9 +34,11 @@ def avoid(
     taken, more = {}, dict(avoided)
     for component, holder in contested.items():
         wanted = {source for _, source, _ in holder.wants.inputs}
-        sources = {source for _, source, _ in configuration.wants(component).inputs} - wanted
-        if sources and len(more) < MOST_AVOIDED:
-            more.update(((_number_of_role(configuration, source), source), component) for source in sorted(sources))
+        sources = sorted({source for _, source, _ in configuration.wants(component).inputs} - wanted)
+        # One that was avoided before, in vain, is what feeds a composite: its inside cannot do without that.
+        new = [one for source in sources if (one := (_number_of_role(configuration, source), source)) not in avoided]
+        if new and len(more) < MOST_AVOIDED:
+            more.update(dict.fromkeys(new, component))
         else:
             taken[component] = holder
     return taken, more

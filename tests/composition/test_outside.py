@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from selfconf.composition import Composer
 from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
-from selfconf.model.configuration import Configuration, Connection
-from selfconf.model.partition import Partition
-from selfconf.model.refusal import InputUnfed, Refusal
+from selfconf.model.configuration import Configuration, Connection, Wants
+from selfconf.model.holder import Holder
+from selfconf.model.partition import Barred, Partition
+from selfconf.model.refusal import InputUnfed, Outcome, Refusal
+from selfconf.model.sharing import agreed
 from selfconf.model.template import Interaction, Role
 from selfconf.rdf import tasks
 from selfconf.rdf.advertisements import read_advertisements
@@ -77,3 +79,21 @@ def test_what_is_outside_is_a_role_of_its_own_that_is_left_out_in_the_end() -> N
     assert [port.name for port in outside.profile.outputs] == ["hint"]
     inside = Configuration(task.template.iri, ())
     assert inside_alone(with_outside_player(inside, WHOLE), WHOLE) == inside
+
+
+def test_what_is_outside_is_not_avoided_without_end_where_another_task_wants_another_source() -> None:
+    composer = Composer(tasks.InsideReader(parse(TEXT, "t.ttl")).read(WHOLE), outside=WHOLE)
+    shared = TRACKER.replace("sc:hasInput", "sc:shareable true ; sc:hasInput")
+    (tracker,), _ = read_advertisements((PREFIXES + shared).encode(), "ads.ttl")
+    searches = 0
+
+    def search(left_out: frozenset[Barred]) -> Outcome:
+        nonlocal searches
+        searches += 1
+        assert searches < 10
+        return composer.compose({tracker.component: tracker}, left_out, None)
+
+    holder = Holder("other~1", wants=Wants(frozenset({("help", iri("helper"), "hint")})))
+    found, taken = agreed(search, {tracker.component: holder}, lambda outcome: outcome)
+    assert isinstance(found, Refusal)
+    assert taken == {tracker.component: holder}
