@@ -6,7 +6,7 @@ import re
 import warnings
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from selfconf.rdf.shacl.automaton import Automaton, NotRegular
@@ -44,6 +44,7 @@ FLAGS = st.sampled_from((0, int(re.IGNORECASE), int(re.MULTILINE), int(re.IGNORE
 
 
 @given(EXPRESSIONS, FLAGS, st.text("ab A_\n1é!ſK", max_size=8))
+@example(r"\B", 0, "")
 def test_it_finds_what_re_finds(expression: str, flags: int, text: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a repeated repeat may mean something else one day
