@@ -6,8 +6,10 @@ command is started once, however many components of its folder share it.
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 
 from selfconf.bus.port import Bus
@@ -19,6 +21,8 @@ from selfconf.protocol.keys import Keys
 from selfconf.site.component_program import ComponentProgram
 from selfconf.site.log_file import LogFile
 from selfconf.site.printed_lines import PrintedLines
+
+log = logging.getLogger(__name__)
 
 ENDING = 3.0
 """How long, in seconds, the processes of a site may take to end before they are killed, when the site ends."""
@@ -64,7 +68,7 @@ class ComponentProcesses:
             raise cannot_start(component)
         if self._closed:
             raise PeerError("this site is ending")
-        program = self.by_component.get(component)
+        last = program = self.by_component.get(component)
         if program is None or not program.running:  # the command of one that runs may have changed since
             program = self._programs.get(started)
         if program is None:
@@ -75,12 +79,22 @@ class ComponentProcesses:
             self._programs[started] = program
             if self._closed:  # after it is known: either it is closed here, or by `close`
                 program.close()
+        if last is not None and last is not program and last.group is not None:  # two processes would be one too many
+            last.end(partial(self._start_late, profile, tuple(sharing), after))
+            return
         program.start(profile, sharing, after)
         before = {self.by_component.get(one.component, program) for one in (*sharing, profile)} - {program}
         for one in (*sharing, profile):
             self.by_component[one.component] = program
         for left in before.difference(self.by_component.values()) if before else ():
             left.give_up()
+
+    def _start_late(self, profile: Profile, sharing: Iterable[Profile], after: str) -> None:
+        """Start a component, now that its process by another command is gone."""
+        try:
+            self.start(profile, sharing, after)
+        except PeerError as error:
+            log.error("%s", error)
 
     def end(self, component: IRI, life: str = "", ended: Callable[[], None] = lambda: None) -> None:
         """End the process of a component, and call `ended` once it is gone; it can be started again.

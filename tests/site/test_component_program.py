@@ -181,6 +181,24 @@ def test_a_component_that_has_another_command_by_now_is_not_said_to_have_ended_w
     assert [fail.component for fail in heard] == [iri("right")]
 
 
+def test_a_component_is_not_started_by_another_command_before_its_process_of_the_last_one_is_gone(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    deaf = "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN); "
+    made = site(python(deaf + NUMBERED))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    last = program(made)
+    dormant(tmp_path / "here", python(NUMBERED))
+    assert live(network, lambda: made.shelf.advertisements[SLEEPER].profile.command != last.command)
+    made.processes.end(SLEEPER)
+    for _ in range(2):
+        made.start(SLEEPER)
+    assert live(network, lambda: program(made) is not last)
+    assert last.group is None
+    assert live(network, lambda: [alive(one) for one in runs(tmp_path)] == [False, True])
+
+
 def test_a_command_that_no_component_has_any_more_is_not_started_again(
     network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
