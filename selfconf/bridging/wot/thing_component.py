@@ -188,13 +188,17 @@ class ThingComponent(Component):
         self.emit(output.name, _wrapped(answer, output.field), media=answer.media)
 
     async def _send(self, taken: ThingInput, queue: asyncio.Queue[Signal]) -> None:
+        told = set[str]()
         while True:
             signal = await queue.get()
             value = None if taken.empty else _unwrapped(signal.value, taken.field)
             try:
                 await self._client.send(taken.form, value, signal.media, taken.action)
             except UnsendableValueError as error:
-                self._tell(f"what {signal.source.short} issues is not sent to {taken.name!r}: {error}")
+                sentence = f"what {signal.source.short} issues is not sent to {taken.name!r}: {error}"
+                if sentence not in told:  # else as many as there are signals, where this is so of two inputs
+                    told.add(sentence)
+                    self._tell(sentence)
 
     async def _call(self, called: ThingOperation, request: Signal) -> Any:
         """What an action answers. Raises Refused."""

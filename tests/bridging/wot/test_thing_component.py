@@ -195,6 +195,27 @@ def test_a_thing_is_not_to_blame_for_a_signal_that_cannot_be_sent_to_it(
     assert server.sent("POST") == []
 
 
+def test_each_input_that_takes_no_signal_of_a_source_is_named_once(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = False
+    show = {"@type": "rob:Switch", "input": {"type": "object"}}
+    actions = {
+        name: {**show, "forms": [{"href": name, "contentType": "application/octet-stream"}]}
+        for name in ("show", "tell")
+    }
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe(actions=actions))) as found:
+        source = button(living)
+        active(found, on=WIRE, show=WIRE, tell=WIRE)
+        for number in range(4):
+            source.emit("on", {"on": bool(number % 2)})
+            assert until(lambda most=number: len(server.sent("PUT")) == most + 1)
+        assert until(lambda: all(found.complained(f"is not sent to {name!r}: ") for name in actions))
+        said = [one for one in found.complaints if "is not sent to" in one]
+        assert len(said) == 2, said
+
+
 class Caller(Component):
     """Calls the action of the lamp."""
 
