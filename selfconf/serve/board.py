@@ -84,7 +84,7 @@ class Board:
             now = self.descriptions[component] = json.dumps(thing, ensure_ascii=False)
         if self.ready and before != now:
             kind = THING_EVENTS[2] if now is None else THING_EVENTS[0 if before is None else 1]
-            told = thing if now is None or before is None else merge_patch(json.loads(before), thing)
+            told = thing if now is None or before is None else merge_patch(json.loads(before), json.loads(now))
             self.stream.put(kind, {**told, "id": str(component)})
 
     def knows(self, task: str) -> bool:

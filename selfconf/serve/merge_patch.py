@@ -9,7 +9,7 @@ from typing import Any
 def merge_patch(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
     """The members that are others, or new, and null for those that are gone; objects in them in the same way.
 
-    Neither object may hold null, which such a patch cannot say.
+    Both are as JSON is read. Neither may hold null, which such a patch cannot say.
     """
     patch: dict[str, Any] = {member: None for member in before if member not in after}
     for member, value in after.items():

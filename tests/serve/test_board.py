@@ -51,12 +51,15 @@ def test_a_thing_is_created_updated_and_deleted(board: Board) -> None:
     assert things[2].data == json.loads(board.descriptions[gone])
 
 
-def test_what_a_thing_has_no_more_is_told_as_gone(board: Board) -> None:
-    tracker = found("tracker", ":person-tracker rdfs:comment 'in the hall' .")
+def test_what_a_thing_has_no_more_is_told_as_gone_and_not_what_it_has_still(board: Board) -> None:
+    rate = "sc:rate [ sc:value 2 ; sc:unit <http://qudt.org/vocab/unit/HZ> ]"
+    ticks = f":person-tracker sc:hasOutput [ sc:name 'ticks' ; sc:signalType :Tick ; {rate} ] ."
+    tracker = found("tracker", f"{ticks} :person-tracker rdfs:comment 'in the hall' .")
     component = tracker.advertisement.component
     board.apply(EcologyChange({component: tracker}))
     before = board.stream.last
-    board.apply(EcologyChange({component: found("tracker")}))
+    board.apply(EcologyChange({component: found("tracker", ticks)}))
+    assert "sc:rate" in board.descriptions[component]
     (event,) = board.stream.missed(before) or ()
     assert event.data == {"id": component, "description": None}
 
