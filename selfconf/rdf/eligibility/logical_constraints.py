@@ -1,14 +1,14 @@
 """The alternatives in the shape of a role (`sh:or`, `sh:xone`, `sh:not`), and what they leave to a component to add.
 
 Each alone may be passed, and all together with the rest of the shape by no component: a property that must have a value
-and must not. Where they look at constants alone, few combinations of values tell: those that the shape names, and one
-that it does not.
+and must not. Where they look at constants alone, few combinations of values tell: of those that the shape does not tell
+apart it matters only how many there are, and of no more than it counts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain, combinations, islice, product
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from itertools import chain, islice, permutations, product
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Profile
@@ -17,9 +17,9 @@ from selfconf.rdf.eligibility.free_values import conjuncts
 from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest
 
 UNNAMED = IRI("urn:selfconf:unnamed")
-"""A value that no shape names."""
-MOST_VALUES = 2
-"""How many values a property is given at most."""
+"""What the values are called that no shape names, with numbers behind it."""
+MOST_TOLD_APART = 20
+"""The highest count of values of which something is said."""
 MOST_COMBINATIONS = 500
 """How many combinations of values are tried at most; where there are more, nothing is said."""
 
@@ -39,23 +39,29 @@ def in_doubt(tests: Sequence[RoleTest]) -> bool:
 def passable(tests: Sequence[RoleTest], hierarchy: Hierarchy) -> bool:
     """Whether some component passes the alternatives of a role beside what else it asks of the same properties.
 
-    True as well where that is not known: where they look at more than how many values there are, and which.
+    True as well where that is not known: where they look at more than how many values there are, and which, or at a
+    property and one below it, which share values.
     """
     asked: list[RoleTest] = list(_alternatives(tests))
     if not asked:
         return True
     paths = {test.path for test in _properties(asked)}
     asked += [test for test in conjuncts(tests) if isinstance(test, PropertyTest) and test.path in paths]
-    if not all(map(_of_constants, asked)):
+    if any(above in hierarchy.superproperties(path) for path, above in permutations(paths, 2)):
         return True
-    named: dict[IRI, set[Term]] = {path: {UNNAMED} for path in paths}
+    return not all(map(_of_constants, asked)) or _some_pass(asked, hierarchy)
+
+
+def _some_pass(asked: Sequence[RoleTest], hierarchy: Hierarchy) -> bool:
+    """Whether some values of properties pass all of some tests of constants; true as well where these are too many."""
+    by_path: dict[IRI, list[PropertyTest]] = {}
     for test in _properties(asked):
-        named[test.path].update(test.required, *test.allowed)
-    choices = [[(path, values) for values in _few(named[path])] for path in sorted(paths)]
+        by_path.setdefault(test.path, []).append(test)
+    choices = [[(path, values) for values in _choices(tests)] for path, tests in sorted(by_path.items())]
     tried = list(islice(product(*choices), MOST_COMBINATIONS + 1))
-    if len(tried) > MOST_COMBINATIONS:
-        return True
-    return any(all(test.obstacle(_stating(some), hierarchy) is None for test in asked) for some in tried)
+    return len(tried) > MOST_COMBINATIONS or any(
+        all(test.obstacle(_stating(some), hierarchy) is None for test in asked) for some in tried
+    )
 
 
 def _alternatives(tests: Iterable[RoleTest]) -> Iterator[RoleTest]:
@@ -75,14 +81,30 @@ def _of_constants(test: RoleTest) -> bool:
     """Whether a test looks only at how many values a property has, and which."""
     if isinstance(test, Count):
         return all(map(_of_constants, chain.from_iterable(test.groups)))
-    if not isinstance(test, PropertyTest) or test.minimum > MOST_VALUES or len(test.required) > MOST_VALUES:
+    if not isinstance(test, PropertyTest) or _counted(test) > MOST_TOLD_APART:
         return False
     return not (test.free_in or test.free_required or test.each or test.compared or test.qualified)
 
 
-def _few(values: Iterable[Term]) -> Iterator[tuple[Term, ...]]:
-    ordered = sorted(values, key=str)
-    return chain.from_iterable(combinations(ordered, size) for size in range(MOST_VALUES + 1))
+def _counted(test: PropertyTest) -> int:
+    """Up to how many values a test tells numbers of values apart."""
+    return max(test.minimum, 0 if test.maximum is None else test.maximum + 1)
+
+
+def _choices(tests: Sequence[PropertyTest]) -> Iterator[tuple[Term, ...]]:
+    """Yield values that a property may have: what any values pass, one of these does, up to more than are tried."""
+    most = max(1, *map(_counted, tests))
+    lists = [members for test in tests for members in test.allowed]
+    required = frozenset(chain.from_iterable(test.required for test in tests))
+    alike: dict[Hashable, list[Term]] = {}
+    for value in sorted(required.union(*lists), key=str):
+        kind = value if value in required else None, *(value in members for members in lists)
+        alike.setdefault(kind, []).append(value)
+    groups = [some[:most] for some in alike.values()]
+    groups.append([IRI.unchecked(f"{UNNAMED}:{number}") for number in range(most)])
+    numbers = islice(product(*(range(len(some) + 1) for some in groups)), MOST_COMBINATIONS + 1)
+    for each in numbers:
+        yield tuple(chain.from_iterable(some[:number] for some, number in zip(groups, each, strict=True)))
 
 
 def _stating(values: Iterable[tuple[IRI, tuple[Term, ...]]]) -> Profile:

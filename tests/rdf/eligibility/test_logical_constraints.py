@@ -27,6 +27,7 @@ def addable(shape: str, parameter: str = "") -> bool:
         "sh:property [ sh:path :p ; sh:hasValue :a ] ; sh:not [ sh:property [ sh:path :p ; sh:minCount 1 ] ]",
         f"sh:property [ sh:path :p ; sh:in ( :a ) ] ; {B_OR_C}",
         f"sh:property [ sh:path :p ; sh:maxCount 0 ] ; {B_OR_C}",
+        "sh:property [ sh:path :p ; sh:minCount 3 ] ; sh:not [ sh:property [ sh:path :p ; sh:minCount 3 ] ]",
     ],
 )
 def test_no_component_is_added_where_none_passes_the_alternatives_beside_the_rest(shape: str) -> None:
@@ -38,9 +39,12 @@ def test_no_component_is_added_where_none_passes_the_alternatives_beside_the_res
     [
         "sh:property [ sh:path :p ; sh:hasValue :a ] ; sh:not [ sh:property [ sh:path :q ; sh:minCount 1 ] ]",
         f"sh:property [ sh:path :p ; sh:minCount 2 ] ; {B_OR_C}",
-        # Of the class, of datatypes, and of more values than two nothing is said.
+        "sh:property [ sh:path :p ; sh:minCount 2 ] ; sh:not [ sh:property [ sh:path :p ; sh:hasValue :a ] ]",
+        "sh:not [ sh:property [ sh:path :p ; sh:maxCount 2 ] ]",
+        f"sh:property [ sh:path :p ; sh:hasValue :a ] , [ sh:path :p ; sh:hasValue :d ] ; {B_OR_C}",
+        # Of the class, of datatypes, and of very many values nothing is said.
         "sh:class :C ; sh:not [ sh:class :C ]",
-        "sh:property [ sh:path :p ; sh:minCount 3 ] ; sh:not [ sh:property [ sh:path :p ; sh:minCount 3 ] ]",
+        "sh:property [ sh:path :p ; sh:minCount 99 ] ; sh:not [ sh:property [ sh:path :p ; sh:minCount 99 ] ]",
         "sh:property [ sh:path :p ; sh:datatype xsd:integer ] ; sh:not [ sh:property [ sh:path :p ; sh:maxCount 0 ] ]",
     ],
 )
