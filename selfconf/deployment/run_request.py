@@ -28,7 +28,7 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.tasks import TaskDocument
 
 ComposeFunction = Callable[[Mapping[IRI, Advertisement], frozenset[Barred], "Configuration | None"], Outcome]
-"""Act 3: from the advertisements, the lost components and what runs now, a configuration or a refusal."""
+"""Act 3: from the advertisements, what is left out and what runs now, a configuration or a refusal."""
 
 Aside = Callable[[Callable[[], None]], Undo]
 """Runs what takes long apart from the bus; calling the result ends it and forgets it, where that can be."""

@@ -91,17 +91,17 @@ def near_misses(
     partitioner: Partitioner,
     advertisements: Advertisements,
     roles: Container[IRI] | None = None,
-    lost: Container[Barred] = (),
+    left_out: Container[Barred] = (),
 ) -> Iterator[NearMiss]:
     """For each role the components of its class that exactly one other thing keeps out, with that obstacle.
 
-    Of some roles only, where those are given, and without the lost components; for each role by component.
+    Of some roles only, where those are given, and without what is left out of all; for each role by component.
     """
     ecology = AdvertisementIndex.of(advertisements)
     for role in partitioner.roles:
         if roles is None or role.iri in roles:
             near = nearly(partitioner, role, ecology, partitioner.akin(role, ecology))
-            yield from (miss for miss in near if miss.component not in lost)
+            yield from (miss for miss in near if miss.component not in left_out)
 
 
 def nearly(
