@@ -19,6 +19,7 @@ import os
 import secrets
 import signal
 import subprocess
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -32,6 +33,8 @@ Those before are of the groups around it: what a component starts may be a site,
 """
 _PROCESSES = Path("/proc")
 """Where Linux shows the processes."""
+_FIRST_LOOK = 0.02
+"""Seconds after which it is looked again whether what a program has left behind has ended; then twice as many."""
 
 
 class ProcessGroup:
@@ -93,6 +96,19 @@ class ProcessGroup:
             self._process.wait(seconds)
         except subprocess.TimeoutExpired:
             return False
+        return True
+
+    def wait_for_all(self, seconds: float) -> bool:
+        """Wait until the program has ended, and all that it started; return whether they have."""
+        deadline, pause = time.monotonic() + seconds, _FIRST_LOOK
+        if not self.wait(seconds):
+            return False
+        while not self.gone():
+            left = deadline - time.monotonic()
+            if left <= 0:
+                return False
+            time.sleep(min(pause, left))  # nothing tells when what the program has left behind ends
+            pause *= 2
         return True
 
     def _signalled(self, number: int) -> bool:

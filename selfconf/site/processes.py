@@ -110,7 +110,7 @@ class ComponentProcesses:
         program.end(ended)
 
     def close(self) -> None:
-        """End every process: those that still run after `ENDING` seconds, all in all, are killed.
+        """End every process, with all that it has started: what runs after `ENDING` seconds, all in all, is killed.
 
         Unlike everything else here it may be called from any thread: the bus may have one of its own.
         """
@@ -124,10 +124,9 @@ class ComponentProcesses:
                 groups.append(group)
         deadline = time.monotonic() + ENDING
         for group in groups:
-            if not group.frozen():
-                group.wait(max(0.0, deadline - time.monotonic()))
-            group.kill()  # what it has left behind, too
-            group.wait(ENDING)
+            if group.frozen() or not group.wait_for_all(max(0.0, deadline - time.monotonic())):
+                group.kill()
+                group.wait(ENDING)
         if self._printed is not None:
             self._printed.close()
             self._printed = None

@@ -166,6 +166,22 @@ def test_a_process_that_does_not_want_to_end_is_killed(
     assert group.code() == -9
 
 
+def test_what_a_process_leaves_behind_may_end_in_order_as_its_site_ends(
+    tmp_path: Path, sites: Callable[[Path], Site]
+) -> None:
+    rests = "import signal, time, pathlib; "
+    rests += 'signal.signal(signal.SIGTERM, lambda *_: (time.sleep(0.3), pathlib.Path("rests").touch(), exit())); '
+    rests += 'pathlib.Path("acts").touch(); time.sleep(60)'
+    (tmp_path / "motor.py").write_text(rests)
+    started = f'sh -c "{sys.executable} {tmp_path / "motor.py"}; true"'  # the shell ends by the signal at once
+    folder = dormant(tmp_path / "here", started)
+    site = sites(folder)
+    site.start(SLEEPER)
+    assert until((folder / "acts").exists)
+    site.close()
+    assert (folder / "rests").exists()
+
+
 def test_processes_that_do_not_want_to_end_are_waited_for_together(
     network: Network, tmp_path: Path, sites: Callable[[Path], Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
