@@ -32,6 +32,7 @@ from tests.sdk.stage import (
     KEYS,
     THEM,
     TRACKER,
+    TRACKER_PROFILE,
     US,
     Stage,
     apply,
@@ -96,6 +97,34 @@ def test_a_component_that_is_released_before_its_code_has_begun_to_start_is_not_
     split.run_code()
     assert recorder.said == []
     assert set(split.verdicts) == {Verdict.REFUSED, Verdict.DONE}
+
+
+@pytest.mark.parametrize("again", [apply(3, US), reserve(3, US)])
+def test_a_start_that_was_overtaken_by_a_release_takes_back_nothing_that_comes_after_it(again: Apply | Reserve) -> None:
+    split = Split(recorder := Recorder())
+    split.call(apply(1, US))
+    split.call(release(2, US))
+    split.call(again)
+    split.run_code()
+    assert split.runtime.activation.epoch == 3
+    if isinstance(again, Apply):
+        assert recorder.said == [("started",)]
+        assert split.answers[-1].active
+
+
+def test_a_component_that_refuses_to_start_is_free_though_another_task_shares_it_by_then() -> None:
+    class Cold(Recorder):
+        def started(self) -> None:
+            super().started()
+            raise Refused("too cold")
+
+    split = Split(recorder := Cold(), TRACKER_PROFILE)
+    split.call(apply(1, US))
+    split.call(apply(1, THEM))
+    split.run_code()
+    assert [answer.detail for answer in split.answers] == ["too cold"] * 2
+    assert (split.runtime.activation.phase, split.runtime.activation.holds) == (ActivationPhase.IDLE, ())
+    assert recorder.said == [("started",), ("stopped",)]
 
 
 def test_a_component_that_is_released_while_a_parameter_is_set_is_not_started() -> None:

@@ -272,6 +272,7 @@ class ComponentRuntime:
 
     def _apply(self, message: Apply, step: ActivationStep, reply: Reply) -> None:
         """Have the code start, or take what has changed, and connect the inputs meanwhile."""
+        turn: int | None = None
 
         def started(trouble: str | None) -> None:
             if trouble is None and self.activation.hold(message.task) is None:
@@ -284,8 +285,8 @@ class ComponentRuntime:
             if self._closed:
                 reply(self._answers.answer(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
                 return
-            if step is not ActivationStep.NONE and self.activation.phase is not ActivationPhase.FAILED:
-                self._drop([message.task], message.epoch)
+            if turn == self.code.turn and self.activation.phase is not ActivationPhase.FAILED:
+                self._begin_for_none(message.task)
             reply(self._answers.answer(Verdict.REFUSED, message.task, trouble))
 
         def answer(trouble: str | None) -> None:
@@ -309,11 +310,18 @@ class ComponentRuntime:
             self.outputs.forget()
             self._after_start = [answer]
             self.code.start(message.values, partial(self._started, self._after_start))
+            turn = self.code.turn  # what comes of this start is none of an activation that has followed since
             if self.activation.queue:
                 self._waiting.tell("")
         self.inputs.follow(message)
         self.needed_operations.follow(message)
         self._rest_or_act()  # once what it lost is known to be unfed
+
+    def _begin_for_none(self, task: str) -> None:
+        """Act neither for a task whose call to start came to nothing, nor for those that share what has not begun."""
+        acts = self.code.active
+        holds = self.activation.holds
+        self._drop([hold.claim.task for hold in holds if hold.claim.task == task or (hold.active and not acts)])
 
     def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
         if self._after_start is waiting:
@@ -342,8 +350,8 @@ class ComponentRuntime:
         """Take on an activation that differs in nothing but the task for which the component is kept."""
         self.activation = activation
 
-    def _drop(self, tasks: Sequence[str], epoch: int = 0) -> None:
-        self._become(*table.drop(self.activation, tasks, epoch))
+    def _drop(self, tasks: Sequence[str]) -> None:
+        self._become(*table.drop(self.activation, tasks))
         self._rest_or_act()
         self._grant()
 
