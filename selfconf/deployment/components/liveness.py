@@ -152,18 +152,19 @@ class Liveness:
     def _seen(self, component: IRI, life: str, answer: CallAnswer | None) -> None:
         """Judge a component whose life seemed to end and goes on, by the answer to a question for its state.
 
-        If the component was cut off for a moment, it may have failed meanwhile, unnoticed. If this node was, then the
-        component may have turned itself off, or obey another configurator.
+        If the component was cut off for a moment, it may have failed meanwhile, unnoticed: one that has said that it
+        acts, and does not. If this node was, then the component may have turned itself off, or obey another
+        configurator.
         """
         held = self._state().held.get(component)
         acted = held is not None and held.confirmed and self._state().phase is not Phase.DISMANTLING
         if answer is None:
             self._step(Failed(component, life, Cause.CRASH, "it does not answer since it was cut off"))
         elif answer.supervisor == self._calls.supervisor:
-            if not answer.active:
-                self._step(Failed(component, life, Cause.FAIL, "it failed while it was cut off"))
-            else:
+            if answer.active:
                 self._calls.heed_ends(component, answer)
+            elif acted:
+                self._step(Failed(component, life, Cause.FAIL, "it failed while it was cut off"))
         elif acted and (answer.supervisor or not answer.active):
             self._reachability.reconnected()
 

@@ -14,7 +14,7 @@ from selfconf.deployment.components import liveness
 from selfconf.discovery import ecology_view
 from selfconf.protocol.messages import Cause
 from selfconf.sdk.runtime.supervision import GRACE
-from tests.deployment.simulated import home, living_room
+from tests.deployment.simulated import home, living_room, slow_code
 from tests.deployment.tasks import TASK
 from tests.lab import Lab, Recorder, iri
 
@@ -154,6 +154,25 @@ def test_a_component_that_fails_while_it_is_cut_off_for_a_moment_is_replaced(lab
     lab.let_pass(1.0)
     assert agent.state.phase is Phase.RUNNING
     assert lab.active() == TASK | {"odometry"}
+
+
+@pytest.mark.parametrize("name", ["drive", "tracker"])
+def test_a_component_that_is_cut_off_for_a_moment_before_it_acts_has_not_failed(lab: Lab, name: str) -> None:
+    """It is held, as the drive is while the tracker starts, or starts itself."""
+    slow_code(lab, "tracker")
+    lab.components["tracker"].slow = 5.0
+    agent = lab.agent()
+    assert lab.until(lambda: agent.state.phase is Phase.DEPLOYING)
+    lab.let_pass(1.0)
+    configurator, behind_the_router = lab.network.nodes[-1], (lab.node_of(name), lab.network.nodes[0])
+    for node in behind_the_router:
+        lab.network.cut(configurator, node)
+    lab.let_pass(0.1)
+    for node in behind_the_router:
+        lab.network.reconnect(configurator, node)
+    assert lab.running(agent)
+    assert not agent.state.lost
+    assert lab.active() == TASK | {"tracker"}
 
 
 def test_a_component_that_crashes_is_lost_after_one_question_to_the_network(lab: Lab) -> None:
