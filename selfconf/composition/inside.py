@@ -8,13 +8,13 @@ be fed. Composites that could be inside of each other in a circle have no end, a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from selfconf.composition.composer import Composer
 from selfconf.errors import AuthorError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.profile import Condition, Input, Output, Profile, port_in_words
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
@@ -48,6 +48,7 @@ class Inside:
         """What a component is inside, by the reader of its document. Raises SelfconfError if it cannot be."""
         task = reader.read(profile.component)
         _check_ports(profile, task)
+        task = _with_stated(profile, task)
         later = frozenset(parameter.name for parameter in profile.parameters)
         _check_parameters(later, task)
         optional = frozenset(port.name for port in profile.inputs if port.optional)
@@ -212,6 +213,28 @@ def _agree(one: Input | Output, other: Input | Output) -> bool:
     """Whether two ports have one unit and one frame, as far as both say it."""
     pairs = zip(_unit_and_frame(one), _unit_and_frame(other), strict=True)
     return all(None in pair or pair[0] == pair[1] for pair in pairs)
+
+
+def _with_stated(profile: Profile, inside: TaskDocument) -> TaskDocument:
+    """The inside with the units and frames that the composite states of its ports, where its template states none.
+
+    What stands behind a port is connected with what is outside, which goes by what the composite states.
+    """
+    template = inside.task.template
+    ports = tuple(replace(one, port=_stated(one.port, profile)) for one in template.ports)
+    return replace(inside, task=replace(inside.task, template=replace(template, ports=ports)))
+
+
+def _stated(port: Input | Output, profile: Profile) -> Input | Output:
+    """A port of a template with the unit and the frame that a composite states of it, where itself states none."""
+    if port.is_operation:
+        return port
+    some: Iterable[Input | Output] = profile.inputs if isinstance(port, Input) else profile.outputs
+    own, known = _unit_and_frame(port), next(_unit_and_frame(one) for one in some if one.name == port.name)
+    unit, frame = own[0] or known[0], own[1] or known[1]
+    if isinstance(port, Output):
+        return port._replace(unit=unit, frame=frame)
+    return port._replace(condition=Condition(unit, frame) if unit or frame else None)
 
 
 def _unit_and_frame(port: Input | Output) -> tuple[IRI | None, Term | None]:

@@ -74,6 +74,37 @@ def test_the_inside_is_configured_with_the_values_that_the_composite_is_set_to()
         assert [one.value.lexical for one in inside.settings if isinstance(one.value, Literal)] == ["3"]
 
 
+SCALED = """
+:whole a sc:Component, :Whole ; sc:grounding [ sc:template :scaled ] ;
+    sc:hasInput [ sc:name "hint" ; sc:signalType :Length{hint} ] ;
+    sc:hasOutput [ sc:name "size" ; sc:signalType :Length{size} ] .
+:scaled a sc:Template ; sc:roles ( :scale ) ;
+    sc:hasInput [ sc:name "hint" ; sc:signalType :Length ; sc:of :scale ] ;
+    sc:hasOutput [ sc:name "size" ; sc:signalType :Length ; sc:of :scale ] .
+:scale a sc:Role ; sh:class :Scale .
+:s a sc:Component, :Scale ; sc:hasInput [ sc:name "near" ; sc:signalType :Length ; sc:unit unit:M ; sc:frame :map ] ;
+    sc:hasOutput [ sc:name "far" ; sc:signalType :Length ; sc:unit unit:CentiM ; sc:frame "base" ] .
+"""
+
+
+@pytest.mark.parametrize(
+    ("hint", "size", "refused"),
+    [
+        ("", "", ""),
+        (" ; sc:unit unit:M ; sc:frame :map", ' ; sc:unit unit:CentiM ; sc:frame "base"', ""),
+        (" ; sc:unit unit:CentiM", "", "near"),
+        (" ; sc:frame :odom", "", "near"),
+        ("", " ; sc:unit unit:M", "size"),
+        ("", ' ; sc:frame "map"', "size"),
+    ],
+)
+def test_what_is_inside_has_the_unit_and_frame_that_the_composite_states(hint: str, size: str, refused: str) -> None:
+    """Also where its template states none: what stands behind an output is what those outside follow."""
+    found, why = judged(SCALED.format(hint=hint, size=size))
+    assert [*found] == ([] if refused else [WHOLE])
+    assert refused in why.get(WHOLE, "")
+
+
 @pytest.mark.parametrize(
     ("values", "sentence"),
     [
