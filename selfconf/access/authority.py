@@ -91,19 +91,20 @@ class Authority(KeysFolder):
 
         The folders of keys that were issued on this host have the list at once, as far as they are where they were.
         """
-        authority, key = read_pair(self.path / AUTHORITY)
-        current = [one for one in self.issued() if not self._expired(one)]
-        found = [one for one in current if one.common_name == principal.common_name]
-        if not found:
-            raise AuthorError(f"there is no certificate of {principal} that has not expired; nothing to revoke")
-        before = self.revoked()
-        listed = revocations(authority, key, [one for one in current if one.serial in before or one in found])
-        write_atomically(self.path / REVOKED, listed)
-        for folder in dict.fromkeys(self._folders().values()):
-            if self._is_of_mine(folder):
-                with suppress(OSError):  # `unaware` names the folder
-                    write_atomically(folder / REVOKED, listed)
-        return len(found)
+        with exclusive(self.path):  # else, of two lists that are made at once, one would lack what the other has
+            authority, key = read_pair(self.path / AUTHORITY)
+            current = [one for one in self.issued() if not self._expired(one)]
+            found = [one for one in current if one.common_name == principal.common_name]
+            if not found:
+                raise AuthorError(f"there is no certificate of {principal} that has not expired; nothing to revoke")
+            before = self.revoked()
+            listed = revocations(authority, key, [one for one in current if one.serial in before or one in found])
+            write_atomically(self.path / REVOKED, listed)
+            for folder in dict.fromkeys(self._folders().values()):
+                if self._is_of_mine(folder):
+                    with suppress(OSError):  # `unaware` names the folder
+                        write_atomically(folder / REVOKED, listed)
+            return len(found)
 
     def issued(self) -> list[Certificate]:
         """The certificates that this authority has issued, by name and time."""

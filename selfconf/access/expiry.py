@@ -22,6 +22,7 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus
 from selfconf.bus.presented_certificate import withhold
 from selfconf.errors import AuthorError, PeerError, SelfconfError, reason
+from selfconf.files import FileStamp, stamp
 from selfconf.model.wording import utc_text
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
@@ -63,7 +64,9 @@ class CertificateWatch:
         self._complain, self._now, self._distrusted = complain, now, distrusted
         self._certificate = Certificate.read(credentials.certificate.read_bytes())
         self._changed_at, self._link = self._modified(), bus.link
-        self._revoked, self._list_changed_at = False, 0
+        self._revoked = False
+        self._read_at: tuple[FileStamp, int] = ((), 0)
+        """The stamp of the list of what was revoked, and when the certificate had changed, as the two were compared."""
         self._said = ""
         bus.later(CERTIFICATE_CHECK, self._look)
 
@@ -111,10 +114,10 @@ class CertificateWatch:
     def _look_at_list(self) -> None:
         """See whether the list of what was revoked names the certificate, when one of the two has changed."""
         path = self._credentials.folder / REVOKED
-        changed = max(path.stat().st_mtime_ns if path.is_file() else 0, self._changed_at)
-        if changed != self._list_changed_at:
+        changed = stamp(path), self._changed_at
+        if changed != self._read_at:
             self._revoked = self._certificate.serial in open_keys(self._credentials.folder).revoked()
-            self._list_changed_at = changed  # after it: a list that cannot be read now is looked at again
+            self._read_at = changed  # after it: a list that cannot be read now is looked at again
 
     def _show(self) -> None:
         shown = Introduction(self._certificate.pem.decode())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from pathlib import Path
 
@@ -94,6 +95,15 @@ def test_who_is_revoked_is_admitted_no_more_and_gets_no_new_certificate(authorit
     assert certificate.serial in authority.revoked(), "a list holds what it held before"
     with pytest.raises(AuthorError, match="nothing to revoke"):
         authority.revoke(Principal(READ, "eve"))
+
+
+def test_what_is_revoked_at_once_is_all_revoked(authority: Authority, tmp_path: Path) -> None:
+    names = [Principal(READ, f"reader{number}") for number in range(8)]
+    for name in names:
+        authority.issue(name, tmp_path / name.name)
+    with ThreadPoolExecutor(len(names)) as people:
+        assert list(people.map(lambda name: Authority(authority.path).revoke(name), names)) == [1] * len(names)
+    assert len(authority.revoked()) == len(names)
 
 
 def test_a_site_whose_folder_cannot_be_told_what_is_revoked_is_named(authority: Authority, tmp_path: Path) -> None:

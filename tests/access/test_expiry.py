@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import signal
 import socket
 import threading
@@ -96,6 +98,21 @@ def test_a_certificate_that_is_revoked_is_told_of_once(tmp_path: Path) -> None:
     assert not watched.is_trusted
     (said,) = watched.said
     assert said.startswith("the certificate of conf.alice was revoked: it is not trusted any more")
+
+
+def test_a_revocation_is_heard_of_though_its_list_is_older_than_the_certificate(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "keys")
+    authority.issue(ALICE, tmp_path / "alice")
+    shutil.copytree(tmp_path / "alice", tmp_path / "elsewhere")
+    watched = Watched(tmp_path, KeysFolder(tmp_path / "elsewhere"))
+    watched.pass_days(0.0)
+    authority.revoke(ALICE)
+    listed = tmp_path / "elsewhere" / "revoked.pem"
+    shutil.copy(tmp_path / "keys" / "revoked.pem", listed)
+    an_hour_ago = time.time() - 3600.0  # as by `scp -p` from a host whose clock is behind
+    os.utime(listed, (an_hour_ago, an_hour_ago))
+    watched.pass_days(0.0)
+    assert not watched.is_trusted
 
 
 def test_a_revocation_is_heard_of_once_the_folder_of_keys_can_be_read_again(tmp_path: Path) -> None:
