@@ -74,6 +74,17 @@ def test_the_inside_is_configured_with_the_values_that_the_composite_is_set_to()
         assert [one.value.lexical for one in inside.settings if isinstance(one.value, Literal)] == ["3"]
 
 
+def test_a_parameter_that_is_set_and_that_no_component_inside_states_gets_its_value_with_the_composite() -> None:
+    """A tracker of any robot: if it is of one, it is the one that it is set to."""
+    template = TEMPLATE.replace(" ; sh:minCount 1", "").replace("sc:value :speed", "sc:value :robot")
+    text = COMPOSITE + template + TRACKERS.replace(":of :Astrid ; ", "").split(":p a")[0]
+    found, why = judged(text)
+    assert ([*found], why) == ([WHOLE], {})
+    ((_, inside),) = insides(known(text), lambda one: document(text), holding(robot=iri("Emil")))
+    assert isinstance(inside, Configuration)
+    assert [(one.component, one.value) for one in inside.settings] == [(iri("a"), iri("Emil"))]
+
+
 SCALED = """
 :whole a sc:Component, :Whole ; sc:grounding [ sc:template :scaled ] ;
     sc:hasInput [ sc:name "hint" ; sc:signalType :Length{hint} ] ;

@@ -41,6 +41,8 @@ _PLAIN = {
 
 Digits are spelt out, as `\\d` has those of all scripts.
 """
+_LATER = IRI("urn:selfconf:later")
+"""What stands for a value that is set later."""
 _NUMBERS = frozenset((XSD.integer, XSD.decimal, XSD.double, XSD.float))
 """The datatypes of a number as Turtle, Python and NumPy write it, of which nothing more is meant."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|true|false")
@@ -141,8 +143,8 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
     themselves are replaced by their values; those in shapes are replaced by the readers of the shapes.
 
     The parameters that are named in `later` get their values when the task begins. Until then those stay free that
-    stand in shapes, those that are only set stand for their values themselves, and those that cannot be free have
-    defaults.
+    stand in shapes, though roles may set something to them as well, those that are only set stand for their values
+    themselves, and those that cannot be free have defaults.
     """
     task, document = given.task, given.document
     bindings = dict(task.bindings)
@@ -167,7 +169,24 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
         if parameter.iri in bindings:
             _check(parameter, bindings[parameter.iri], document)
     _check_shapes(task.template, bindings, document)
-    return TaskDocument(replace(task, template=_with_values(task.template, bindings), bindings=bindings), document)
+    template = _with_values(task.template, bindings)
+    free = {one.iri for one in template.parameters if one.name in later and one.iri not in bindings}
+    return TaskDocument(replace(task, template=_set_later(template, free), bindings=bindings), document)
+
+
+def _set_later(template: Template, parameters: Container[Term]) -> Template:
+    """A template in which roles that set something to one of some parameters need no value for it yet."""
+    return replace(
+        template,
+        roles=tuple(
+            replace(
+                role,
+                settings=tuple(replace(one, value=_LATER) if one.value in parameters else one for one in role.settings),
+            )
+            for role in template.roles
+        ),
+        parameters=tuple(replace(one, is_set=False) if one.iri in parameters else one for one in template.parameters),
+    )
 
 
 def _check_shapes(template: Template, bindings: Mapping[IRI, Term], document: Document) -> None:
