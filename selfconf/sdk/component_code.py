@@ -41,13 +41,15 @@ class ComponentCode:
         fail: Callable[[str], None],
         woken: Callable[[str], None] = lambda port: None,
         restless: Callable[[str], None] = lambda why: None,
+        rests: Callable[[], None] = lambda: None,
     ) -> None:
         """`fail` raises FAIL for what breaks; `woken` is called when the code has been woken from its rest by an input.
 
         That is on the bus's thread, and the input is empty where it was not one that had been unfed. `restless` is
-        called when the code of an actuator breaks as it is to come to rest, on the thread of that code.
+        called when the code of an actuator breaks as it is to come to rest, on the thread of that code; `rests` when it
+        is about to rest until its inputs are fed, on that thread as well.
         """
-        self._woken, self._restless = woken, restless
+        self._woken, self._restless, self._about_to_rest = woken, restless, rests
         self._bus, self._thread, self._component, self._fail = bus, thread, component, fail
         self._parameters = {parameter.name for parameter in profile.parameters}
         self._name = profile.component.short
@@ -217,13 +219,13 @@ class ComponentCode:
         code = partial(self._component.called, operation, request)
         return self._judged(operation, lambda: self._thread.limited(self, "called", self._deadline, code))
 
-    def outcome(self, operation: str, answer: Future[Any], turn: int) -> Any:
+    def outcome(self, operation: str, answer: Future[Any], stint: tuple[int, int]) -> Any:
         """Return what a future has come to that was the answer to a call; raises Refused like `serve`. On any thread.
 
-        A future that was cancelled is a refusal, and so is one of another `turn`: one that was under way as the code
+        A future that was cancelled is a refusal, and so is one of another `stint`: one that was under way as the code
         was stopped cannot be cancelled, and what breaks there is no failure of what the component does now.
         """
-        if answer.cancelled() or turn != self.turn:
+        if answer.cancelled() or stint != self.stint:
             raise Refused(f"{self._name} ended the call before it answered")
         return self._judged(operation, answer.result)
 
@@ -238,9 +240,9 @@ class ComponentCode:
             self._fail(f"{type(error).__name__}: {error}")
             raise Refused(f"{self._name} broke: {type(error).__name__}: {error}") from None
 
-    def answered(self, turn: int, action: Callable[[], None]) -> None:
+    def answered(self, stint: tuple[int, int], action: Callable[[], None]) -> None:
         """Hand the answer to a call to the component, unless it was stopped since; on the thread of its code."""
-        if turn == self.turn and not self._resting:
+        if stint == self.stint and not self._resting:
             self._guarded("answered", action)
 
     def _rest(self) -> None:
@@ -253,9 +255,9 @@ class ComponentCode:
                     "the configuration is incomplete" if INCOMPLETE in self._blindness.unfed else "an input is unfed"
                 )
                 log.warning("%s: %s; at rest for as long", self._name, lacking)
-                if self._stop():
-                    self._rests += 1
-                    self._resting = True
+                self._rests += 1
+                self._about_to_rest()
+                self._resting = self._stop()
 
         self._thread.call(rest)
 

@@ -89,7 +89,7 @@ class NeededOperations:
             return
         except UnsayableError as error:
             raise ProgrammerError(f"{who} cannot send that along with {name!r}: it {error}") from None
-        hear = partial(self._heard, self._code.turn, answered)
+        hear = partial(self._heard, self._code.stint, answered)
         self._code.run_on_bus(self._ask, name, request, min(seconds, LONGEST_PATIENCE), hear)
 
     def _ask(self, name: str, request: bytes, seconds: float, hear: Callable[[Response], None]) -> None:
@@ -109,8 +109,8 @@ class NeededOperations:
         key = self._keys.operation(wire.component, wire.output.removesuffix(CALL_MARK), self._profile.component)
         self._bus.ask(key, request, seconds, done, f"{seconds:g}".encode())
 
-    def _heard(self, turn: int, answered: Callable[[Response], None], answer: Response) -> None:
-        self._thread.signal(partial(self._code.answered, turn, partial(answered, answer)))
+    def _heard(self, stint: tuple[int, int], answered: Callable[[Response], None], answer: Response) -> None:
+        self._thread.signal(partial(self._code.answered, stint, partial(answered, answer)))
 
 
 def _answer(component: IRI, replies: Replies, seconds: float) -> Response:

@@ -93,7 +93,7 @@ class OfferedOperations:
                 self._abandon(promise)
 
     def end(self) -> None:
-        """Wait for no answer that the code has promised."""
+        """Wait for no answer that the code has promised; may be called from any thread."""
         for promise in list(self._promised):
             promise.future.cancel()
 
@@ -150,12 +150,12 @@ class OfferedOperations:
                 value = self._code.read_value(signal.value, signal.media)
             except ValueError as error:
                 raise Refused(f"what is sent along {error}") from None
-            turn = self._code.turn
+            stint = self._code.stint
             answer = self._code.serve(name, replace(signal, value=value))
             if isinstance(answer, Future):
                 promise = _Promise(answer, request, name, signal.source)
                 self._promised.add(promise)
-                answer.add_done_callback(lambda _: self._kept(promise, turn))
+                answer.add_done_callback(lambda _: self._kept(promise, stint))
                 if patience < math.inf:
                     self._code.run_on_bus(self._limit, promise, max(0.0, waits_until - self._bus.now()))
                 if not self._code.active:  # it was stopped while it returned the future
@@ -179,10 +179,10 @@ class OfferedOperations:
         elif self._takes_back(promise):
             self._refuse(promise.request, f"{self._profile.component.short} ended the call before it answered", True)
 
-    def _kept(self, promise: _Promise, turn: int) -> None:
+    def _kept(self, promise: _Promise, stint: tuple[int, int]) -> None:
         """Answer a request with what a future has come to; on whatever thread it does."""
         if self._takes_back(promise):
-            outcome = partial(self._code.outcome, promise.operation, promise.future, turn)
+            outcome = partial(self._code.outcome, promise.operation, promise.future, stint)
             self._answer(promise.request, promise.operation, outcome, kept=True)
 
     def _takes_back(self, promise: _Promise) -> bool:

@@ -83,7 +83,14 @@ class ComponentRuntime:
         self._superseded, self._told_restless = superseded, restless
         thread = code_thread or CodeThread(inline=True)
         self.code = ComponentCode(
-            bus, thread, profile, component, self.fail, lambda port: self.inputs.say_again(port), self._restless
+            bus,
+            thread,
+            profile,
+            component,
+            self.fail,
+            lambda port: self.inputs.say_again(port),
+            self._restless,
+            lambda: self.offered_operations.end(),
         )
         self._timers = ComponentTimers(bus, self.code)
         self._closed = False

@@ -63,6 +63,19 @@ def test_a_component_that_was_stopped_hears_no_answer() -> None:
     assert peer.album.answers == []
 
 
+def test_a_component_that_has_rested_hears_no_answer_to_what_it_asked_before() -> None:
+    peer = Peer(lambda request: None)
+    peer.album.ask(seconds=1.0)
+    peer.stage.call(apply(2, inputs=CALLING, rests=True))
+    peer.stage.let_pass(0.1)
+    peer.stage.call(apply(2, inputs=CALLING))
+    peer.stage.let_pass(2.0)
+    assert peer.album.answers == []
+    peer.album.ask(seconds=1.0)
+    peer.stage.let_pass(2.0)
+    assert len(peer.album.answers) == 1
+
+
 def test_a_component_that_calls_and_calls_is_told_to_wait() -> None:
     peer = Peer(lambda request: None)
     for _ in range(MOST_CALLS + 1):

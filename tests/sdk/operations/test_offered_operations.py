@@ -107,6 +107,26 @@ def test_what_breaks_that_was_promised_before_a_stop_is_no_failure_of_what_was_s
     assert served.stage.fails == []
 
 
+@pytest.mark.parametrize("under_way", [False, True])
+def test_an_answer_that_was_promised_ends_when_an_actuator_comes_to_rest(under_way: bool) -> None:
+    promise: Future[Any] = Future()
+    if under_way:
+        promise.set_running_or_notify_cancel()
+    served, replies = Served(Camera(reply=lambda request: promise)), list[Replies]()
+    callers = {"takePhoto" + CALL_MARK: (ALBUM,)}
+    served.stage.caller.ask(KEYS.operation(CAMERA, "takePhoto", ALBUM), request_of(ALBUM), 5.0, replies.append)
+    served.stage.let_pass(0.1)
+    served.stage.call(apply(2, callers=callers, rests=True))
+    served.stage.let_pass(0.1)
+    assert promise.cancelled() is not under_way
+    served.stage.call(apply(2, callers=callers))
+    if under_way:
+        promise.set_exception(OSError("the lens was closed as it was stopped"))
+    served.stage.let_pass(0.1)
+    assert replies[0].errors == ("camera ended the call before it answered",)
+    assert served.runtime.active
+
+
 def test_a_promise_that_comes_to_another_one_is_no_answer() -> None:
     """A request would wait for ever, and after 64 of them no other one would be served."""
     promise: Future[Any] = Future()
