@@ -25,7 +25,7 @@ from selfconf.access.certificate_files import (
 from selfconf.access.certificates import Certificate, Key, issue, new_authority, new_key
 from selfconf.access.keys_folder import KeysFolder, holder_name
 from selfconf.access.principal import Principal
-from selfconf.access.private_files import read_file
+from selfconf.access.private_files import make_private_folder, read_file
 from selfconf.atomic_write import write_atomically
 from selfconf.errors import AuthorError, PeerError
 
@@ -82,8 +82,9 @@ class HostAuthority:
             if kept is None or _is_due(kept, authority, ends, self._keys.revoked()):
                 mine, days = new_key(), (ends - datetime.now(timezone.utc)) / timedelta(days=1)
                 certificate = issue(authority, key, principal, mine.public_key(), (), days, also)
-                write_holder(folder, self._keys.authority, certificate, mine)
+                make_private_folder(folder)
                 write_atomically(folder / f"{HOST_AUTHORITY}.pem", authority.pem)
+                write_holder(folder, self._keys.authority, certificate, mine)  # last: what has it has all of it
         return folder
 
     def _component_ends(self) -> datetime:

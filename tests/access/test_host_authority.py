@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import stat
 import time
+from contextlib import suppress
 from datetime import datetime, timezone, tzinfo
 from pathlib import Path
 
@@ -63,6 +66,25 @@ def test_the_sites_of_a_host_believe_the_components_of_each_other(authority: Aut
     renewed = KeysFolder(HostAuthority(cellar).component(lamp)).own()
     assert attic.admit("lab", renewed.pem) == renewed, "its certificate is made anew by the common authority"
     assert all(not stat.S_IMODE(path.stat().st_mode) & 0o077 for path in shared.iterdir())
+
+
+@pytest.mark.parametrize("room", range(13))
+def test_a_certificate_that_a_full_disk_has_cut_off_is_made_anew_as_a_whole(
+    authority: Authority, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: int
+) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
+    host, lamp = HostAuthority(KeysFolder(tmp_path / "attic")), Principal.component(IRI("urn:lamp"))
+    written = iter(range(room))
+
+    def synchronize(descriptor: int) -> None:
+        if next(written, None) is None:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as full:
+        full.setattr("os.fsync", synchronize)
+        with suppress(AuthorError):
+            host.component(lamp)
+    assert KeysFolder(host.component(lamp)).credentials((COMP,)).name == lamp.common_name
 
 
 def test_a_common_authority_that_is_spoilt_is_made_anew(authority: Authority, tmp_path: Path) -> None:
