@@ -30,6 +30,8 @@ SIGNALS_FIRST = 0.002
 An activation makes new connections, and over these the latched signals flow. Others wait for these, while the answer
 to the call and the watch for the supervisor's life may come later; sent at once, they would go first.
 """
+NOTHING_YET = "it acts, and has issued nothing yet"
+"""What an output says that is asked for its last signal and has none: one whose component does not act is silent."""
 
 
 class Outputs:
@@ -135,11 +137,14 @@ class Outputs:
                 output.undeclare()
 
     def _answer(self, request: Request) -> None:
-        """Answer the question for an output with its last signal of this activation, if there is one."""
+        """Answer the question for an output with its last signal of this activation, or say that there is none yet."""
         try:
-            last = self._last.get(self._names.get(request.key, ""))
+            name = self._names.get(request.key, "")
+            last = self._last.get(name)
             if self._active() and last is not None:
                 request.reply(request.key, *last)
+            elif self._active() and name:
+                request.refuse(NOTHING_YET)
         finally:
             request.finish()
 

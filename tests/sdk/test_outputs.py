@@ -19,6 +19,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause
 from selfconf.sdk import outputs
 from selfconf.sdk.component import Signal
+from selfconf.sdk.outputs import NOTHING_YET
 from selfconf.sdk.payloads import LARGEST_JSON
 from selfconf.sdk.runtime import ComponentRuntime
 from tests.lab import Recorder
@@ -280,12 +281,14 @@ def test_an_output_that_is_asked_for_its_last_signal_answers_for_itself_and_only
 
     stage.call(apply(1, US))
     assert last("a") == []
+    assert replies[-1].errors == (NOTHING_YET,)
     stage.component.emit("a", 1)
     stage.component.emit("a", 2)
     stage.component.emit("b", 3)
     assert (last("a"), last("b"), last("c")) == ([b"2"], [b"3"], [])
     stage.call(release(2, US))
     assert last("a") == []
+    assert replies[-1] == Replies()
 
 
 def test_a_signal_of_an_earlier_activation_is_not_latched() -> None:

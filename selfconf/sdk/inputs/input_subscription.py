@@ -350,6 +350,9 @@ class InputSubscription:
     def _look_whether_it_acts(self, fail: Fail) -> None:
         """The component has let go of a task: it may act for another one, and then it answers with its last signal.
 
+        Or with an error, if it has issued none: a button that was never pressed is no lost source. But nothing that it
+        issued before it was stopped, and started anew, is true any more.
+
         Until then no signal of before counts as one that has just come, and what comes later answers the question. The
         answer takes the place of what waits and was issued before it: that may have been for the task of before.
         """
@@ -364,7 +367,7 @@ class InputSubscription:
             self._order.doubted = None
             if self.muted:
                 self._latched(replies)
-            if not replies.samples:
+            if not (replies.samples or (replies.errors and not self.issued)):
                 self._order.over = last
                 if self.muted:
                     self._queue.keep(0)

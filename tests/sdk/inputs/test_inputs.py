@@ -254,6 +254,22 @@ def test_an_input_is_fed_by_a_source_that_lets_go_of_a_task_and_acts_for_another
     assert stage.recorder.said == [("started",), ("position", 1)]
 
 
+def test_an_input_loses_no_source_that_acts_for_another_task_and_has_issued_nothing_yet() -> None:
+    stage = Stage(Watchful(), DRIVE_PROFILE)
+    button = stage.neighbour()
+    stage.others.announce(THEM)
+    stage.caller.ask(KEYS.call(TRACKER, "apply"), encode(apply(1, THEM)), 1.0, lambda _: None)
+    stage.call(reserve())
+    stage.call(follow())
+    lose_sight(button)
+    stage.let_pass(3.0)
+    assert [hold.claim.task for hold in button.activation.holds] == [TASKS[THEM]]
+    assert stage.recorder.said == [("started",)]
+    stage.others.close()
+    stage.let_pass(3.0)
+    assert stage.recorder.said == [("started",), ("unfed", "position"), ("stopped",)]
+
+
 ODOMETRY = IRI("urn:c:odometry")
 
 
