@@ -29,7 +29,7 @@ from selfconf.model.sharing import agreed
 from selfconf.model.template import Role
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.tasks import InsideReader
+from selfconf.rdf.tasks import InsideReader, free_parameters
 from selfconf.rdf.turtle import Document
 
 
@@ -80,19 +80,24 @@ class Inquiry:
         """The components that play no role, or feed nothing, as what they say cannot be judged, or not in time."""
 
     def holder(self, role: Role, profile: Profile) -> Holder | None:
-        """Who holds a component so that it cannot play a role; what its inputs would follow is not known beforehand."""
+        """Who holds a component so that it cannot play a role; what its inputs would follow is not known beforehand.
+
+        Nor is the value of a parameter that is left free.
+        """
         sharer = self._sharers.get(profile.component)
         if sharer is None:
             return self.holders.get(profile.component)
-        bindings, hierarchy = self.task.document.task.bindings, self.composer.hierarchy
+        task = self.task.document.task
+        free = free_parameters(task.template, task.bindings)
+        found = ((one.name, role.setting_of(one, self.composer.hierarchy)) for one in profile.parameters)
         values = {
-            (parameter.name, bindings.get(wanted, wanted) if isinstance(wanted, IRI) else wanted)
-            for setting in role.settings
-            for wanted in (setting.value,)
-            for parameter in profile.parameters
-            if hierarchy.matches(setting.type, parameter.type)
+            name: task.bindings.get(setting.value, setting.value) if isinstance(setting.value, IRI) else setting.value
+            for name, setting in found
+            if setting is not None
         }
-        return None if sharer.wants.values == values else sharer
+        known = dict(sharer.wants.values)
+        agree = known.keys() == values.keys() and all(values[one] in (*free, known[one]) for one in known)
+        return None if agree else sharer
 
     def _without_never_acting(
         self, partition: Partition, left_out: tuple[LeftOut, ...]

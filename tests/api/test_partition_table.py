@@ -13,6 +13,7 @@ from selfconf.errors import BindingError, TemplateError
 from selfconf.model.configuration import Wants
 from selfconf.model.holder import Holder
 from selfconf.model.obstacle import PropertyUnmet, WrongType
+from selfconf.rdf.vocabulary import XSD
 from tests.lab import ADVERTISEMENTS, NAVIGATE, PREFIXES, iri
 
 
@@ -56,6 +57,41 @@ def test_what_can_be_shared_is_held_where_its_holder_has_set_it_to_something_els
     found = sc.partition(task, sc.read(*others, shared))
     assert dict(found["control"].held) == ({cap: holder} if held else {})
     assert found.sufficient is not held
+
+
+SHARED = f"""{PREFIXES}
+:t a sc:Template ; sc:roles ( :r :s ) ; sc:parameter :v .
+:v a sc:Parameter ; sc:name "v" .
+:r a sc:Role ; sh:class :A ;
+    sc:sets [ sc:parameterType :Limit ; sc:value 1 ] , [ sc:parameterType :HardLimit ; sc:value 2 ] .
+:s a sc:Role ; sh:class :B ; sh:property [ sh:path :of ; sh:in ( :v ) ] ;
+    sc:sets [ sc:parameterType :Whose ; sc:value :v ] .
+"""
+SHARERS = f"""{PREFIXES}
+:a a sc:Component, :A ; sc:shareable true ;
+    sc:hasParameter [ sc:name "low" ; sc:parameterType :Limit ] , [ sc:name "high" ; sc:parameterType :HardLimit ] .
+:b a sc:Component, :B ; :of :Emil ; sc:shareable true ; sc:hasParameter [ sc:name "of" ; sc:parameterType :Whose ] .
+"""
+
+
+@pytest.mark.parametrize(
+    ("low", "whose", "held"), [("1", "of", []), ("2", "of", ["a"]), ("1", "whose", ["b"]), ("2", "whose", ["a", "b"])]
+)
+def test_a_sharer_is_asked_for_the_one_value_of_each_parameter_that_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, low: str, whose: str, held: list[str]
+) -> None:
+    """Of two settings that match a parameter that of its own type counts; what is left free may become its value."""
+    ontology = tmp_path / "limits.ttl"
+    ontology.write_text(f"{PREFIXES} :HardLimit rdfs:subClassOf :Limit .")
+    one, two = sc.Literal(low, XSD.integer), sc.Literal("2", XSD.integer)
+    wants = {"a": Wants(values=frozenset({("low", one), ("high", two)}))}
+    wants["b"] = Wants(values=frozenset({(whose, iri("Emil"))}))
+    holders = {iri(name): Holder("watch~1", wants=some) for name, some in wants.items()}
+    monkeypatch.setattr(sc.Ecology, "holders", lambda _: holders)
+    task, ecology = sc.template(SHARED), sc.read(SHARERS)
+    found = sc.partition(task, ecology, reasoning="subclass", ontologies=ontology)
+    assert [one.short for role in ("r", "s") for one in found[role].held] == held
+    assert bool(sc.configure(task, ecology, reasoning="subclass", ontologies=ontology)) is not bool(held)
 
 
 def test_each_excluded_component_has_its_obstacles(task: sc.TaskSpecification, home: sc.Ecology) -> None:
