@@ -238,6 +238,7 @@ def end_deployment(state: State) -> Reaction:
         offered=frozenset(),
         asked_about=frozenset(),
         repeats={},
+        has_yielded=False,
         news=state.news or state.heeds_others,  # by the next loss others may have let go, which they tell no task
         held={component: held for component, held in state.held.items() if component in wanted},
         owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},

@@ -112,7 +112,7 @@ class AwaitRelease:
 
 @immutable
 class AwaitReturn:
-    """What was lost may be out of sight for a moment only: a search that has found nothing waits (`StayedAway`)."""
+    """What is missing may be so for a moment only: a search that has found nothing waits (`StayedAway`)."""
 
     attempt: int
 

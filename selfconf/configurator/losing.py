@@ -75,7 +75,7 @@ def _let_go(state: State, component: IRI, loss: Loss) -> Reaction:
         known, effects = lose(state, component, loss)
         return replace(known, lost=lost), effects
     # Nothing may act on a part: all come to rest, the component in its turn.
-    return phases.dismantle(replace(state, lost=lost, news=True), Phase.COMPOSING)
+    return phases.dismantle(replace(state, lost=lost, news=True, has_yielded=loss.busy), Phase.COMPOSING)
 
 
 def lose(state: State, component: IRI, loss: Loss) -> Reaction:

@@ -62,7 +62,7 @@ def begin_search(state: State, running: Configuration | None, avoided: Avoided) 
 
 
 def await_return(state: State) -> Reaction:
-    """Wait a moment for what has gone without a word, before a search that has found nothing counts."""
+    """Wait a moment before a search that has found nothing counts (`State.may_await_return`)."""
     return replace(state, awaits_return=True, put_off=state.put_off + 1), (AwaitReturn(state.attempt),)
 
 

@@ -3,7 +3,8 @@
 A search that finds nothing counts only if nothing has appeared since the ecology was asked; else it is asked again. Nor
 does it count before the lost components whose sites can start them again are searched with: they are woken as dormant
 ones are, and how often that is done in vain is limited by their sites. What else has gone without a word may have been
-cut off for a moment, so a task that does not wait is not refused before that has passed.
+cut off for a moment, and a task that has asked for a component may let go of another one, so a task that does not wait
+is not refused before that has passed.
 
 Components that a task of the same or a higher priority holds do not count for the search; one that can be shared does,
 until a configuration is found that wants something else of it than its holder: first the search avoids the sources that

@@ -164,6 +164,8 @@ class State:
     """Whether the actuators inside of a composite are to rest, as what the composite is part of is incomplete."""
     unseen: bool = False
     """Whether something that was held was not advertised when the ecology was last asked."""
+    has_yielded: bool = False
+    """Whether another task has asked for something since this one ran: it may let go of what it had before."""
     news: bool = False
     """Whether something has appeared since the ecology was last asked, or the task has run, and others may have ended.
     """
@@ -205,9 +207,12 @@ class State:
 
     @property
     def may_await_return(self) -> bool:
-        """Whether the end of the task waits for what has gone without a word: it may have been cut off for a moment."""
+        """Whether the end of the task waits for what has gone without a word: it may have been cut off for a moment.
+
+        Or for a task of higher priority that has asked for something: a change for the better holds two for a moment.
+        """
         gone = self.unseen or any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
-        return gone and not (self.patient or self.inside) and self.put_off < MOST_PUT_OFF
+        return (gone or self.has_yielded) and not (self.patient or self.inside) and self.put_off < MOST_PUT_OFF
 
     @property
     def waits_for_news(self) -> bool:

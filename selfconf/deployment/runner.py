@@ -90,7 +90,8 @@ log = logging.getLogger(__name__)
 RETURN = 3.0
 """Seconds for which a task that does not wait is not refused for lack of what has gone without a word.
 
-By then that has turned itself off (`GONE` of `selfconf.deployment.components.releases`): no refusal need doubt it."""
+By then that has turned itself off (`GONE` of `selfconf.deployment.components.releases`): no refusal need doubt it. A
+task that has yielded a component waits as long for what the other task lets go of instead."""
 LOSSES_TOLD = 1000
 """How many losses are named at most, the newest: where ever new components come and go they have no end."""
 

@@ -8,6 +8,7 @@ import pytest
 
 from selfconf.configurator.effects import (
     ApplyTo,
+    AwaitReturn,
     Compose,
     Discover,
     Finish,
@@ -24,6 +25,7 @@ from selfconf.configurator.events import (
     Improvable,
     Ranked,
     Reconnected,
+    StayedAway,
 )
 from selfconf.configurator.state import Phase
 from selfconf.model.configuration import Configuration
@@ -195,6 +197,10 @@ def test_a_refusal_names_the_task_to_which_this_one_has_lost_a_component(how: st
     lost = TRACKER if how == "yield" else CONTROL
     assert history.composed(REFUSAL)[-1] == Discover()
     history.hear(Discovered({lost: HIGHER}))
+    if how == "yield":  # the other task may be about to let go of what it has changed for this
+        assert history.composed(REFUSAL) == [AwaitReturn(history.state.attempt)]
+        assert history.hear(StayedAway(history.state.attempt)) == [Discover()]
+        history.hear(Discovered({lost: HIGHER}))
     history.composed(REFUSAL)
     history.composed(navigation())
     history.all_answer()

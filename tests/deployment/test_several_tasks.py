@@ -12,7 +12,7 @@ from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal
 from tests.deployment.simulated import slow_code
-from tests.deployment.tasks import DRIVEN, TASK, contended
+from tests.deployment.tasks import DRIVEN, SPARE, TASK, contended
 from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, iri
 
 WATCH = PREFIXES + ":watch a sc:Template ; sc:roles ( :eye ) . :eye a sc:Role ; sh:class rob:PositionSensor ."
@@ -240,6 +240,21 @@ def test_what_is_being_started_for_something_better_is_yielded(tmp_path: Path, m
     assert lab.active() == TASK | {"odometry"}
     assert lab.until(lambda: high.state.phase is Phase.RUNNING, 20.0)
     assert low.state.phase is Phase.RUNNING
+
+
+def test_a_task_goes_on_with_what_another_has_changed_for_what_it_yields(tmp_path: Path) -> None:
+    """The other one holds both until what it has taken acts, and this one is not patient."""
+    lab = Lab(tmp_path, advertised=SPARE)
+    lab.site("shared", *SPARE)
+    lab.component("right")
+    high = lab.agent(DRIVEN, (), priority=1, upgrade=1.0)
+    assert lab.running(high)
+    lab.component("left")
+    low = lab.agent(DRIVEN, ())
+    assert lab.running(low)
+    assert lab.until(lambda: iri("left") in high.state.held and high.state.phase is Phase.RUNNING)
+    assert lab.running(low)
+    assert (high.configuration.components, low.configuration.components) == ((iri("left"),), (iri("right"),))
 
 
 def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
