@@ -344,7 +344,11 @@ class InputSubscription:
             self._look_whether_it_acts(fail)
             return
         last = self._order.over = SignalNumber(fail.life, fail.sequence)
-        if not self._order.is_past(last):  # it comes late, of a source that acts again
+        heard = self._heard_life
+        is_anothers = fail.life != heard and self._shows(
+            heard
+        )  # such as that of a process which was frozen, and goes on
+        if not (is_anothers or self._order.is_past(last)):  # past: it comes late, of a source that acts again
             self._lose(self._heard_at)
 
     def _look_whether_it_acts(self, fail: Fail) -> None:

@@ -63,9 +63,9 @@ class Late:
         self.tracker.publisher(KEYS.fail(TRACKER), Urgency.EVENT).put(encode(fail))
         self.stage.let_pass(0.01)
 
-    def fail(self, sequence: int, cause: Cause = Cause.FAIL) -> None:
+    def fail(self, sequence: int, cause: Cause = Cause.FAIL, life: str = "t") -> None:
         """The tracker raises FAIL after that signal; number 0 is that of its site, which knows of none."""
-        fail = Fail(TRACKER, "t", 1, cause, "it is dark", sequence=sequence)
+        fail = Fail(TRACKER, life, 1, cause, "it is dark", sequence=sequence)
         self.tracker.publisher(KEYS.fail(TRACKER), Urgency.EVENT).put(encode(fail))
         self.stage.let_pass(0.01)
 
@@ -116,6 +116,19 @@ def test_a_fail_that_comes_after_what_its_source_has_issued_since_makes_nobody_b
     late.issue(2)
     late.fail(failed, cause)
     assert late.came_to_rest() is blind
+
+
+@pytest.mark.parametrize("lives", [True, False])
+@pytest.mark.parametrize(("sequence", "cause"), [(7, Cause.HUNG), (0, Cause.CRASH)])
+def test_a_fail_of_another_life_makes_nobody_blind_while_the_source_lives(
+    sequence: int, cause: Cause, lives: bool
+) -> None:
+    """It may be that of a process which was frozen, and finds when it goes on that its code has not returned."""
+    late = Late()
+    if not lives:
+        late.leave()
+    late.fail(sequence, cause, life="s")
+    assert late.came_to_rest() is not lives
 
 
 def test_what_stands_by_has_not_just_issued_what_comes_late_of_another_task() -> None:
