@@ -122,9 +122,8 @@ class ProcessGroup:
         """Whether a process is left in the group that has not ended."""
         if not (self._has_number() and _reached(os.killpg, self.number, 0)):
             return False
-        if not _PROCESSES.is_dir():
-            return True
-        return any(self._has_member(int(one.name)) for one in _PROCESSES.glob("[0-9]*"))
+        shown = _shown()
+        return not shown or any(map(self._has_member, shown))
 
     def _has_member(self, process: int) -> bool:
         try:
@@ -144,10 +143,7 @@ class ProcessGroup:
 
     def _outside(self) -> Iterator[int]:
         """The processes that this one has started, or those in turn, and that have left its group."""
-        for environment in _PROCESSES.glob("[0-9]*/environ"):
-            process = int(environment.parent.name)
-            if self._is_outside(process):
-                yield process
+        return filter(self._is_outside, _shown())
 
     def _is_outside(self, process: int) -> bool:
         with suppress(OSError):  # it has ended, or it is another user's
@@ -171,6 +167,14 @@ class ProcessGroup:
             return self._is_outside(process) and _reached(signal.pidfd_send_signal, held, number)
         finally:
             os.close(held)
+
+
+def _shown() -> list[int]:
+    """The processes that the system shows: none where it never does, or not now, as where no file can be opened."""
+    try:
+        return [int(one.name) for one in _PROCESSES.iterdir() if one.name.isdecimal()]
+    except OSError:
+        return []
 
 
 def _reached(send: Callable[[int, int], None], receiver: int, number: int) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -68,6 +69,21 @@ def test_a_program_that_leaves_something_behind_is_not_gone(groups: list[Process
     assert not group.gone()
     group.kill()
     assert until(lambda: not alive(child))
+
+
+def test_a_program_is_ended_and_seen_to_be_gone_where_no_file_can_be_opened(
+    groups: list[ProcessGroup], tmp_path: Path
+) -> None:
+    group = started(groups, tmp_path, "import signal; signal.pause()")
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (0, before[1]))
+    try:
+        assert not group.gone()
+        group.terminate()
+        assert group.wait(10)
+        assert group.gone()
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
 
 
 @pytest.mark.parametrize("then", ["signal.pause()", "os._exit(0)"], ids=["its parent lives", "its parent has ended"])
