@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import partial
 
 import pyoxigraph as ox
@@ -22,7 +22,7 @@ from selfconf.rdf.shacl import LITERAL, misfit
 from selfconf.rdf.tasks.parameters import misfits
 from selfconf.rdf.tasks.roles import mentions, shape_statements, shape_triples, substituted
 from selfconf.rdf.tasks.templates import TaskDocument
-from selfconf.rdf.turtle import Document, Node
+from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, SH, XSD
 
 _LOCAL_PART = re.compile(r"[^\s\"'<>()]*")
@@ -190,24 +190,42 @@ def _set_later(template: Template, parameters: Container[Term]) -> Template:
 
 
 def _check_shapes(template: Template, bindings: Mapping[IRI, Term], document: Document) -> None:
-    """Raises BindingError where the shape of a role would be none with the values of its parameters."""
-    values = {one.iri: bindings[one.iri] for one in template.parameters if one.in_shape and one.iri in bindings}
-    free = frozenset[Term](one.iri for one in template.parameters) - values.keys()
-    for role in template.roles:
-        if not values or not mentions(document, role.iri, frozenset(values)):
+    """Raises BindingError where a shape of a template would be none with the values of its parameters."""
+    values = {one.iri: bindings[one.iri] for one in template.parameters if one.iri in bindings}
+    names = {one.iri: one.name for one in template.parameters}
+    free = frozenset[Term](names.keys() - values.keys())
+    for node, whose in _shapes(template, document) if values else ():
+        if not mentions(document, node, frozenset(values)):
             continue
         shape: dict[Node, list[tuple[IRI, Term]]] = {}
-        for subject, predicate, value in shape_triples(document, role.iri):
+        for subject, predicate, value in shape_triples(document, node):
             shape.setdefault(subject, []).append((predicate, value))
         bound = substituted(replace(document, statements=shape), values)
         wrong = misfit(bound, bound.triples(), free)
         if wrong is not None:
-            (subject, predicate, value), problem = wrong
-            named = [one.name for one in template.parameters if (predicate, one.iri) in shape[subject]]
-            what = f"with these values the shape of the role {role.iri!r} is not well-formed"
-            if named:
-                what = f"{in_full([value])} cannot stand for the parameter {named[0]!r} in the shape of {role.iri!r}"
-            raise BindingError(f"{what}: {_plain(problem)}")
+            raise BindingError(_misfit_in_words(wrong, shape, names, whose))
+
+
+def _shapes(template: Template, document: Document) -> Iterator[tuple[Node, str]]:
+    """Yield the shapes of a template, of its roles and of what these recruit, each with words for whose it is."""
+    for role in template.roles:
+        yield role.iri, f"the role {role.iri!r}"
+        for shape in document.values(role.iri, SC.recruits):
+            if not isinstance(shape, Literal):
+                yield shape, f"what the role {role.iri!r} recruits"
+
+
+def _misfit_in_words(
+    wrong: tuple[Triple, str], shape: Mapping[Node, list[tuple[IRI, Term]]], names: Mapping[IRI, str], whose: str
+) -> str:
+    """A sentence about a statement of a shape that is none with the values of parameters."""
+    (subject, predicate, value), problem = wrong
+    named = [name for iri, name in names.items() if (predicate, iri) in shape[subject]]
+    if named:
+        what = f"{in_full([value])} cannot stand for the parameter {named[0]!r} in the shape of {whose}"
+    else:
+        what = f"with these values the shape of {whose} is not well-formed"
+    return f"{what}: {_plain(problem)}"
 
 
 def _with_values(template: Template, bindings: Mapping[IRI, Term]) -> Template:

@@ -282,6 +282,12 @@ def test_a_limit_cannot_be_left_free(place: str) -> None:
         ("sh:property [ sh:path :n ; sh:minInclusive :x ]", ":y", "<urn:x:y> cannot stand for the parameter 'x'"),
         ("sh:or ( [ sh:property [ sh:path :n ; sh:minLength :x ] ] )", "long", '"long" cannot stand for the parameter'),
         ("sh:property [ sh:path ( :n :x ) ; sh:minCount 1 ]", "3", "with these values the shape of the role"),
+        (
+            "sc:recruits [ sh:class :x ]",
+            "3",
+            "^3 cannot stand .* 'x' in the shape of what the role .* recruits: the value",
+        ),
+        ("sc:recruits [ sh:pattern :x ]", '"(("', "the value of sh:pattern has to be a regular expression"),
     ],
 )
 def test_a_value_with_which_the_shape_of_a_role_would_be_none_cannot_be_bound(
@@ -321,7 +327,7 @@ def test_a_shape_of_recruits_cannot_be_left_free(recruits: str) -> None:
     for later in ((), ("x",)):
         with pytest.raises(BindingError, match=r"'x' cannot be left free, for it stands in sc:recruits; .*bind\(x="):
             bindings.complete(task, later)
-    assert bindings.complete(bindings.bind(task, [("x", "3")])).task.bindings
+    assert bindings.complete(bindings.bind(task, [("x", ":c")])).task.bindings
 
 
 def test_a_shape_of_recruits_has_the_default_of_its_parameter_until_that_has_another_value() -> None:
