@@ -135,7 +135,7 @@ class Component:
         """An input that had lost its last source has another, whose first signal is received next."""
 
     def connected(self, operation: str) -> None:
-        """An operation that this component needs is connected to a component that offers it; called after `started`."""
+        """An operation that this component needs is connected to one that offers it; called after each `started`."""
 
     def disconnected(self, operation: str) -> None:
         """An operation that this component needs is not connected any more, while the component goes on."""

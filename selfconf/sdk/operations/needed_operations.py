@@ -63,6 +63,11 @@ class NeededOperations:
         for name in sorted(before.keys() ^ self._wires.keys()):
             self._code.connection_changed(name, name in self._wires)
 
+    def say_again(self) -> None:
+        """Tell the component what is connected: its code has been started again."""
+        for name in sorted(self._wires):
+            self._code.connection_changed(name, True)
+
     def end(self) -> None:
         """Call nothing."""
         self._wires = {}

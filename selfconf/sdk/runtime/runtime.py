@@ -88,7 +88,7 @@ class ComponentRuntime:
             profile,
             component,
             self.fail,
-            lambda port: self.inputs.say_again(port),
+            self._woken,
             self._restless,
             lambda: self.offered_operations.end(),
         )
@@ -199,6 +199,11 @@ class ComponentRuntime:
     def hung(self, what: str, limit: float) -> None:
         """Raise FAIL for code that has not returned."""
         self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
+
+    def _woken(self, port: str) -> None:
+        """Have the code that has been started again hear what is connected, and the last signals."""
+        self.inputs.say_again(port)
+        self.needed_operations.say_again()
 
     def _restless(self, why: str) -> None:
         """Raise FAIL for code that broke as it was to rest: like one that hangs, it does what it likes until it ends.

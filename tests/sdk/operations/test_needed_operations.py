@@ -76,6 +76,16 @@ def test_a_component_that_has_rested_hears_no_answer_to_what_it_asked_before() -
     assert len(peer.album.answers) == 1
 
 
+def test_a_component_that_has_rested_is_told_again_what_is_connected() -> None:
+    peer = Peer(lambda request: None)
+    peer.stage.call(apply(2, inputs=CALLING, rests=True))
+    peer.stage.let_pass(0.1)
+    assert peer.album.told == ["photo is connected"]
+    peer.stage.call(apply(2, inputs=CALLING))
+    peer.stage.let_pass(0.1)
+    assert peer.album.told == ["photo is connected"] * 2
+
+
 def test_a_component_that_calls_and_calls_is_told_to_wait() -> None:
     peer = Peer(lambda request: None)
     for _ in range(MOST_CALLS + 1):
