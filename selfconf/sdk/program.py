@@ -43,8 +43,11 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     logging.basicConfig(level=logging.WARNING, handlers=[AsideHandler("%(name)s: %(message)s")])
     try:
         host = open_host(given.ecology, given.connect, given.keys, kinds)
-        for kind in kinds:
-            host.add(kind(), life)
+        components = [
+            kind() for kind in kinds
+        ]  # all first: one that has joined is called, and starts once this is over
+        for component in components:
+            host.add(component, life)
         run_until_ended(host)
     except SelfconfError as error:
         print(plain(str(error)), file=sys.stderr)

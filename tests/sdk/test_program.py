@@ -16,7 +16,7 @@ import pytest
 
 from selfconf.bus.zenoh import client
 from selfconf.protocol.messages import Reserve
-from selfconf.sdk import Component, main, parent_environment
+from selfconf.sdk import Component, main, parent_environment, program
 from selfconf.sdk.program import HUNG_EXIT_CODE, TIME_TO_END
 from tests.lab import write_advertisements
 from tests.sdk.living import PATIENCE, PREFIXES, LivingStage, until
@@ -61,6 +61,26 @@ def test_the_environment_that_a_site_gives_names_the_ecology(
     with pytest.raises(SystemExit, match="2"):
         main(Lamp, arguments=())
     assert "no site answers at tcp/127.0.0.1:1" in capsys.readouterr().err
+
+
+def test_no_component_lives_that_cannot_start_as_another_one_of_its_program_takes_long_to_be_made(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    said = list[str]()
+
+    class Noted(Component):
+        def __init__(self) -> None:
+            said.append("made")
+
+    class Noting:
+        def add(self, component: Component, life: str) -> None:
+            said.append("joined")
+
+    monkeypatch.setattr(program, "open_host", lambda *given: Noting())
+    monkeypatch.setattr(program, "run_until_ended", lambda host: None)
+    with pytest.raises(SystemExit, match="0"):
+        main(Noted, Noted, arguments=())
+    assert said == ["made", "made", "joined", "joined"]
 
 
 def test_help_tells_what_the_component_is(capsys: pytest.CaptureFixture[str]) -> None:
