@@ -210,6 +210,7 @@ class ComponentProgram:
             with self._launching:
                 if self._closed:
                     raise PeerError("this site is ending")
+                printed = self._printed()
                 group = ProcessGroup(words, self._folder, environment)
                 process = self._process = ComponentProcess(self._bus, self._keys, group, life)
                 if self._closed:  # by a signal to this very thread, which the lock does not keep out
@@ -218,12 +219,11 @@ class ComponentProgram:
             raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
         except ValueError as error:
             raise PeerError(f"the command of {first} cannot be read: {error}") from None
-        printed = self._printed()
+        self._check_in(PROCESS_CHECK)  # first: whatever breaks below, its end is seen
+        process.follow(self._profiles.values())
         for stream, pipe in group.pipes():
             printed.follow(pipe, stream, self._source(), lambda: self._bus.wake_up(lambda: self._look(process)))
         self._note(f"started as process {group.number}: {self.command}")
-        process.follow(self._profiles.values())
-        self._check_in(PROCESS_CHECK)
 
     def _keys_environment(self) -> dict[str, str]:
         """The variable by which the process finds its keys. Raises PeerError where they cannot be made."""

@@ -58,13 +58,14 @@ class ProcessGroup:
         """The process id, which is the number of the group as well."""
 
     def pipes(self) -> tuple[tuple[str, int], ...]:
-        """The streams that it prints on, by name. They are the caller's to close from now on."""
-        found = []
-        for name, pipe in (("stdout", self._process.stdout), ("stderr", self._process.stderr)):
-            if pipe is not None and not pipe.closed:
-                found.append((name, os.dup(pipe.fileno())))
+        """The streams that it prints on, by name. They are the caller's to close from now on. Raises OSError."""
+        streams = (("stdout", self._process.stdout), ("stderr", self._process.stderr))
+        left = [(name, pipe) for name, pipe in streams if pipe is not None and not pipe.closed]
+        try:
+            return tuple((name, os.dup(pipe.fileno())) for name, pipe in left)
+        finally:
+            for _, pipe in left:
                 pipe.close()
-        return tuple(found)
 
     def code(self) -> int | None:
         """The exit code of the program itself; None while it runs."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -491,6 +493,22 @@ def test_a_command_that_does_not_start_any_more_is_tried_again(
     assert live(network, lambda: log.exists() and "does not start" in log.read_text())
     hidden.rename(program_file)
     assert live(network, lambda: len(runs(tmp_path)) == 2)
+
+
+@pytest.mark.parametrize("broken", ["os.dup", "selfconf.site.processes.PrintedLines"])
+def test_no_process_is_left_unwatched_where_no_more_can_be_opened(
+    network: Network, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch, broken: str
+) -> None:
+    def none_left(*_: object) -> None:
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    made, heard = site(python("raise SystemExit(0)")), fails(network)
+    with monkeypatch.context() as full:
+        full.setattr(broken, none_left)
+        with suppress(OSError, PeerError):
+            made.start(SLEEPER)
+    made.start(SLEEPER)
+    assert live(network, lambda: bool(heard))
 
 
 def test_what_is_ended_while_it_pauses_is_not_started_again(
