@@ -17,7 +17,7 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex, TypeSet
 from selfconf.rdf.eligibility.compiled_roles import left_to_judge
-from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partitioner, Tested
+from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partitioner, Tested, TestOutcome
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
 
 JUDGED = 24
@@ -49,7 +49,7 @@ def exclusions(
     outside = {
         advertisement: (
             kind in akin,
-            verdict.obstacles or tuple(_forbidden(partitioner, verdict.allows).values()),
+            _told(partitioner, role, alike[0], verdict),
         )
         for kind, alike, verdict in partitioner.tested(role, ecology, ecology.type_sets)
         for advertisement in alike
@@ -67,6 +67,20 @@ def exclusions(
         ),
         key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
     )
+
+
+def _told(
+    partitioner: Partitioner, role: CompiledRole, advertisement: Advertisement, verdict: TestOutcome
+) -> tuple[Obstacle, ...]:
+    """All that tests tell against a component, and what the values do that it would leave to free parameters then."""
+    failed = verdict.obstacles
+    if not failed:
+        return tuple(_forbidden(partitioner, verdict.allows).values())
+    if not partitioner.free or any(isinstance(one, NotJudged) for one in failed):
+        return failed
+    allows = _let_in(partitioner, role, advertisement)
+    disagreeing = () if all(allows.values()) else (NoCommonValue(),)
+    return (*failed, *_forbidden(partitioner, allows).values(), *disagreeing)
 
 
 def _least(

@@ -171,6 +171,25 @@ def test_a_component_that_leaves_no_value_for_a_parameter_is_kept_out_by_that_to
     assert near(text, ":a a sc:Component, :A ; :power 3 ; :support :Astrid .") == [("a", "its power is 3, not 5")]
 
 
+def test_what_free_parameters_could_not_be_is_told_beside_what_else_keeps_out() -> None:
+    """A component that is told to have one obstacle is a near miss: without it, it could play."""
+    text = f"{ROBOT} sh:in ( :Astrid ) . :t sc:roles ( :r ) . :r a sc:Role ; sh:class :A ;"
+    text += " sh:property [ sh:path :power ; sh:in ( 5 ) ] , [ sh:path :support ; sh:in ( :robot ) ] ,"
+    asked = partitioner(f"{text} [ sh:path :of ; sh:in ( :robot ) ] .")
+    ads = (
+        ":barred a sc:Component, :A ; :power 3 ; :support :Pippi .",
+        ":split a sc:Component, :A ; :power 3 ; :support :Astrid ; :of :Pippi .",
+        ":near a sc:Component, :A ; :power 3 ; :support :Astrid .",
+    )
+    found = {one.component.short: one.obstacles for one in exclusions(asked, asked.roles[0], (), read(ads))}
+    assert {name: [str(one) for one in some] for name, some in found.items()} == {
+        "barred": ["power is 3, not 5", "wants robot to be Pippi, which it may not be"],
+        "split": ["power is 3, not 5", "leaves no value for a free parameter that its statements agree on"],
+        "near": ["power is 3, not 5"],
+    }
+    assert [miss.component.short for miss in near_misses(asked, read(ads))] == ["near"]
+
+
 def test_a_value_that_a_free_parameter_may_not_have_is_one_thing_that_keeps_out() -> None:
     room = ':t a sc:Template ; sc:parameter :room . :room a sc:Parameter ; sc:name "room" ; sh:in ( :kitchen ) .'
     text = f"{room} {ROLE} sh:class :A ; sh:property [ sh:path :place ; sh:in ( :room ) ] ."
