@@ -27,6 +27,8 @@ CLAIMED = "names"
 """The folder of the files that are locked: `tasks` is where sites keep tasks, and a site may be called like a task."""
 PROCESSES_ASKED_AGAIN = 1.0
 """Seconds after which it is looked again whether the processes of sites are there, where no file has changed."""
+_TEMPORARY = "/tmp"
+"""The folder for temporary files where there is none that this program can write in."""
 TURN = 5.0
 """Seconds to wait for a turn: a site that was stopped in its own does not stop all others."""
 
@@ -66,7 +68,11 @@ def runtime_folder() -> Path:
     runtime = os.environ.get("XDG_RUNTIME_DIR")
     if runtime and Path(runtime).is_dir():
         return Path(runtime) / "selfconf"
-    return Path(tempfile.gettempdir()) / f"selfconf-{os.getuid()}"
+    try:
+        temporary = tempfile.gettempdir()
+    except FileNotFoundError:  # none can be written in, as in some containers: what needs one says so
+        temporary = _TEMPORARY
+    return Path(temporary) / f"selfconf-{os.getuid()}"
 
 
 def log_folder() -> Path:

@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -176,6 +177,23 @@ def test_the_folder_is_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert (tmp_path / "selfconf").stat().st_mode & 0o077 == 0
     monkeypatch.delenv("XDG_RUNTIME_DIR")
     assert str(os.getuid()) in this_machine.runtime_folder().name
+
+
+def test_a_machine_without_a_folder_for_temporary_files_has_no_sites_and_its_tasks_have_their_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()  # a folder in a file cannot be made, by root either
+    monkeypatch.delenv("SELFCONF_RUNTIME_DIR")
+    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    monkeypatch.setattr(tempfile, "_candidate_tempdir_list", list)
+    monkeypatch.setattr(this_machine, "_TEMPORARY", str(tmp_path / "file"))
+    assert this_machine.local_sites() == []
+    claimed = this_machine.claim("home", "patrol", [])
+    assert claimed is not None
+    claimed.release()
+    with pytest.raises(NetworkError, match="set SELFCONF_RUNTIME_DIR to a folder of your own"):
+        this_machine.announce(meeting())
 
 
 def test_a_folder_of_another_user_is_neither_written_nor_read(
