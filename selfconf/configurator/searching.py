@@ -24,7 +24,7 @@ from selfconf.configurator.deploying import Reaction
 from selfconf.configurator.effects import Discover
 from selfconf.configurator.events import Composed, Discovered, StayedAway
 from selfconf.configurator.phases import NOTHING
-from selfconf.configurator.state import MOST_PUT_OFF, Loss, Phase, State
+from selfconf.configurator.state import Loss, Phase, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal
@@ -75,7 +75,9 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
         if state.contested(event.outcome):
             fewer, avoided = _avoid(state, event.outcome)
             return phases.compose(fewer, avoided=avoided)
-        return deploying.deploy(replace(state, target=event.outcome, plan=event.plan, refusal=None, put_off=0))
+        return deploying.deploy(
+            replace(state, target=event.outcome, plan=event.plan, refusal=None, put_off=0, has_waited=False)
+        )
     if state.avoided:
         return phases.compose(_avoided_in_vain(state))
     if any(loss.startable for loss in state.lost.values()):
@@ -88,8 +90,8 @@ def heed_absence(state: State, event: StayedAway) -> Reaction:
     """What was lost has not come back while a search that found nothing waited for it."""
     if state.phase is not Phase.COMPOSING or not state.awaits_return or event.attempt != state.attempt:
         return state, ()
-    if state.heeds_others:  # they may have let go of what they held meanwhile; what comes of that search counts
-        return phases.discover(replace(state, put_off=MOST_PUT_OFF))
+    if state.heeds_others:  # they may have let go of what they held meanwhile
+        return phases.discover(replace(state, has_waited=True))
     return _refused(state)
 
 

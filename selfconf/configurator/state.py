@@ -173,6 +173,8 @@ class State:
     """Whether the ecology was asked for what the strategy would rather have than what runs."""
     awaits_return: bool = False
     """Whether the last search has found nothing, and waits for what was lost before it counts."""
+    has_waited: bool = False
+    """Whether that was in vain since the last configuration was found: then no search waits again."""
     put_off: int = 0
     """How many searches in a row have found nothing and did not count, for what had appeared or might come back."""
 
@@ -212,7 +214,8 @@ class State:
         Or for a task of higher priority that has asked for something: a change for the better holds two for a moment.
         """
         gone = self.unseen or any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
-        return (gone or self.has_yielded) and not (self.patient or self.inside) and self.put_off < MOST_PUT_OFF
+        waits = not (self.patient or self.inside or self.has_waited) and self.put_off < MOST_PUT_OFF
+        return waits and (gone or self.has_yielded)
 
     @property
     def waits_for_news(self) -> bool:

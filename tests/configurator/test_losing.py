@@ -123,6 +123,19 @@ def test_others_may_have_let_go_of_something_while_what_was_lost_stayed_away(fou
     assert history.state.phase is (Phase.RUNNING if found else Phase.REFUSED)
 
 
+def test_what_comes_after_a_wait_in_vain_while_the_ecology_is_asked_once_more_counts() -> None:
+    history = out_of_sight()
+    history.hear(Appeared({}), Discovered({ODOMETRY: OTHERS}))
+    history.composed(REFUSAL)
+    history.hear(StayedAway(history.state.attempt), Appeared({}), Discovered({ODOMETRY: OTHERS}))
+    history.hear(Appeared({TRACKER: "2"}))
+    assert history.composed(REFUSAL) == [Discover()]
+    history.hear(Discovered({ODOMETRY: OTHERS}))
+    history.composed(navigation())
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+
+
 def test_what_has_not_come_back_in_time_is_a_reason_to_refuse() -> None:
     history = out_of_sight()
     history.hear(StayedAway(history.state.attempt))
