@@ -6,12 +6,13 @@ signals, calls in their order, signals in the order in which their queues have b
 intervals waits as a signal does. A queue of signals is bounded, so a slow component costs neither memory nor
 supervision.
 
-`CodeThread.watch` is for the bus's thread: it names the code that has not returned within its deadline, without any
+`CodeThread.overdue` is for the bus's thread: it names the code that has not returned within its deadline, without any
 help of that code. On a bus in simulated time all of this happens at once, in the one thread there is.
 """
 
 from __future__ import annotations
 
+import math
 import queue
 import time
 from collections import deque
@@ -75,17 +76,22 @@ class CodeThread:
         self._woken.put(None)
 
     def limited(self, owner: object, what: str, limit: float, action: Callable[[], _Result]) -> _Result:
-        """Return what code of a component returns that may take so many seconds; `watch` sees it meanwhile."""
+        """Return what code of a component returns that may take so many seconds; `overdue` sees it meanwhile."""
         before, self.running = self.running, RunningCode(owner, what, time.monotonic(), limit)
         try:
             return action()
         finally:
             self.running = before
 
-    def overdue(self) -> RunningCode | None:
-        """The code that runs for longer than it may; for another thread, which that code does not hold up."""
+    def overdue(self, since: float = -math.inf) -> RunningCode | None:
+        """The code that runs for longer than it may, by a time from which on that counts.
+
+        For another thread, which that code does not hold up.
+        """
         running = self.running
-        return running if running is not None and time.monotonic() - running.began > running.limit else None
+        if running is None or time.monotonic() - max(running.began, since) <= running.limit:
+            return None
+        return running
 
     def poll(self, seconds: float = 0.0) -> None:
         """Run all that waits; if nothing does, wait up to that long for the first.

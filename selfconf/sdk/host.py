@@ -7,6 +7,7 @@ a call of a configurator nor the end of its life waits for that code, and so tha
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
@@ -29,6 +30,8 @@ from selfconf.sdk.runtime import ComponentRuntime
 
 CODE_CHECK = 0.1
 """How often, in seconds, it is looked whether the code that runs is within its deadline."""
+STOOD_STILL = 0.5
+"""Seconds by which such a look comes late, without this process having used the time, after which it stood still."""
 JOINING = 1.0
 """Seconds that a component of the same IRI may take to say that it lives."""
 AT_REST = 0.2
@@ -68,6 +71,10 @@ class Host:
         self.code = CodeThread(inline=not bus.run_aside())
         self._hung, self._ontologies = hung, tuple(ontologies)
         self._overdue: RunningCode | None = None
+        self._looked = self._went_on = time.monotonic()
+        """When the code was looked at last, and when this process has gone on last that had stood still."""
+        self._used = time.process_time()
+        """How many seconds of a processor this process had used by the last look."""
         """The code that was found to hang last."""
         if not self.code.inline:
             bus.wake_up(self._watch_code)
@@ -211,9 +218,17 @@ class Host:
             self.bus.later(0.0, partial(self._warm_up, times - 1))
 
     def _watch_code(self) -> None:
-        """Look at intervals whether the code that runs is within its deadline; once for each piece of code."""
+        """Look at intervals whether the code that runs is within its deadline; once for each piece of code.
+
+        What time this process stood still, as a whole machine does that stalls, the code has not taken.
+        """
         self.bus.later(CODE_CHECK, self._watch_code)
-        overdue = self.code.overdue()
+        now, used = time.monotonic(), time.process_time()
+        late = now - self._looked - CODE_CHECK
+        if late > STOOD_STILL and used - self._used < late / 2:
+            self._went_on = now
+        self._looked, self._used = now, used
+        overdue = self.code.overdue(self._went_on)
         if overdue is None or overdue is self._overdue:
             return
         self._overdue = overdue

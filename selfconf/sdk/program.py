@@ -43,9 +43,8 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     logging.basicConfig(level=logging.WARNING, handlers=[AsideHandler("%(name)s: %(message)s")])
     try:
         host = open_host(given.ecology, given.connect, given.keys, kinds)
-        components = [
-            kind() for kind in kinds
-        ]  # all first: one that has joined is called, and starts once this is over
+        # All are made first: one that has joined is called, and starts once this is over.
+        components = [kind() for kind in kinds]
         for component in components:
             host.add(component, life)
         run_until_ended(host)

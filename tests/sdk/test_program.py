@@ -109,6 +109,8 @@ class Lamp(Component):
             print("hanging", flush=True)
             while True:
                 time.sleep(0.01)
+        if "busy" in sys.argv:
+            time.sleep(0.2)
 
     def stopped(self):
         print("at rest", flush=True)
@@ -211,6 +213,17 @@ def test_a_program_whose_code_hangs_ends_on_a_signal_all_the_same(programs: Prog
     assert process.returncode == HUNG_EXIT_CODE
     assert time.monotonic() - began < TIME_TO_END + 1.0
     assert "urn:c:lamp: `every` has not returned within 0.3 s" in said
+
+
+@pytest.mark.process
+def test_time_in_which_a_program_stood_still_is_none_that_its_code_has_taken(programs: Programs) -> None:
+    process = programs.acting("busy")
+    for _ in range(3):
+        process.send_signal(signal.SIGSTOP)
+        until(lambda: False, 0.8)
+        process.send_signal(signal.SIGCONT)
+        until(lambda: False, 0.3)
+    assert not programs.stage.fails
 
 
 @pytest.mark.process

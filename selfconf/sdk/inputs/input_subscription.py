@@ -345,9 +345,8 @@ class InputSubscription:
             return
         last = self._order.over = SignalNumber(fail.life, fail.sequence)
         heard = self._heard_life
-        is_anothers = fail.life != heard and self._shows(
-            heard
-        )  # such as that of a process which was frozen, and goes on
+        # It may be that of another life, such as that of a process which was frozen, and goes on.
+        is_anothers = fail.life != heard and self._shows(heard)
         if not (is_anothers or self._order.is_past(last)):  # past: it comes late, of a source that acts again
             self._lose(self._heard_at)
 
