@@ -21,6 +21,7 @@ from pathlib import Path
 from types import FrameType
 
 import selfconf
+from selfconf.termination import ending_signals
 from sim.account import Account
 from sim.crew import Crew, Line
 
@@ -36,8 +37,6 @@ RESULTS = (
     "tracker-view.png",
 )
 """What a run leaves in its folder."""
-ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-"""The signals that end a demo and take everything down."""
 STARTING = 60.0
 """Seconds that a process may take to be there."""
 LINGERING = 86_400.0
@@ -160,9 +159,8 @@ class Stage:
 
 def run(given: DemoOptions) -> int:
     """Play the scene that the options name; 0 if it ends as it should."""
-    for number in ENDING:
-        if signal.getsignal(number) is not signal.SIG_IGN:  # as `nohup` has SIGHUP
-            signal.signal(number, _interrupt)
+    for number in ending_signals():
+        signal.signal(number, _interrupt)
     scenes = {"navigate": _navigate, "composite": _navigate, "radio": _radio}
     try:
         return scenes[given.scene](given)
@@ -241,7 +239,7 @@ def _navigate(given: DemoOptions) -> int:
 
 def _drawing() -> Callable[[Account, Path, Path, str, Callable[[str], None]], list[Path]]:
     """What draws the pictures of a run. A signal waits until it is loaded: interrupted as it loads, Mitsuba aborts."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ending_signals())
     try:
         from sim.gallery import draw_run
     finally:

@@ -88,6 +88,8 @@ INTERRUPTED = """
 import os, signal, time
 from selfconf.api import file_checks
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background ignores it
+
 def check(suspect):
     if suspect == "last":
         os.killpg(0, signal.SIGINT)  # as the terminal does at Ctrl-C

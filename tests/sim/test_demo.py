@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.demo import ENDING, DemoOptions, run
+from sim.demo import DemoOptions, run
 from tests.harness.effort import at_night
 from tests.harness.yardstick import Yardstick
 from tests.serve.chromium import CHROMIUM, Chromium, Page
@@ -207,7 +207,7 @@ def test_the_living_ecology_can_be_asked_while_a_demo_without_pictures_runs(
 @pytest.fixture
 def handlers() -> Iterator[None]:
     """Puts back how signals are handled."""
-    before = {number: signal.getsignal(number) for number in ENDING}
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     yield
     for number, handler in before.items():
         signal.signal(number, handler)
