@@ -101,39 +101,15 @@ class ComponentRuntime:
         self._after_stop: list[Callable[[], None]] = []
         """What waits for the code to be at rest."""
         component._runtime = self
-        self.outputs = Outputs(
-            bus,
-            keys,
-            profile,
-            self.life,
-            lambda: self.code.active,
-            fields or {},
-            partial(self.fail, cause=Cause.MALFORMED),
-        )
+        known, malformed = fields or {}, partial(self.fail, cause=Cause.MALFORMED)
+        self.outputs = Outputs(bus, keys, profile, self.life, lambda: self.code.active, known, malformed)
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
         self.inputs: InputFollower = inputs or Inputs(bus, keys, thread, profile, heard, self.code.read_value)
         signals = OperationSignals(profile.component, self.life)
         self.offered_operations = OfferedOperations(
-            bus,
-            keys,
-            thread,
-            profile,
-            signals,
-            self.code,
-            fields or {},
-            self.callers,
-            partial(self.fail, cause=Cause.MALFORMED),
+            bus, keys, thread, profile, signals, self.code, known, self.callers, malformed
         )
-        self.needed_operations = NeededOperations(
-            bus,
-            keys,
-            thread,
-            profile,
-            signals,
-            self.code,
-            fields or {},
-            partial(self.fail, cause=Cause.MALFORMED),
-        )
+        self.needed_operations = NeededOperations(bus, keys, thread, profile, signals, self.code, known, malformed)
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
         self._waiting = WaitingTasks(
