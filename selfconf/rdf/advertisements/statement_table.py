@@ -150,7 +150,7 @@ class StatementTable(dict[str, Statement]):
         key = tuple(kinds)
         if key not in self._typed:
             texts = [statement.text for statement in dict.fromkeys(kinds)]
-            in_brackets = any("[" in text for text in texts)
+            in_brackets = any(statement.bracketed for statement in kinds)
             self._typed[key] = None if in_brackets else self["a " + " , ".join(text[len("a ") :] for text in texts)]
         whole = self._typed[key]
         if whole is not None:

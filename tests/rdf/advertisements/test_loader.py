@@ -246,6 +246,13 @@ def test_a_subject_of_many_types_makes_one_statement_of_them_each_time_it_is_rea
     assert sum(statement.slot is TYPE for statement in segments.values()) <= 3_003
 
 
+def test_a_list_in_the_place_of_a_type_keeps_out_its_component_alone() -> None:
+    text = PREFIXES + ":c a ( :X :Y ), sc:Component, :K . :d a sc:Component, :K ."
+    good, bad = loader.read_advertisements(text.encode(), "a.ttl")
+    assert [one.component for one in good] == [iri("d")]
+    assert [one.component for one in bad] == [iri("c")]
+
+
 @pytest.mark.parametrize("kind", ["owl:Class", "sh:NodeShape", "rdfs:Class", "rdf:Property", "rdf:Bag", ":owl"])
 def test_types_that_an_advertisement_may_not_give_are_left_out(kind: str) -> None:
     text = PREFIXES + "@prefix owl: <http://www.w3.org/2002/07/owl#> . "
