@@ -21,7 +21,8 @@ from selfconf.importing import LARGEST_SOURCE
 from selfconf.model.immutable import immutable
 
 CONNECTIONS = 32
-"""How many connections to one host are open at once, beside those that outputs which are followed keep, one each."""
+"""How many connections to one host are open at once to read and write, and as many to call actions; outputs that are
+followed keep one each besides."""
 MOST_EVENTS = 1000
 """How many server-sent events of one stream are read in a second; a thing that sends more is held up."""
 _EVENT_STREAM = "text/event-stream"
@@ -68,8 +69,9 @@ class ThingClient:
     def __init__(self, limits: ThingLimits) -> None:
         self._limits = limits
         self._requests = self._opened(CONNECTIONS)
-        # A host of many things may be followed by many outputs: they would leave no connection to ask anything else.
-        self._followed = self._opened(0)
+        # A host of many things may be followed by many outputs, and take long for many actions: they would leave no
+        # connection to ask anything else.
+        self._followed, self._actions = self._opened(0), self._opened(CONNECTIONS)
 
     def _opened(self, connections: int) -> aiohttp.ClientSession:
         """A session with so many connections to a host at most, or without a limit if that is 0."""
@@ -83,17 +85,17 @@ class ThingClient:
 
     async def close(self) -> None:
         """Close every connection."""
-        await self._requests.close()
-        await self._followed.close()
+        for session in (self._requests, self._followed, self._actions):
+            await session.close()
 
     async def fetch(self, form: ThingForm, seconds: float) -> bytes:
         """The bytes of an answer, whatever they say, within so many seconds. Raises ThingError."""
-        async with self._asked(form, seconds) as answer:
+        async with self._asked(self._requests, form, seconds) as answer:
             return await self._body(form, answer)
 
     async def read(self, form: ThingForm) -> ThingAnswer:
         """What a thing answers. Raises ThingError."""
-        async with self._asked(form, self._limits.answer) as answer:
+        async with self._asked(self._requests, form, self._limits.answer) as answer:
             return _value(form, answer, await self._body(form, answer))
 
     async def send(self, form: ThingForm, value: Any, media: str = "", action: bool = False) -> None:
@@ -101,17 +103,17 @@ class ThingClient:
 
         `media` is the media type of bytes, by default that of the form.
         """
-        async with self._sent(form, value, media, self._limits.action if action else self._limits.answer) as answer:
+        async with self._sent(form, value, media, action) as answer:
             await self._body(form, answer)
 
     async def call(self, form: ThingForm, value: Any, media: str = "") -> ThingAnswer:
         """What a thing answers to an action that is called with a value as by `send`. Raises ThingError."""
-        async with self._sent(form, value, media, self._limits.action) as answer:
+        async with self._sent(form, value, media, action=True) as answer:
             return _value(form, answer, await self._body(form, answer))
 
     async def wait(self, form: ThingForm) -> ThingAnswer | None:
         """The next value of a long poll, however long that takes; None if the thing has let go of it for now."""
-        async with self._asked(form, None) as answer:
+        async with self._asked(self._followed, form, None) as answer:
             body = await self._body(form, answer)
             nothing = answer.status == 204 or (not body and "Content-Type" not in answer.headers)
             return None if nothing else _value(form, answer, body)
@@ -122,7 +124,7 @@ class ThingClient:
 
         The block begins once the thing has begun to answer, so that it tells of what changes from then on.
         """
-        async with self._asked(form, None) as answer:
+        async with self._asked(self._followed, form, None) as answer:
             if answer.content_type != _EVENT_STREAM:
                 raise ThingError(f"{form} answers {answer.content_type}, where {_EVENT_STREAM} is expected")
             yield self._events(form, answer)
@@ -156,17 +158,23 @@ class ThingClient:
 
     @asynccontextmanager
     async def _sent(
-        self, form: ThingForm, value: Any, media: str, seconds: float
+        self, form: ThingForm, value: Any, media: str, action: bool
     ) -> AsyncIterator[aiohttp.ClientResponse]:
         """A request that carries a value, and was answered without an error. Raises ThingError."""
         body = _encoded(form, value, media)
         headers = {} if body is None else {"Content-Type": media or form.media}
-        async with self._asked(form, seconds, body, headers) as answer:
+        session, seconds = (self._actions, self._limits.action) if action else (self._requests, self._limits.answer)
+        async with self._asked(session, form, seconds, body, headers) as answer:
             yield answer
 
     @asynccontextmanager
     async def _asked(
-        self, form: ThingForm, seconds: float | None, body: bytes | None = None, more: dict[str, str] | None = None
+        self,
+        session: aiohttp.ClientSession,
+        form: ThingForm,
+        seconds: float | None,
+        body: bytes | None = None,
+        more: dict[str, str] | None = None,
     ) -> AsyncIterator[aiohttp.ClientResponse]:
         """A request that was answered without an error; the body may not have come yet. Raises ThingError.
 
@@ -177,7 +185,6 @@ class ThingClient:
         time = aiohttp.ClientTimeout(total=seconds, sock_connect=self._limits.answer)
         try:
             url = URL(form.url).update_query(form.query) if form.query else URL(form.url)
-            session = self._followed if seconds is None else self._requests
             async with session.request(
                 form.method, url, data=body, headers=headers, allow_redirects=False, timeout=time
             ) as answer:

@@ -89,6 +89,25 @@ def test_outputs_that_are_followed_leave_room_for_requests_to_their_host(thing_s
     assert asked(lambda client: asyncio.wait_for(work(client), 30.0)) == ThingAnswer(True)
 
 
+def test_actions_that_take_long_leave_room_for_requests_to_their_host(thing_server: Start) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    server.posts["/move"] = server.say_nothing
+
+    async def work(client: ThingClient) -> ThingAnswer:
+        move = ThingForm(server.url + "/move", "POST")
+        called = [asyncio.ensure_future(client.call(move, None)) for _ in range(CONNECTIONS + 3)]
+        while len(server.received) < CONNECTIONS:
+            await asyncio.sleep(0.01)
+        try:
+            return await client.read(ThingForm(server.url + "/on", "GET"))
+        finally:
+            for one in called:
+                one.cancel()
+
+    assert asked(lambda client: asyncio.wait_for(work(client), 30.0)) == ThingAnswer(True)
+
+
 def test_a_form_sends_what_its_security_asks_for(thing_server: Start) -> None:
     server = thing_server()
     server.values["/on"] = 1
