@@ -67,6 +67,8 @@ class ComponentCode:
         required = frozenset(port.name for port in profile.required if not port.is_operation)
         self._blindness = Blindness(bus, required | {INCOMPLETE}, tolerates if self._actuates else None, self._rest)
         self._values: dict[str, Term] = {}
+        self._connected: set[str] = set()
+        """The operations of which the code has heard, since it was started, that they are connected."""
 
     @property
     def on_bus_thread(self) -> bool:
@@ -174,11 +176,16 @@ class ComponentCode:
             self._blindness.has_lasted(TOLERATES)
 
     def connection_changed(self, operation: str, connected: bool) -> None:
-        """Tell the component that an operation that it needs is connected, or is no more."""
-
-        component = self._component
+        """Tell the component that an operation that it needs is connected, or is no more, unless it rests or knows."""
+        component, known = self._component, self._connected
         what, tell = ("connected", component.connected) if connected else ("disconnected", component.disconnected)
-        self._thread.call(lambda: self._guarded(what, partial(tell, operation)))
+
+        def change() -> None:
+            if not self._resting and (operation in known) is not connected:
+                (known.add if connected else known.discard)(operation)
+                self._guarded(what, partial(tell, operation))
+
+        self._thread.call(change)
 
     def tick(self, action: Callable[[], None]) -> None:
         """Run what the component wants done at intervals; in turns with signals, which else would never be read."""
@@ -294,6 +301,7 @@ class ComponentCode:
         return trouble
 
     def _started(self) -> str | None:
+        self._connected.clear()
         return self._carried_out("started", self._start_deadline, self._component.started, "it refuses")
 
     def _stop(self) -> bool:

@@ -266,6 +266,22 @@ def test_a_timer_that_is_late_is_run_once_and_not_made_up_for() -> None:
     assert recorder.said == [("tick",)]
 
 
+def test_what_is_due_at_an_interval_as_a_component_fails_is_not_done_once_it_acts_again() -> None:
+    class Ticking(Recorder):
+        def started(self) -> None:
+            super().started()
+            self.every(0.1, lambda: self.said.append(("tick",)))
+
+    split = Split(recorder := Ticking())
+    split.call(apply(1, US))
+    split.code.poll()
+    split.let_pass(0.2)  # the code is busy
+    recorder.fail("lost")
+    split.call(apply(2, US))
+    split.code.poll()
+    assert recorder.said == [("started",), ("stopped",), ("started",)]
+
+
 # In real time, with a real thread.
 
 

@@ -67,5 +67,7 @@ class _Interval:
             code.tick(self._run)
 
     def _run(self) -> None:
+        """Do it, unless the code was stopped while this waited for it, though it may have been started again."""
         self._due = False
-        self._action()
+        if self._stint == self._timers.code.stint:
+            self._action()

@@ -86,6 +86,27 @@ def test_a_component_that_has_rested_is_told_again_what_is_connected() -> None:
     assert peer.album.told == ["photo is connected"] * 2
 
 
+def test_a_component_at_rest_is_told_what_is_connected_once_it_starts_again() -> None:
+    peer = Peer(lambda request: None)
+    peer.stage.call(apply(2, inputs=CALLING, rests=True))
+    peer.stage.call(apply(2, inputs={}, rests=True))
+    peer.stage.call(apply(2, inputs=CALLING, rests=True))
+    peer.stage.let_pass(0.1)
+    assert peer.album.told == ["photo is connected"]
+    peer.stage.call(apply(2, inputs=CALLING))
+    peer.stage.let_pass(0.1)
+    assert peer.album.told == ["photo is connected"] * 2
+
+
+def test_a_component_that_starts_again_while_something_is_connected_is_told_once() -> None:
+    peer = Peer(lambda request: None)
+    peer.stage.call(apply(2, inputs={}, rests=True))
+    peer.stage.runtime.component.started = lambda: peer.stage.runtime.needed_operations.follow(apply(2, inputs=CALLING))
+    peer.stage.call(apply(2, inputs={}))
+    peer.stage.let_pass(0.1)
+    assert peer.album.told == ["photo is connected", "photo is not connected", "photo is connected"]
+
+
 def test_a_component_that_calls_and_calls_is_told_to_wait() -> None:
     peer = Peer(lambda request: None)
     for _ in range(MOST_CALLS + 1):
