@@ -18,6 +18,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from selfconf.model.immutable import immutable
+from selfconf.model.profile import is_port_name
 from selfconf.rdf.advertisements.recognition import port_of
 from selfconf.rdf.advertisements.statement_table import Statement, StatementTable
 from selfconf.rdf.permitted_fields import RATE
@@ -158,7 +159,10 @@ def _filled(template: TokenTemplate, segment: bytes, known: StatementTable) -> S
         or (template.rate and not _common(template.rate, segment))
     ):
         return known[statement.text]
-    statement.slot = known.slot(template.predicate, segment.split(b'"', template.name + 1)[template.name].decode())
+    name = segment.split(b'"', template.name + 1)[template.name].decode()
+    if not is_port_name(name):
+        return known[statement.text]
+    statement.slot = known.slot(template.predicate, name)
     return statement
 
 

@@ -111,6 +111,9 @@ def each(said: str) -> str:
 @example(each('sc:hasInput [ sc:name "i" ; sc:signalType :S ; sc:depth {d} ]'))
 @example(each("sc:restarts {d} ; sc:deadline [ sc:value {d} ; sc:unit unit:SEC ]"))
 @example(each("sc:tolerates :lasting{d} . :lasting{d} sc:value {d} ; sc:unit unit:SEC"))
+@example(each('sc:hasInput [ sc:name "i{d}()" ; sc:signalType :S ]'))
+@example(each('sc:hasParameter [ sc:name "\u202e{d}" ; sc:parameterType :S ]'))
+@example(each(f'sc:hasOutput [ sc:name "{"o" * 1_000}{{d}}" ; sc:signalType :S ]'))
 def test_what_is_filled_in_says_what_the_careful_reader_reads(text: str) -> None:
     try:
         careful = told(advertisements.read_document(turtle.parse(text, "a.ttl", "file:///a.ttl")))
