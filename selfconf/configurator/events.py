@@ -27,9 +27,13 @@ class Call(str, Enum):
 
 @immutable
 class Accepted:
-    """A task is to be configured. Epochs start above `epoch`, so that they are newer than those of earlier runs."""
+    """A task is to be configured. Epochs start above `epoch`, so that they are newer than those of earlier runs.
+
+    Another configurator of it, which is gone, may have lost some components, which live on.
+    """
 
     epoch: int
+    lost: tuple[RecordedLoss, ...] = ()
 
 
 @immutable

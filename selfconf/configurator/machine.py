@@ -22,7 +22,7 @@ an older epoch, or the result of an older search, changes nothing; no component 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from selfconf.configurator import answering, deploying, losing, phases, searching
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
@@ -53,7 +53,7 @@ from selfconf.configurator.starting_order import parameter_values, wiring
 from selfconf.configurator.state import Held, Loss, Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Cause
+from selfconf.protocol.messages import Cause, RecordedLoss
 
 
 # complexity: one case for each event; what it does is a function of its own
@@ -61,7 +61,7 @@ def step(state: State, event: Event) -> Reaction:
     """What an event does. Total: every state answers every event, if only by staying as it is."""
     match event:
         case Accepted():
-            return phases.discover(replace(state, epoch=event.epoch)) if state.phase is Phase.IDLE else (state, ())
+            return _accepted(state, event)
         case Adopted():
             return _adopted(state, event)
         case HandedOver():
@@ -96,6 +96,17 @@ def step(state: State, event: Event) -> Reaction:
             return _stopped(state)
 
 
+def _accepted(state: State, event: Accepted) -> Reaction:
+    if state.phase is not Phase.IDLE:
+        return state, ()
+    return phases.discover(replace(state, epoch=event.epoch, lost=_losses(event.lost)))
+
+
+def _losses(recorded: Iterable[RecordedLoss]) -> dict[IRI, Loss]:
+    """What another configurator of the task has lost."""
+    return {one.component: Loss(one.cause, one.detail, one.life) for one in recorded}
+
+
 def _adopted(state: State, event: Adopted) -> Reaction:
     """Go on with what runs: every component keeps what it does, and hears for which task from now on.
 
@@ -107,7 +118,7 @@ def _adopted(state: State, event: Adopted) -> Reaction:
     held = {
         c: Held(inputs, values[c], asked=True, reserved=True, active=True, acts=True) for c, inputs in wires.items()
     }
-    lost = {one.component: Loss(one.cause, one.detail, one.life) for one in event.lost}
+    lost = _losses(event.lost)
     adopted = replace(
         state, epoch=event.epoch - 1, target=event.configuration, held=held, watched=frozenset(wires), lost=lost
     )

@@ -31,7 +31,7 @@ from selfconf.deployment.task_requests import TaskRequests
 from selfconf.errors import PeerError
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
-from selfconf.model.run_event import RunEvent, TaskRunning
+from selfconf.model.run_event import RunEvent, TaskRunning, TaskWaiting
 from selfconf.protocol.keys import Keys, owner_of
 from selfconf.protocol.messages import TaskRecord
 
@@ -261,10 +261,13 @@ class Keeper:
                 return
             except PeerError as error:
                 log.error("the task %s begins anew, as its configuration is not to be read: %s", record.task, error)
-        runner.start()
+        runner.start(record.lost)
 
     def _report(self, task: str, event: RunEvent) -> None:
-        """Let every site know what runs, and what was lost, so that the next one can go on with it."""
+        """Let every site know what runs, and what was lost, so that the next one can go on with it.
+
+        Of a task that waits nothing runs: the next one begins anew, as it would let act what is not held any more.
+        """
         log.info("%s: %s", task, event.act)
         known = self.folder.records.get(task)  # none if it has ended, and was forgotten meanwhile
         if known is None or self._versions.get(task) != known.version:
@@ -272,7 +275,9 @@ class Keeper:
         record = replace(known, lost=self.runners[task].recorded_losses)
         if isinstance(event, TaskRunning):
             record = replace(record, epoch=event.epoch, configuration=configuration_record(event.configuration))
-        if isinstance(event, TaskRunning) or record.lost != known.lost:
+        elif isinstance(event, TaskWaiting):
+            record = replace(record, configuration={})
+        if isinstance(event, TaskRunning) or record != known:
             record = replace(record, revision=known.revision + 1)
             self._versions[task] = record.version
             self._exchange.learn(record)

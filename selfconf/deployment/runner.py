@@ -161,11 +161,11 @@ class TaskRunner:
             ),
         ]
 
-    def start(self) -> None:
-        """Begin with act 1."""
+    def start(self, lost: tuple[RecordedLoss, ...] = ()) -> None:
+        """Begin with act 1, without what another configurator of the task had lost, as its `recorded_losses` said."""
         self._audits.go_on()
         self._reachability.pulse()
-        self._step(Accepted(int(self.clock() * 1000)))
+        self._step(Accepted(int(self.clock() * 1000), lost))
 
     def adopt(self, configuration: Configuration, epoch: int, lost: tuple[RecordedLoss, ...] = ()) -> None:
         """Go on with a task that runs, in that configuration since that epoch, and whose configurator is gone.
