@@ -76,12 +76,16 @@ class Places:
         self._read: FilesRead = {}
         self._texts = texts
 
-    def of(self, named: IRI) -> Place | None:
-        """Where a role or component is described; the line only where it is known."""
-        if named in self._roles:
-            place = self._roles[named]
-        else:
-            place = self._ecology[named].profile.place if named in self._ecology else None
+    def of_role(self, role: IRI) -> Place | None:
+        """Where a role is described; the line only where it is known."""
+        return self._of(role, self._roles.get(role))
+
+    def of_component(self, component: IRI) -> Place | None:
+        """Where a component is described, which may have the IRI of a role; the line only where it is known."""
+        found = self._ecology.get(component)
+        return self._of(component, None if found is None else found.profile.place)
+
+    def _of(self, named: IRI, place: Place | None) -> Place | None:
         if place is not None and place.source in (*KEPT_TEXTS, GRAPH):
             return Place(place.source, None if place.source == GRAPH else _line_in(self._texts_read, named))
         if place is None or not Path(place.source).is_file():
@@ -102,7 +106,8 @@ class Places:
         )
 
     def _placed(self, fact: Fact) -> Fact:
-        return replace(fact, place=self.of(_spoken_of(fact)))
+        component = _component_of(fact)
+        return replace(fact, place=self.of_role(fact.role) if component is None else self.of_component(component))
 
 
 def _read_texts(texts: Sequence[str | None]) -> list[_TextReadAgain]:
@@ -145,11 +150,11 @@ def _with_line(named: IRI | BlankNode, place: Place, read: FilesRead) -> Place:
     return place if line is None else Place(place.source, line)
 
 
-def _spoken_of(fact: Reason | Relaxation | NearMiss) -> IRI:
-    """The role or component that a reason, a near miss or a relaxation is about."""
+def _component_of(fact: Reason | Relaxation | NearMiss) -> IRI | None:
+    """The component that a reason, a near miss or a relaxation is about; None if it is about its role."""
     if isinstance(fact, AcceptNearMiss):
         return fact.near.component
-    return fact.component if isinstance(fact, InputUnfed | NearMiss) else fact.role
+    return fact.component if isinstance(fact, InputUnfed | NearMiss) else None
 
 
 def _read_again(source: str) -> _TextReadAgain | None:

@@ -22,9 +22,10 @@ from tests.lab import PREFIXES
 def test_roles_and_components_have_file_and_line_and_others_have_no_place(clock: sc.TaskSpecification) -> None:
     places = Places(clock.document.task.template, sc.read("examples/clock").advertisements())
     home = "https://example.org/my-home#"
-    assert str(places.of(sc.IRI(f"{home}screen"))) == "examples/clock/tell-the-time.ttl:15"
-    assert str(places.of(sc.IRI(f"{home}display"))) == "examples/clock/display.ttl:5"
-    assert places.of(sc.IRI(f"{home}kitchen")) is None
+    assert str(places.of_role(sc.IRI(f"{home}screen"))) == "examples/clock/tell-the-time.ttl:15"
+    assert str(places.of_component(sc.IRI(f"{home}display"))) == "examples/clock/display.ttl:5"
+    assert places.of_role(sc.IRI(f"{home}kitchen")) is None
+    assert places.of_component(sc.IRI(f"{home}kitchen")) is None
 
 
 PARSE = positions.parse_with_positions
@@ -167,19 +168,28 @@ def test_a_type_that_is_unlike_or_one_flaw_of_two_is_no_near_miss(
     assert configure(capsys, home, "--format", "json").body["near_misses"] == []
 
 
+def test_a_component_with_the_iri_of_a_role_is_found_where_it_is_advertised(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(home, TIME + SINK, CLOCK.replace(":clock a", ":source a"), SCREEN.replace("SIGNAL", "rob:Text"))
+    (miss,) = configure(capsys, home, "--format", "json").body["near_misses"]
+    assert miss["component"].endswith("#source")
+    assert miss["place"] == line(home / "ads" / "clock.ttl", ":source a")
+
+
 def test_what_comes_from_elsewhere_has_no_place_and_what_cannot_be_read_again_no_line(tmp_path: Path) -> None:
     role, component = IRI("urn:r"), IRI("urn:c")
     template = Template(IRI("urn:t"), (Role(role, place=Place("somewhere/else.ttl")),))
-    assert Places(template, {}).of(role) is None
-    assert Places(template, {}).of(component) is None
+    assert Places(template, {}).of_role(role) is None
+    assert Places(template, {}).of_component(component) is None
     file = tmp_path / "ads.ttl"
     text = PREFIXES + "<urn:c> a sc:Component, :T .\n"
     file.write_text(text)
     ecology = read(file).advertisements()
-    assert Places(template, ecology).of(component) == Place(str(file), text.count("\n"))
+    assert Places(template, ecology).of_component(component) == Place(str(file), text.count("\n"))
     for later in (text + "#" * LARGEST_REREAD, "no Turtle"):
         file.write_text(later)
-        assert Places(template, ecology).of(component) == Place(str(file))
+        assert Places(template, ecology).of_component(component) == Place(str(file))
 
 
 def test_lines_of_text_that_is_in_no_file_are_told_too_and_of_a_graph_its_name() -> None:
@@ -201,8 +211,8 @@ def test_a_text_that_only_speaks_of_a_component_is_not_where_it_is_described() -
     template = Template(IRI("urn:t"), (Role(IRI("urn:r"), place=Place("<text>")),))
     speaking, describing = "<urn:a> <urn:p> <urn:c> .", "\n<urn:c> a <urn:T> ."
     ecology = read(PREFIXES + "<urn:c> a sc:Component, :T .").advertisements()
-    assert Places(template, ecology, (speaking, None, describing)).of(IRI("urn:c")) == Place("<text>", 2)
-    assert Places(template, ecology, (speaking,)).of(IRI("urn:c")) == Place("<text>", 1)
-    assert Places(template, ecology, ("no Turtle", describing + "#" * LARGEST_REREAD)).of(IRI("urn:c")) == Place(
-        "<text>"
-    )
+    assert Places(template, ecology, (speaking, None, describing)).of_component(IRI("urn:c")) == Place("<text>", 2)
+    assert Places(template, ecology, (speaking,)).of_component(IRI("urn:c")) == Place("<text>", 1)
+    assert Places(template, ecology, ("no Turtle", describing + "#" * LARGEST_REREAD)).of_component(
+        IRI("urn:c")
+    ) == Place("<text>")
