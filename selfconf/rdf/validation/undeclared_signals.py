@@ -30,14 +30,23 @@ def undeclared_signals(
         text = TextPlaces(name, octets) if by_home.keys() - told else None
         for home in sorted(by_home.keys() - told):
             assert text is not None
-            yield _warning(text, home, by_home[home], seen[name])
+            yield _warning(text, home, by_home[home], seen[name], index)
         told |= by_home.keys()
 
 
-def _warning(text: TextPlaces, home: str, signals: set[str], found: Prefiltered) -> Diagnostic:
+def _warning(text: TextPlaces, home: str, signals: set[str], found: Prefiltered, index: TermIndex) -> Diagnostic:
     message = f"No loaded ontology declares the signal type <{min(signals)}>."
     if len(signals) > 1:
         message = f"No loaded ontology declares the signal types of <{home}>: this file uses {len(signals):,} of them."
     offset = text.first_use(signals, found.prefixes)
     hint = f"Give the ontology that declares it with {setting('ontology', 'FILE')}."
+    meant = _declared_elsewhere(signals, index)
+    if meant is not None:
+        hint = f"Did you mean <{meant}>? If not, g{hint[1:]}"
     return text.at(offset or 0, "SC-L03", message, hint)
+
+
+def _declared_elsewhere(signals: set[str], index: TermIndex) -> str | None:
+    """A class of a loaded ontology that has the name of one of some signal types, which may have its prefix wrong."""
+    names = {signal[len(namespace(signal)) :] for signal in signals}
+    return min((one for one in index.classes if one[len(namespace(one)) :] in names), default=None)

@@ -54,6 +54,14 @@ def test_a_type_that_an_ontology_declares_is_not_told() -> None:
     assert told(component("a", ":Sound"), index=index_of([prefilter(DECLARED.encode())])) == []
 
 
+def test_a_type_of_that_name_in_another_namespace_is_proposed() -> None:
+    index = index_of([prefilter(DECLARED.encode())])
+    (only,) = told(component("a", "other:Light", "other:Sound"), index=index)
+    assert (only.hint or "").startswith("Did you mean <https://example.org/peis-home#Sound>? If not, give the ontology")
+    (only,) = told(component("a", "other:Light"), index=index)
+    assert (only.hint or "").startswith("Give the ontology")
+
+
 def test_a_file_that_the_prefilter_has_not_seen_is_passed_over() -> None:
     files = [("a.ttl", (PREFIXES + component("a", ":Sound")).encode())]
     assert list(undeclared_signals(files, {}, TermIndex())) == []
