@@ -124,12 +124,15 @@ class NotAmong:
 
     values: frozenset[Term]
     members: frozenset[Term]
+    partly: bool = False
+    """Whether the property has further values, which are among them."""
 
     def said(self, name: str) -> str:
         """The fault of the property of that name."""
         alike = {term_in_words(value) for value in self.values} & {term_in_words(member) for member in self.members}
         worded = in_full if alike else in_words
-        return f"{name} is {worded(self.values)}, not {worded(self.members)}"
+        said, wanted = worded(self.values), worded(self.members)
+        return f"{name} is {said} as well, not only {wanted}" if self.partly else f"{name} is {said}, not {wanted}"
 
 
 @immutable

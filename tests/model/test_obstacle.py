@@ -254,3 +254,9 @@ def test_values_with_one_local_name_are_told_apart_by_their_whole_iris() -> None
     assert NotAmong(frozenset((here,)), frozenset((there,))).said("place") == f"place is {here!r}, not {there!r}"
     text = Literal("bed1")
     assert NotAmong(frozenset((text,)), frozenset((there,))).said("place") == 'place is "bed1", not bed1'
+
+
+def test_of_several_values_that_one_that_is_not_allowed_is_named_as_a_further_one() -> None:
+    first, second, third = (IRI(f"https://example.org/#bed{number}") for number in (1, 2, 3))
+    fault = NotAmong(frozenset((first,)), frozenset((second, third)), partly=True)
+    assert fault.said("bed") == "bed is bed1 as well, not only bed2 or bed3"

@@ -126,7 +126,7 @@ class PropertyTest:
             yield WrongCount(len(values), too_many)
         for members in self.allowed:
             if not values <= members:
-                yield NotAmong(values - members, members)
+                yield NotAmong(values - members, members, partly=not values.isdisjoint(members))
         yield from (NotAmong(values, frozenset((value,))) for value in self.required if value not in values)
         for test in self.each:
             wrong = frozenset([value for value in values if not test.passes(value)])
