@@ -51,7 +51,8 @@ class Searches:
             *_, found = self._with_additions(self._best, problem, running)
             if not isinstance(found, Undecided):
                 return found.configuration if isinstance(found, Optimum) else found
-        *_, near = self._with_additions(self._nearest, problem, running)
+        again = self._search if self.strategy is Strategy.PAPER else self._nearest
+        *_, near = self._with_additions(again, problem, running)
         assert not isinstance(near, Optimum)  # for the nearest is not chosen by what it costs
         return near
 

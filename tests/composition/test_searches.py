@@ -181,3 +181,16 @@ def test_of_those_that_cost_the_least_the_first_is_named_in_a_later_slice(monkey
     assert (found.proved, found.first) == (True, True)
     assert quick.cost == found.cost
     assert found.configuration.components[:2] == (iri("a"), iri("s"))
+
+
+def test_after_a_failure_paper_begins_anew_and_first_keeps_what_runs() -> None:
+    sources = [component("a", outputs="o:X"), component("b", outputs="o:Y"), component("c", outputs="o:X")]
+    asked = problem({"source": sources, "sink": [component("s", "i:X"), component("t", "i:Y")]}, "source>sink")
+    running = outcome(Strategy.FIRST, asked)
+    assert isinstance(running, Configuration)
+    assert running.components == (iri("a"), iri("s"))
+    left = Problem(asked.task, asked.partition.without(frozenset((iri("a"),))), asked.hierarchy)
+    for strategy, kept in ((Strategy.PAPER, ("b", "t")), (Strategy.FIRST, ("c", "s"))):
+        for answer in (outcome(strategy, left, running), Searches(strategy).after(left, running)):
+            assert isinstance(answer, Configuration)
+            assert answer.components == tuple(map(iri, kept))
