@@ -19,6 +19,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
+from selfconf.model.wording import listed
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import SignalEncoding
 from selfconf.protocol.stamps import PLAIN, StampWriter
@@ -84,7 +85,10 @@ class Outputs:
             raise ProgrammerError(f"{self._profile.component.short} cannot emit a signal of the time {moment!r}")
         output = self._publishers.get(port)
         if output is None:
-            raise ProgrammerError(f"{self._profile.component.short} advertises no output {port!r}")
+            names = listed(map(repr, self._publishers)) or "none"
+            raise ProgrammerError(
+                f"{self._profile.component.short} advertises no output {port!r}; its outputs: {names}"
+            )
         if not self._active():
             return
         try:

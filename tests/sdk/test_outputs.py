@@ -203,7 +203,7 @@ def test_no_output_is_taken_back_while_another_thread_issues_a_signal(monkeypatc
 
 def test_an_output_that_is_not_advertised_is_the_programmers_error() -> None:
     stage = Stage()
-    with pytest.raises(ProgrammerError, match="advertises no output 'speed'"):
+    with pytest.raises(ProgrammerError, match="advertises no output 'speed'; its outputs: 'velocity'"):
         stage.component.emit("speed", 1)
 
 
