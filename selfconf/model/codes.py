@@ -203,7 +203,8 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-A14", "A component says at most once, by true or false, whether it may be shared.",
-        "Tasks share it or do not; by default they share what has neither inputs nor operational parameters.",
+        "Tasks share it or do not; by default they share what has neither inputs nor operational parameters, nor an "
+        "operation that takes a request.",
         f'{_TUNER} ; sc:shareable "yes" .', f"{_TUNER} ; sc:shareable true .",
         ("Shareable",),
     ),
