@@ -318,11 +318,23 @@ def _value(store: Any, definition: Any, given: Any) -> Any:
     if given is None:
         given = [None] * (count if kind == Nodetype.ARRAY else 0)
     if element[0] == Nodetype.BASE and element[1][0] not in ("string", "wstring"):
-        import numpy
-
-        name = element[1][0]
-        return numpy.asarray([_base(name, one) for one in given], _DTYPES.get(name, name))
+        return _numbers(element[1][0], given)
     return [_value(store, element, one) for one in given]
+
+
+def _numbers(datatype: str, given: Any) -> Any:
+    """Numbers as an array of NumPy, which by itself makes 44 of 300 as `uint8`, and 1 of 1.7. Raises MessageError."""
+    import numpy
+
+    if isinstance(given, list | tuple):
+        given = [0 if one is None else one for one in given]
+    numbers = numpy.frombuffer(given, "uint8") if isinstance(given, bytes | bytearray) else numpy.asarray(given)
+    if numbers.ndim == 1 and numbers.dtype.kind in "biuf":
+        with numpy.errstate(all="ignore"):
+            made = numbers.astype(_DTYPES.get(datatype, datatype))
+        if numpy.array_equal(*((made, numbers) if made.dtype.kind != "f" else map(numpy.isfinite, (made, numbers)))):
+            return made
+    raise MessageError(f"has a value that is no {datatype}[]")
 
 
 def _base(datatype: str, given: Any) -> Any:

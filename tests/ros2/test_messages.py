@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import struct
+from array import array
 from typing import Any
 
 import pytest
@@ -59,7 +60,12 @@ def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
         ({"text": "x"}, "std_msgs/msg/String", "has text, which std_msgs/msg/String has not"),
         ("x", "std_msgs/msg/String", "is no object"),
         ({"header": 3}, "sensor_msgs/msg/LaserScan", "is no object, where std_msgs/msg/Header has fields"),
-        ({"ranges": ["far"]}, "sensor_msgs/msg/LaserScan", "is no sensor_msgs/msg/LaserScan"),
+        ({"ranges": ["far"]}, "sensor_msgs/msg/LaserScan", r"has a value that is no float32\[\]"),
+        ({"ranges": [1e39]}, "sensor_msgs/msg/LaserScan", r"has a value that is no float32\[\]"),
+        ({"data": [1.7]}, "std_msgs/msg/Int32MultiArray", r"has a value that is no int32\[\]"),
+        ({"data": "12"}, "std_msgs/msg/Int32MultiArray", r"has a value that is no int32\[\]"),
+        ({"data": array("h", [300])}, "sensor_msgs/msg/Image", r"has a value that is no uint8\[\]"),
+        ({"data": array("b", [-1])}, "sensor_msgs/msg/Image", r"has a value that is no uint8\[\]"),
         ({"sec": 1 << 40}, "builtin_interfaces/msg/Time", "is no builtin_interfaces/msg/Time"),
         ({"covariance": [0.1] * 35}, "geometry_msgs/msg/PoseWithCovariance", "Unexpected array length"),
         ({"data": "false"}, "std_msgs/msg/Bool", "has 'false', where a bool is true or false"),
@@ -77,6 +83,13 @@ def test_what_is_read_of_a_message_of_any_type_can_be_written_again() -> None:
         kind = usual(name)
         payload = messages.message({}, kind)
         assert messages.message(messages.message_fields(payload, kind), kind) == payload, name
+
+
+def test_an_array_of_numbers_may_be_written_in_several_ways() -> None:
+    numbers = usual("std_msgs/msg/UInt8MultiArray")
+    wanted = messages.message({"data": [0, 7, 255]}, numbers)
+    for given in ((None, 7.0, 255), bytes((0, 7, 255)), bytearray((0, 7, 255)), array("d", (0, 7, 255))):
+        assert messages.message({"data": given}, numbers) == wanted
 
 
 def test_a_byte_has_no_sign() -> None:
