@@ -14,9 +14,11 @@ from selfconf.composition.composer import Composer
 from selfconf.errors import AuthorError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.profile import Condition, Input, Output, Profile, port_in_words
 from selfconf.model.refusal import Refusal, Undecided
+from selfconf.model.sharing import agreed
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import MANY
 from selfconf.rdf import tasks
@@ -71,21 +73,33 @@ class Inside:
         bound = tasks.bind(self.task, list(values.items()))
         return Composer(tasks.complete(bound), self.hierarchy, outside=self.composite)
 
-    def configured(self, ecology: Mapping[IRI, Advertisement], holder: Configuration) -> Configuration | str:
-        """The inside in an ecology, with the values that a configuration sets it to; or why there is none."""
+    def configured(
+        self, ecology: Mapping[IRI, Advertisement], holder: Configuration, held: Mapping[IRI, Holder]
+    ) -> Configuration | str:
+        """The inside in an ecology, with the values that a configuration sets it to; or why there is none.
+
+        It does without components that are `held`, unless they can be shared by what wants the same of them.
+        """
         values = {one.name: one.value for one in holder.settings if one.component == self.composite}
         unfed = self.optional - {one.input for one in holder.connections if one.sink == self.composite}
         try:
             composer = self.composer_with(values)
             composer.leave_unfed(unfed)
-            outcome = composer.compose(ecology, frozenset(), None)
+            shared = {one: user for one, user in held.items() if ecology[one].profile.is_shareable}
+            alone = held.keys() - shared
+            outcome, _ = agreed(lambda without: composer.compose(ecology, without | alone, None), shared, lambda it: it)
         except SelfconfError as error:
             return str(error)
         if isinstance(outcome, Configuration):
             return outcome
+        used = ""
+        if isinstance(outcome, Refusal):
+            usable = composer.usable(held.keys(), outcome)
+            outcome = outcome.told_of_held(usable)
+            used = "".join(f"; {one.short} acts for {held[one].name}" for one in sorted(usable)[:MANY])
         unfed_ones = ", ".join(port_in_words(name).removeprefix("the ") for name in sorted(unfed))
-        alone = f"; no component feeds its optional {unfed_ones}" if unfed else ""
-        return f"its inside cannot be configured now: {why_none(outcome)}{alone}"
+        lacking = f"; no component feeds its optional {unfed_ones}" if unfed else ""
+        return f"its inside cannot be configured now: {why_none(outcome)}{used}{lacking}"
 
 
 def insides(
@@ -96,9 +110,11 @@ def insides(
 ) -> Iterator[tuple[IRI, Configuration | str]]:
     """Yield what the composites of a configuration are inside, from given advertisements, or why that is nothing.
 
-    Composites inside of these follow each after the one that holds it. The roles of the insides see `hierarchy`.
+    Composites inside of these follow each after the one that holds it. The roles of the insides see `hierarchy`. None
+    has what the configuration or an inside before it holds, unless that can be shared.
     """
     found, why = configurable(known, document_of, hierarchy)
+    held = _held_by(configuration, configuration.template.short)
     waiting = [(component, configuration) for component in configuration.components]
     while waiting:
         component, holder = waiting.pop(0)
@@ -106,10 +122,17 @@ def insides(
             yield component, why[component]
         elif component in found:
             others = {one: a for one, a in known.items() if one != component and one not in why}
-            inside = found[component].configured(others, holder)
+            taken = {one: user for one, user in held.items() if one in others}
+            inside = found[component].configured(others, holder, taken)
             yield component, inside
             if isinstance(inside, Configuration):
+                held = _held_by(inside, component.short) | held
                 waiting = [*((one, inside) for one in inside.components), *waiting]
+
+
+def _held_by(configuration: Configuration, name: str) -> dict[IRI, Holder]:
+    """The components of a configuration, each held by a task of that name."""
+    return {one: Holder(name, wants=configuration.wants(one)) for one in configuration.components}
 
 
 def configurable(

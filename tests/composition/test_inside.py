@@ -194,6 +194,40 @@ def test_an_optional_input_that_nobody_feeds_is_fed_to_nobody_inside(
         assert inside.components == (iri(player),)
 
 
+TWO_WHOLES = """
+:whole a sc:Component, :Whole ; sc:grounding [ sc:template :localise ] ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] .
+:wholly a sc:Component, :Whole ; sc:grounding [ sc:template :localise ] ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ] .
+:localise a sc:Template ; sc:roles ( :tracker ) ;
+    sc:hasOutput [ sc:name "pose" ; sc:signalType :Pose ; sc:of :tracker ] .
+:tracker a sc:Role ; sh:class :Tracker .
+"""
+ALONE = ':{} a sc:Component, :Tracker ; sc:shareable false ; sc:hasOutput [ sc:name "where" ; sc:signalType :Pose ] .'
+
+
+def insides_beside(players: list[str], others: str) -> dict[str, str]:
+    """The component inside of each composite, or why there is none, where others play a role with the composites."""
+    text = TWO_WHOLES + others
+    holder = Configuration(iri("task"), (Assignment(iri("role"), tuple(map(iri, players))),), ())
+    found = insides(known(text), lambda one: document(text), holder)
+    return {one.short: it if isinstance(it, str) else it.components[0].short for one, it in found}
+
+
+def test_what_a_configuration_holds_is_inside_of_none_of_its_composites() -> None:
+    assert insides_beside(["whole", "a"], ALONE.format("a") + ALONE.format("b")) == {"whole": "b"}
+    assert insides_beside(["whole", "a"], ALONE.format("a").replace("false", "true")) == {"whole": "a"}
+    ((_, why),) = insides_beside(["whole", "a"], ALONE.format("a")).items()
+    assert why.endswith("no component that is free is eligible for the role tracker; a acts for task")
+
+
+def test_what_is_inside_of_one_composite_is_inside_of_no_other_beside_it() -> None:
+    assert insides_beside(["whole", "wholly"], ALONE.format("a") + ALONE.format("b")) == {"whole": "a", "wholly": "b"}
+    one = insides_beside(["whole", "wholly"], ALONE.format("a"))
+    assert one["whole"] == "a"
+    assert one["wholly"].endswith("; a acts for whole")
+
+
 LACKING = Refusal(iri("localise"), (TooFewEligible(iri("tracker"), 1, 0),))
 
 
