@@ -6,7 +6,7 @@ rdflib nor pySHACL is loaded.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -136,7 +136,7 @@ class ShapeJudge:
         named = free_values.looked_at(self._document, role.iri)
 
         def said(advertisement: Advertisement) -> Iterator[Triple]:
-            seen = self._visible_of(advertisement, components)
+            seen = self.visible_of(advertisement, components)
             return seen if named is None else (triple for triple in seen if triple[1] in named)
 
         store = LazyStore()
@@ -155,10 +155,10 @@ class ShapeJudge:
         """
         components = frozenset(advertisement.component for advertisement in advertisements)
         for advertisement in advertisements:
-            yield from self._visible_of(advertisement, components)
+            yield from self.visible_of(advertisement, components)
 
-    def _visible_of(self, advertisement: Advertisement, components: frozenset[IRI]) -> Iterator[Triple]:
-        """What the shape sees of one advertisement beside those of other components."""
+    def visible_of(self, advertisement: Advertisement, components: Container[IRI]) -> Iterator[Triple]:
+        """What the shape sees of one advertisement, which says nothing that counts about others of some components."""
         for subject, predicate, value in advertisement.triples:
             if subject != advertisement.component and subject in components:
                 continue

@@ -54,7 +54,7 @@ from selfconf.rdf.eligibility.role_tests import CompiledRole, Count
 from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
-from selfconf.rdf.turtle import Document
+from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
 
 if TYPE_CHECKING:
@@ -162,10 +162,12 @@ class Partitioner:
 
     def judged(self, partition: Partition, ecology: AdvertisementIndex) -> Partition:
         """A partition in which ports tell more than their types: what outputs conform to, and what requests are."""
-        judged = self._acceptance.judged(
-            self.task.template, partition, lambda component: tuple(self.judge.visible([ecology[component]]))
-        )
+        judged = self._acceptance.judged(self.task.template, partition, partial(self._seen_alone, ecology))
         return with_sent_requests(judged, self.hierarchy)
+
+    def _seen_alone(self, ecology: AdvertisementIndex, component: IRI) -> tuple[Triple, ...]:
+        """What the shape that an input accepts sees of the component of an output; of others it sees nothing."""
+        return tuple(self.judge.visible_of(ecology[component], ecology))
 
     def _looked_at(self, number: int) -> frozenset[IRI] | None:
         """The properties of which a role decides who may play it, and the type where it may exclude one."""
@@ -180,9 +182,7 @@ class Partitioner:
 
     def unaccepted(self, ecology: AdvertisementIndex, component: IRI, output: str, shape: str) -> Obstacle | None:
         """What keeps an output of a component from conforming to the shape that an input accepts."""
-        return self._acceptance.obstacle(
-            shape, (component, output), lambda one: tuple(self.judge.visible([ecology[one]]))
-        )
+        return self._acceptance.obstacle(shape, (component, output), partial(self._seen_alone, ecology))
 
     def _recruits(self, ecology: AdvertisementIndex) -> tuple[Recruit, ...]:
         """The components that may supply the players of each role that recruits, in the order of preference."""

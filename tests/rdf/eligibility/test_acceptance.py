@@ -83,6 +83,17 @@ def test_what_another_component_says_disqualifies_no_output() -> None:
         assert [connection.source.short for connection in answer.connections] == ["high"]
 
 
+def test_what_an_advertisement_says_of_another_component_makes_no_output_conform() -> None:
+    camera = ':cam a sc:Component, :Sensor ; :on :base ; sc:hasOutput [ sc:name "o" ; sc:signalType :Pose ] .'
+    place = "sh:property [ sh:path ( [ sh:inversePath sc:hasOutput ] :on :place ) ; sh:hasValue :kitchen ]"
+    port = f'[ sc:name "i" ; sc:signalType :Pose ; sc:accepts [ {place} ] ]'
+    display = f":show a sc:Component, :Display ; sc:hasInput {port} ."
+    alone = read(f"{PREFIXES}{camera} :base :place :kitchen .", PREFIXES + display)
+    assert isinstance(configure(template(TASK), alone), Configuration)
+    beside = read(f"{PREFIXES}{camera} :base :place :kitchen .", f"{PREFIXES}{display} :base a sc:Component, :Base .")
+    assert isinstance(configure(template(TASK), beside), Refusal)
+
+
 def test_stars_within_stars_are_walked_once() -> None:
     star = "[ sh:alternativePath ( sc:hasOutput [ sh:inversePath sc:hasOutput ] ) ]"
     for _ in range(5):
