@@ -319,6 +319,8 @@ def _value(store: Any, definition: Any, given: Any) -> Any:
         given = [None] * (count if kind == Nodetype.ARRAY else 0)
     if element[0] == Nodetype.BASE and element[1][0] not in ("string", "wstring"):
         return _numbers(element[1][0], given)
+    if isinstance(given, str | bytes | Mapping):  # of a text Python would make its letters
+        raise MessageError(f"has a value that is no {element[1] if element[0] == Nodetype.NAME else element[1][0]}[]")
     return [_value(store, element, one) for one in given]
 
 

@@ -68,6 +68,8 @@ def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
         ({"data": array("b", [-1])}, "sensor_msgs/msg/Image", r"has a value that is no uint8\[\]"),
         ({"sec": 1 << 40}, "builtin_interfaces/msg/Time", "is no builtin_interfaces/msg/Time"),
         ({"covariance": [0.1] * 35}, "geometry_msgs/msg/PoseWithCovariance", "Unexpected array length"),
+        ({"names": "speed"}, "rcl_interfaces/srv/GetParameters_Request", r"has a value that is no string\[\]"),
+        ({"transforms": {}}, "tf2_msgs/msg/TFMessage", r"no geometry_msgs/msg/TransformStamped\[\]"),
         ({"data": "false"}, "std_msgs/msg/Bool", "has 'false', where a bool is true or false"),
     ],
 )
