@@ -74,7 +74,7 @@ class LivingTasks:
 
     def kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""
-        return [record for record in self._records() if name in (None, task_name(record.task)) and not record.ended]
+        return [record for record in _of_name(self._records(), name) if not record.ended]
 
     def _records(self) -> list[TaskRecord]:
         """The newest record of each task that lives in the sites, or has ended there."""
@@ -152,10 +152,12 @@ class LivingTasks:
         all tasks those are taken down first that answer. One that does not answer, suspended perhaps, is an error also
         where what it held has come to rest: it may go on, unless the sites keep its task, and so the end of that.
         """
-        found, kept = self.running(by_components=True), self.kept(name)
+        found, records = self.running(by_components=True), self.kept()
+        kept = _of_name(records, name)
         holding = [one for one in self._holding if one.is_named(name)]
         suspended = [one for one in self.suspended if name in (None, one.name)]
         running = _meant(name, found, [*kept, *holding, *suspended])
+        kept = _of_same_tasks(records, [*kept, *running, *holding])
         unanswered = {record.task for record in kept}.difference(status.task for status in running)
         silent = self._silent_beside_holders(None if unanswered else name)
         if name is not None and not kept:
@@ -283,6 +285,19 @@ def _newest(replies: Replies) -> list[TaskRecord]:
             if record.supersedes(newest.get(record.task)):
                 newest[record.task] = record
     return list(newest.values())
+
+
+def _of_name(records: Iterable[TaskRecord], name: str | None) -> list[TaskRecord]:
+    """Those of some records whose tasks have a name; None means all."""
+    return [record for record in records if name in (None, task_name(record.task))]
+
+
+def _of_same_tasks(
+    records: Iterable[TaskRecord], known: Iterable[TaskRecord | Status | SilentHolder]
+) -> list[TaskRecord]:
+    """Those of some records that are of known tasks: with one whose configurator alone has ended a site goes on."""
+    tasks = {one.task for one in known}
+    return [record for record in records if record.task in tasks]
 
 
 def _said_of_silent(configurator: str) -> str:

@@ -197,6 +197,19 @@ def test_what_the_sites_keep_is_ended_by_a_newer_record(tasks: Tasks) -> None:
     assert tasks.kept == [replace(TIDY, revision=2, ended=True)]
 
 
+@pytest.mark.parametrize("silent", [False, True])
+def test_what_the_sites_keep_is_ended_by_the_name_of_its_configurator(tasks: Tasks, silent: bool) -> None:
+    tasks.site(PATROL, TIDY)
+    tasks.configurator("c1", TIDY.task)
+    if silent:
+        tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 3, AT_REST)
+    else:
+        tasks.configurator("c2", PATROL.task)
+    assert tasks.asked.stop("c2") == ("patrol",)
+    assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
+    assert [status.configurator for status in tasks.asked.running()] == ["c1"]
+
+
 def test_nothing_is_stopped_by_a_name_that_is_nobodys(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1")
     with pytest.raises(NetworkError, match="no task or configurator 'tidy' answers"):
