@@ -302,13 +302,16 @@ class InputSubscription:
             self._ask_for_last(ASK_FOR_LAST)
 
     def _look_for_life(self, began: float) -> None:
-        """An output that promises no rate is lost as well if nothing shows that its component lives, or is in reach."""
-        if self._ended or self._lives:
+        """An output that promises no rate is lost as well if nothing shows that its component lives, or is in reach.
+
+        Of one that has issued a signal that is the life which did: another process may be the component, and not act.
+        """
+        if self._ended or self._shows(self._heard_life):
             return
-        if self._heard_at < began:
-            self._lose(self._heard_at)
-        else:  # it may have been on its way when the component ended
+        if self._heard_at >= began:  # it may have been on its way when the component ended
             self._bus.later(UNSEEN, partial(self._look_for_sign, self._heard_at))
+        elif not self._lives:
+            self._lose(self._heard_at)
 
     def _shows(self, life: str) -> bool:
         """Whether a life of the component is seen to live."""

@@ -166,7 +166,7 @@ class Inputs:
             # A call that was repeated, or of another task that wants the same of the component.
             same = before[port] if port in before and before[port].new == new else None
             gently = message.gently or same is not None
-            if not gently or not new or all(self._subscriptions[port, wire].lost for wire in old):
+            if not gently or not new:
                 self._events.unfed(port)
                 continue
             self._handovers[port] = same or Handover.beginning(now, old, new)
@@ -185,10 +185,12 @@ class Inputs:
     def _left_without(self, inputs: Mapping[str, tuple[Wire, ...]]) -> dict[str, frozenset[Wire]]:
         """The inputs that lose every output they follow, with these, to others of which none has just issued a signal.
 
-        An output to which an input is only being handed over does not count as followed.
+        An output that is lost, or to which an input is only being handed over, does not count as followed.
         """
         followed: dict[str, set[Wire]] = {}
         for port, wire in self.followed:
+            if self._subscriptions[port, wire].lost:
+                continue
             if port not in self._handovers or wire in self._handovers[port].old:
                 followed.setdefault(port, set()).add(wire)
         return {

@@ -221,6 +221,36 @@ def test_an_input_that_follows_two_outputs_is_fed_while_one_of_them_is_left() ->
     assert stage.recorder.said == [("started",), ("unfed", "position")]
 
 
+@pytest.mark.parametrize("gently", [False, True])
+def test_an_input_that_is_left_with_an_output_that_is_lost_is_unfed_or_goes_on_with_the_other(gently: bool) -> None:
+    stage = Stage(Watchful())
+    tracker, odometry = stage.neighbour(), other_source(stage)
+    stage.call(apply(1, US, {"position": (Wire(TRACKER, "pose"), Wire(ODOMETRY, "pose"))}))
+    for source in (tracker, odometry):
+        source.component.emit("pose", 1)
+    stage.let_pass(0.1)
+    end(tracker)
+    stage.let_pass(0.1)
+    assert ("unfed", "position") not in stage.recorder.said
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(replace(follow(2), gently=gently)), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    odometry.component.emit("pose", 2)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[-1] == (("position", 2) if gently else ("unfed", "position"))
+
+
+def test_an_input_is_unfed_whose_source_ended_before_its_life_was_seen_though_another_process_is_it() -> None:
+    stage = Stage(Watchful())
+    tracker = stage.neighbour()
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(follow()), 1.0, lambda _: None)
+    assert stage.network.run(lambda: ("started",) in stage.recorder.said, 1.0)
+    tracker.component.emit("pose", 1)
+    ComponentRuntime(stage.network.node(), KEYS, TRACKER_PROFILE, Component(), "life-u")
+    end(tracker)
+    stage.let_pass(2 * UNSEEN + 0.1)
+    assert stage.recorder.said == [("started",), ("position", 1), ("unfed", "position")]
+
+
 def test_an_input_is_unfed_when_its_source_has_let_go_of_its_only_task() -> None:
     stage = Stage(Watchful())
     tracker = stage.neighbour()
