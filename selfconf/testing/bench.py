@@ -11,7 +11,7 @@ from selfconf.api.arguments import Paths, passing_seconds
 from selfconf.api.task import template
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
-from selfconf.model.run_event import CallDeclined, ComponentLost
+from selfconf.model.run_event import CallDeclined, ComponentLost, ComponentUnreachable
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.advertisements import Advertisement, read_advertisements
 from selfconf.rdf.turtle import ntriples
@@ -212,9 +212,14 @@ class ComponentBench:
 
     @property
     def failure(self) -> str | None:
-        """Why the component has failed, if it has: what it said by `fail`, or what broke in it."""
+        """Why the component has failed, if it has: what it said by `fail`, or what broke in it.
+
+        So has an actuator that does not come to rest when it is stopped, as its `stopped` breaks.
+        """
         for event in self._run.events if self._run is not None else ():
-            if isinstance(event, ComponentLost) and event.component == self.profile.component:
+            if isinstance(event, ComponentUnreachable) and event.call != "release":
+                continue
+            if isinstance(event, ComponentLost | ComponentUnreachable) and event.component == self.profile.component:
                 return event.detail
         return None
 

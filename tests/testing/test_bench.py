@@ -154,6 +154,19 @@ def test_what_is_no_component_and_no_advertisement_is_refused_in_a_sentence() ->
             use(no_name)  # type: ignore[operator]  # that is what is tested
 
 
+def test_an_actuator_that_breaks_as_it_is_stopped_has_failed() -> None:
+    class Motor(Component):
+        def stopped(self) -> None:
+            raise ValueError("it is stuck")
+
+    motor = "@prefix sc: <https://w3id.org/selfconf#> .\n<urn:test:motor> a sc:Component, <urn:test:Motor> ."
+    bench = ComponentBench(Motor(), motor)
+    bench.start()
+    assert bench.failure is None
+    bench.stop()
+    assert bench.failure == "its code has not come to rest"
+
+
 def test_what_breaks_in_a_component_is_its_failure() -> None:
     bench = ComponentBench(Thermostat(), ADVERTISEMENT)
     bench.start()
