@@ -26,6 +26,7 @@ followed keep one each besides."""
 MOST_EVENTS = 1000
 """How many server-sent events of one stream are read in a second; a thing that sends more is held up."""
 _EVENT_STREAM = "text/event-stream"
+_ANY_BYTES = "application/octet-stream"
 _LINE_END = b"\n"
 
 
@@ -162,7 +163,7 @@ class ThingClient:
     ) -> AsyncIterator[aiohttp.ClientResponse]:
         """A request that carries a value, and was answered without an error. Raises ThingError."""
         body = _encoded(form, value, media)
-        headers = {} if body is None else {"Content-Type": media or form.media}
+        headers = {} if body is None else {"Content-Type": media if media and isinstance(value, bytes) else form.media}
         session, seconds = (self._actions, self._limits.action) if action else (self._requests, self._limits.answer)
         async with self._asked(session, form, seconds, body, headers) as answer:
             yield answer
@@ -267,19 +268,23 @@ def _json(form: ThingForm, body: bytes) -> Any:
 
 
 def _encoded(form: ThingForm, value: Any, media: str) -> bytes | None:
-    """A value as a body. Raises UnsendableValueError where the form asks for something else."""
+    """A value as a body; `media` is that of bytes. Raises UnsendableValueError where the form takes something else."""
     if value is None:
         return None
-    if isinstance(value, bytes):
-        return value
-    if _is_json(_bare(form.media)):
-        try:
+    wanted = _bare(form.media)
+    try:
+        if isinstance(value, bytes):
+            if _bare(media) in ("", wanted) or wanted == _ANY_BYTES:
+                return value
+        elif _is_json(wanted):
             return json.dumps(value, separators=(",", ":"), allow_nan=False, default=_elements).encode()
-        except (AttributeError, ValueError):  # an array that is no list either, NaN and infinity
-            raise UnsendableValueError(f"{form} takes JSON, which cannot say what was received") from None
-    if form.media.startswith("text/") and not isinstance(value, dict | list):
-        return (value if isinstance(value, str) else json.dumps(value)).encode()
-    raise UnsendableValueError(f"{form} takes {form.media}, which cannot be made of a value of JSON")
+        elif wanted.startswith("text/") and isinstance(value, str | float | int):
+            return (value if isinstance(value, str) else json.dumps(value)).encode()
+    except (AttributeError, ValueError, RecursionError):
+        # An array that is no list either, NaN and infinity, half of a surrogate pair, what is nested too deeply.
+        raise UnsendableValueError(f"{form} takes {wanted}, which cannot say what was received") from None
+    given = media if isinstance(value, bytes) else "a value of JSON"
+    raise UnsendableValueError(f"{form} takes {wanted}, which cannot be made of {given}")
 
 
 def _elements(array: Any) -> Any:

@@ -205,8 +205,8 @@ class ThingComponent(Component):
         value = None if called.empty else _unwrapped(request.value, called.request_field)
         try:
             if called.answers:
-                return _wrapped(await self._client.call(called.form, value), called.response_field)
-            await self._client.send(called.form, value, action=True)
+                return _wrapped(await self._client.call(called.form, value, request.media), called.response_field)
+            await self._client.send(called.form, value, request.media, action=True)
         except ThingError as error:
             if not isinstance(error, ThingRefusal | UnsendableValueError):
                 self._lose(error)

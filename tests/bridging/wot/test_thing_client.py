@@ -10,6 +10,7 @@ from collections.abc import Callable, Coroutine
 from http.server import BaseHTTPRequestHandler
 from typing import Any, TypeVar
 
+import orjson
 import pytest
 
 from selfconf.bridging.wot.forms import ThingForm
@@ -20,6 +21,7 @@ from selfconf.bridging.wot.thing_client import (
     ThingClient,
     ThingError,
     ThingLimits,
+    UnsendableValueError,
 )
 from tests.bridging.thing_server import ThingServer, reply
 
@@ -127,11 +129,12 @@ def test_bytes_and_arrays_travel_too(thing_server: Start) -> None:
 
     async def work(client: ThingClient) -> None:
         await client.send(ThingForm(server.url + "/show", "POST", "image/png"), b"\x89PNG", "image/png")
+        await client.send(ThingForm(server.url + "/any", "POST", "application/octet-stream"), b"\x89PNG", "image/png")
         await client.send(ThingForm(server.url + "/say", "POST", "text/plain"), "good evening")
         await client.send(ThingForm(server.url + "/list", "POST"), memoryview(array("d", [1.0, 2.5])))
 
     asked(work)
-    assert server.sent("POST") == [b"\x89PNG", b"good evening", b"[1.0,2.5]"]
+    assert server.sent("POST") == [b"\x89PNG", b"\x89PNG", b"good evening", b"[1.0,2.5]"]
 
 
 def test_an_answer_is_of_the_media_type_of_the_response(thing_server: Start) -> None:
@@ -147,12 +150,17 @@ def test_an_answer_is_of_the_media_type_of_the_response(thing_server: Start) -> 
     ("value", "media", "words"),
     [
         ({"on": 1}, "text/plain", "takes text/plain"),
-        (memoryview(array("d", [float("nan")])), "application/json", "JSON"),
+        (memoryview(array("d", [1.0])), "text/plain", "takes text/plain"),
+        ("\ud800", "text/plain", "takes text/plain"),
+        (memoryview(array("d", [float("nan")])), "application/json", "takes application/json"),
+        (orjson.loads("[" * 1020 + "]" * 1020), "application/json", "takes application/json"),
+        (b"\x89PNG", "application/json", "takes application/json, which cannot be made of image/png"),
+        (b"\x89PNG", "image/jpeg", "takes image/jpeg, which cannot be made of image/png"),
     ],
 )
 def test_what_cannot_be_sent_is_said(value: Any, media: str, words: str) -> None:
-    with pytest.raises(ThingError, match=words):
-        asked(lambda client: client.send(ThingForm("http://127.0.0.1:1/", "POST", media), value))
+    with pytest.raises(UnsendableValueError, match=words):
+        asked(lambda client: client.send(ThingForm("http://127.0.0.1:1/", "POST", media), value, "image/png"))
 
 
 def test_html_is_no_value(thing_server: Start) -> None:
