@@ -103,16 +103,19 @@ def _refused(state: State) -> Reaction:
 
 
 def _coveted(state: State, event: Composed) -> State:
-    """Count the components of other tasks as lost with which there may be a configuration, if there is one at all."""
-    if not isinstance(event.outcome, Configuration):
+    """Count the components of other tasks as lost with which there may be a configuration, unless there is none at all.
+
+    Where that was not decided, it is not said that they stand in the way.
+    """
+    outcome, refusal = event.outcome, state.refusal
+    if isinstance(outcome, Refusal):
         return state
-    wanted = event.usable or frozenset(event.outcome.components)
+    wanted = event.usable or frozenset(outcome.components if isinstance(outcome, Configuration) else state.taken)
     busy = {
         component: Loss(Cause.REFUSED, str(state.taken[component]), "", True)
         for component in sorted(wanted & state.taken.keys())
     }
-    refusal = state.refusal
-    if isinstance(refusal, Refusal):
+    if isinstance(refusal, Refusal) and isinstance(outcome, Configuration):
         refusal = replace(refusal, held=tuple((component, state.taken[component]) for component in busy))
     return replace(state, lost={**state.lost, **busy}, refusal=refusal)
 

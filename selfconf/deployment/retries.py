@@ -1,5 +1,6 @@
 """When a task looks again: one that waits, at lost components; one that runs, at what would be rather had.
 
+A task that waits as the time of a search was up searches again: the program may have had much else to do.
 Nothing tells that a component which has raised FAIL could go on by now, as a tracker that sees its person again. So a
 task that changes for the better tries it again from time to time, while what runs instead of it runs on.
 """
@@ -13,6 +14,7 @@ from selfconf.bus.port import Undo
 from selfconf.configurator import Appeared, Improvable, Loss, Phase
 from selfconf.deployment.components import HeldLives
 from selfconf.deployment.task_context import TaskContext
+from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
 
@@ -120,12 +122,14 @@ class Retries:
         self._look_again = self._bus.later(max(0.0, self._chance_at - now), self._forgive)
 
     def _forgive(self) -> None:
-        """While the task is refused, try lost components again that may be able to act by now."""
+        """While the task is refused, try lost components again that may act by now, and a search that time ended."""
         if self._state().phase is not Phase.REFUSED:
             return  # it is overdue when the task is refused again
         self._chance_at = None
         again = {component: "" for component, loss in self._state().lost.items() if self._may_be_able(component, loss)}
-        if again or self._state().lost:
+        refusal = self._state().refusal
+        hurried = isinstance(refusal, Undecided) and refusal.seconds is not None  # there may have been much else to do
+        if again or self._state().lost or hurried:
             pause = self._pause
             self._step(Appeared(again))
             self._pause = pause  # what has not come from outside is no reason to try again sooner

@@ -28,6 +28,8 @@ from selfconf.configurator.events import (
     Stopped,
 )
 from selfconf.configurator.state import Phase, State
+from selfconf.model.refusal import Undecided
+from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
     CONTROL,
@@ -85,6 +87,19 @@ def test_a_patient_task_waits_for_nothing_where_all_that_others_hold_would_not_d
     history.composed(REFUSAL)
     assert history.hear(Composed(history.state.attempt, REFUSAL, frozenset({TRACKER}))) == []
     assert not history.state.queued
+
+
+@pytest.mark.parametrize("usable", [frozenset({TRACKER}), frozenset[IRI]()])
+def test_a_patient_task_waits_for_what_others_hold_where_it_is_not_decided_whether_that_would_do(
+    usable: frozenset[IRI],
+) -> None:
+    history = History(PATIENT)
+    history.hear(Accepted(100), Discovered({TRACKER: OTHERS}))
+    history.composed(REFUSAL)
+    undecided = Composed(history.state.attempt, Undecided(5000), usable)
+    assert history.hear(undecided) == [QueueFor(TRACKER, history.state.epoch)]
+    assert history.state.refusal == REFUSAL, "it is not said that there would be a configuration with it"
+    assert history.hear(Freed(TRACKER)) == [Discover()]
 
 
 def test_a_task_waits_for_a_component_that_has_obeyed_a_newer_epoch_of_it_by_asking_in_that() -> None:
