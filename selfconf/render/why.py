@@ -273,7 +273,8 @@ def _bindings(found: TaskStory) -> list[object]:
 
 def _means(term: str, thing: str) -> bool:
     """Whether a term names a thing: by its IRI, or by its local name with or without a prefix."""
-    return term.strip("<>") == thing or term.rpartition(":")[2] == _name(thing)
+    _, colon, local = term.partition(":")  # the IRI `urn:dev:lamp:1` is no prefix with the name `1`
+    return term.strip("<>") == thing or (local if colon else term) == _name(thing)
 
 
 def _name(thing: object) -> str:

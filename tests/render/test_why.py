@@ -85,6 +85,16 @@ def test_a_component_a_bound_value_and_the_task_name_roles() -> None:
     assert why_sentences(found, "kitchen", {}) == []
 
 
+def test_an_iri_means_no_other_component_of_the_same_local_name() -> None:
+    lamp, door = "urn:dev:lamp:1", "urn:dev:door:1"
+    roles = [{"role": f"{HOME}{name}", "components": [one]} for name, one in (("light", lamp), ("entry", door))]
+    found = story("evening", [{"act": "running", "time": 1.0, "configuration": {"template": HOME, "roles": roles}}])
+    for term in (lamp, f"<{lamp}>"):
+        (only,) = why_sentences(found, term, {})
+        assert only.startswith("light in evening: 1, since ")
+    assert len(why_sentences(found, "1", {})) == 2
+
+
 def test_a_lost_component_plays_no_role_and_it_is_said_why() -> None:
     (only,) = why_sentences(story("navigate", EVENTS), "tracker", PASSED)
     assert only.startswith("tracker plays no role in navigate: lost at ")
