@@ -94,9 +94,9 @@ def _looked_for(given: argparse.Namespace) -> str:
     *others, last = IMPORT_FORMATS[given.form].endings
     endings = f"{', '.join(others)} or {last}" if others else last
     where = listed(given.sources)
-    return (
-        f"there is nothing of the format {given.form} in {where}; of a folder the files that end in {endings} are read"
-    )
+    written = ", but for those that an import has written" if ".ttl" in IMPORT_FORMATS[given.form].endings else ""
+    read = f"of a folder the files that end in {endings} are read{written}"
+    return f"there is nothing of the format {given.form} in {where}; {read}"
 
 
 def _print_table(report: ImportReport) -> None:

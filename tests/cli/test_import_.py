@@ -75,6 +75,15 @@ def test_nothing_to_import_is_an_honest_no(things: Path, capsys: pytest.CaptureF
     assert peis.err.endswith("of a folder the files that end in .cmp are read\n")
 
 
+def test_of_a_folder_with_nothing_but_what_was_imported_it_is_said_that_this_is_not_read(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (tmp_path / "lamp.ttl").write_text("# Imported by `selfconf import wot` from lamp.json; ...\n")
+    nothing = run(capsys, "import", "rdf", str(tmp_path), "--out", str(tmp_path / "ads"))
+    assert nothing.code == 1
+    assert ".trig or .jsonld are read, but for those that an import has written" in nothing.complaints
+
+
 def test_a_document_that_cannot_be_read_is_named_with_its_place_and_the_rest_is_imported(
     things: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
