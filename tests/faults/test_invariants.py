@@ -194,7 +194,7 @@ MUTATIONS = {
         {"selfconf.sdk.operations.NeededOperations._ask": nothing}, ecology=COMPOSED
     ),
     "nothing rests for nothing": Mutation(
-        {"selfconf.sdk.inputs.input_subscription.InputSubscription._ask_if_lost": nothing},
+        {"selfconf.sdk.inputs.source_watch.SourceWatch._ask_if_lost": nothing},
         (Action(2.0, "mute", "planner", "mower"), Action(3.0, "mend", "planner", "mower")),
         ecology=LATCHED,
     ),

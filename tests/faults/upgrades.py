@@ -17,7 +17,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Cause
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.sdk.inputs.input_subscription import JUST_COME
+from selfconf.sdk.inputs.followed_output import JUST_COME
 from selfconf.sdk.inputs.inputs import HANDOVER, Inputs
 from tests.faults.histories import History, Life
 from tests.faults.invariants import Invariant, acting, awake, disagreeing, feeds, node_of
@@ -203,7 +203,7 @@ class UpgradeWatch:
             now, one = self._history.network.time, (life.runtime.life, port.name)
             for source in old:
                 if source in followed:
-                    going.heard[one] = max(going.heard.get(one, 0.0), followed[source]._heard_at)
+                    going.heard[one] = max(going.heard.get(one, 0.0), followed[source]._output.heard_at)
             lately = going.heard.get(one, 0.0) > now - HANDOVER / 2
             late = self._history.script.faults.most_event_delay  # so late it may be heard that a source was stopped
             delivered = any(

@@ -1,4 +1,4 @@
-"""One input's subscription to one output: what is passed over, what waits, and when it is lost."""
+"""One input's subscription to one output: what is passed over, and how the component's code reads the rest."""
 
 from __future__ import annotations
 

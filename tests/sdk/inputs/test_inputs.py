@@ -14,9 +14,10 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.component import Component
-from selfconf.sdk.inputs.input_subscription import JUST_COME, UNSEEN
+from selfconf.sdk.inputs.followed_output import JUST_COME
 from selfconf.sdk.inputs.inputs import HANDOVER, HANDOVER_CHECK
 from selfconf.sdk.inputs.silence_watch import PATIENCE
+from selfconf.sdk.inputs.source_watch import UNSEEN
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.lab import Recorder

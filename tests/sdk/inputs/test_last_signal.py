@@ -9,9 +9,7 @@ from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Stamp, Wire
-from selfconf.sdk.inputs.input_subscription import (
-    ASK_FOR_LAST,
-)
+from selfconf.sdk.inputs.last_signal import ASK_FOR_LAST
 from tests.sdk.stage import (
     KEYS,
     TRACKER,

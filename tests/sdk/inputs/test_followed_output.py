@@ -9,17 +9,16 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import Network
-from selfconf.bus.port import Urgency
+from selfconf.bus.port import Sample, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Stamp
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.inputs import Inputs
-from selfconf.sdk.inputs.input_subscription import (
-    InputEvents,
-)
-from selfconf.sdk.inputs.signal_queue import EVENTS
+from selfconf.sdk.inputs.followed_output import JUST_COME, FollowedOutput
+from selfconf.sdk.inputs.input_subscription import InputEvents
+from selfconf.sdk.inputs.signal_queue import EVENTS, SignalQueue
 from tests.sdk.stage import (
     CAP_PROFILE,
     KEYS,
@@ -107,3 +106,53 @@ def test_what_waits_when_an_output_is_lost_is_not_delivered_after_its_loss_and_f
     slow.issue(1)
     slow.code.poll()
     assert slow.heard == [11]
+
+
+class Heard:
+    """An output that an input follows, with a clock that is set by hand."""
+
+    def __init__(self) -> None:
+        self.now, self.waits = 5.0, 0
+        self.output = FollowedOutput(lambda: self.now, SignalQueue(None), self._wait)
+
+    def _wait(self) -> None:
+        self.waits += 1
+
+    def receive(self, sequence: int, life: str = "l") -> None:
+        """A signal comes."""
+        self.output.receive(Sample("", b"%d" % sequence, encode(Stamp(TRACKER, life, sequence, 0.0))))
+
+
+def test_of_what_comes_while_it_is_muted_the_newest_is_delivered_if_it_has_only_just_come() -> None:
+    for passed, delivered in ((JUST_COME / 2, b"2"), (2 * JUST_COME, None)):
+        heard = Heard()
+        heard.receive(1)
+        heard.receive(2)
+        assert (heard.output.pop(), heard.waits) == (None, 0)
+        heard.now += passed
+        heard.output.unmute()
+        sample = heard.output.pop()
+        assert (sample.payload if sample is not None else None) == delivered
+        assert heard.waits == (delivered is not None)
+
+
+def test_the_life_that_is_heard_is_that_of_the_newest_signal_though_it_was_not_read_yet() -> None:
+    heard = Heard()
+    assert heard.output.heard_life == ""
+    heard.receive(9, "before")
+    heard.receive(1, "after")
+    assert heard.output.heard_life == "after"
+
+
+def test_what_cannot_be_read_is_no_sign_that_it_issues_and_is_complained_of_once() -> None:
+    heard = Heard()
+    heard.receive(1)
+    heard.output.understood()
+    for complained in (True, False):
+        heard.now += 1.0
+        heard.receive(2)
+        assert heard.output.not_understood() == complained
+        assert heard.output.heard_at == 5.0
+    heard.receive(3)
+    heard.output.understood()
+    assert heard.output.heard_at == heard.now

@@ -1,4 +1,4 @@
-"""Signals that come after the end of what has issued them, as what is more urgent may overtake them."""
+"""Whether an output is lost: also signals that come after the end of what has issued them count for a moment."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.inputs import Inputs
-from selfconf.sdk.inputs.input_subscription import (
-    UNSEEN,
-    InputSubscription,
-)
+from selfconf.sdk.inputs.input_subscription import InputSubscription
+from selfconf.sdk.inputs.source_watch import UNSEEN
 from tests.sdk.stage import (
     CAP,
     DRIVE_PROFILE,
