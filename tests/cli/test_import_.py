@@ -81,7 +81,7 @@ def test_of_a_folder_with_nothing_but_what_was_imported_it_is_said_that_this_is_
     (tmp_path / "lamp.ttl").write_text("# Imported by `selfconf import wot` from lamp.json; ...\n")
     nothing = run(capsys, "import", "rdf", str(tmp_path), "--out", str(tmp_path / "ads"))
     assert nothing.code == 1
-    assert ".trig or .jsonld are read, but for those that an import has written" in nothing.complaints
+    assert ".trig or .jsonld are read, but for those that an import has written" in nothing.err
 
 
 def test_a_document_that_cannot_be_read_is_named_with_its_place_and_the_rest_is_imported(
