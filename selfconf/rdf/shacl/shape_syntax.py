@@ -67,6 +67,7 @@ WANTED: dict[IRI, str] = {
     **dict.fromkeys(NAMES, "an IRI"),
     **dict.fromkeys(LIMITS, "a literal"),
     **dict.fromkeys(NODES, "a shape, not a literal"),
+    SH.node: "a shape without sh:path, not a literal; one with a sh:path stands behind sh:property",
     SH.nodeKind: f"one of {', '.join(sorted(f'sh:{kind.short}' for kind in NODE_KINDS))}",
     SH.property: "a property shape, which has one sh:path",
     SH.pattern: "a regular expression",
@@ -168,6 +169,8 @@ def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:
     """Whether a node may be the value of one of SHACL's properties that lead to nodes."""
     if predicate == SH.property:
         return len(document.values(value, SH.path)) == 1
+    if predicate == SH.node:
+        return not document.values(value, SH.path)
     return predicate != SH.path or is_path(document, value)
 
 

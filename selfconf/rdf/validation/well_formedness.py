@@ -165,7 +165,7 @@ def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, s
         if len(stated) > 1:
             return max((one.object for one in stated if one), default=offset), f"{said_twice(once)}."
     if (focus, SH.path, None) in shapes:
-        return offset, ILL_FORMED
+        return _malformed_with_path(shapes, positions, focus)
     for predicate, value in shapes.predicate_objects(focus):
         statement = positions.triples.get((focus, predicate, value))
         if statement and isinstance(predicate, URIRef) and IRI.unchecked(predicate) in ONLY_WITH_A_PATH:
@@ -174,6 +174,13 @@ def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, s
             instead = f"; how many play a role is sc:{word}" if word in ("minCount", "maxCount") else ""
             return statement.predicate, f"{message}{instead}."
     return offset, ILL_FORMED
+
+
+def _malformed_with_path(shapes: Graph, positions: Positions, shape: Node) -> tuple[int, str]:
+    """What is wrong with a shape that has a path, and where: that it stands behind sh:node, as far as is known."""
+    asking = [positions.triples.get((one, SH.node, shape)) for one in shapes.subjects(SH.node, shape)]
+    places = [one.object for one in asking if one]
+    return (min(places), unfit(IRI.unchecked(SH.node))) if places else (positions.offset(shape) or 0, ILL_FORMED)
 
 
 def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:

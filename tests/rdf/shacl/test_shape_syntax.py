@@ -32,6 +32,7 @@ from tests.lab import PREFIXES, iri
         ("sh:languageIn ( :en )", "languageIn"),
         ("sh:ignoredProperties ( :a 5 )", "ignoredProperties"),
         ("sh:node 'x'", "node"),
+        ("sh:node [ sh:path :p ]", "node"),
     ],
 )
 def test_a_value_that_cannot_stand_there_is_named_with_its_statement(said: str, predicate: str) -> None:

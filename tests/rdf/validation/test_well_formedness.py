@@ -62,6 +62,7 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
         ("sh:path :p ; sh:hasValue 1", 24, "has no sh:path: write sh:property [ sh:path ... ]"),
         ("sh:hasValue 1 ; sh:lessThan :p", 32, "write sh:property"),
         ("sh:node 'x'", 24, "sh:node"),
+        ("sh:property [ sh:path :p ; sh:node [ sh:path :q ] ]", 51, "one with a sh:path stands behind sh:property"),
         ("sh:property [ sh:path :p ; sh:minCount ' 1 '^^xsd:integer ]", 55, "has to be a whole number"),
         ("sh:property [ sh:path :p ; sh:qualifiedValueShape [ ] ; sh:qualifiedMaxCount -1 ]", 93, "a whole number"),
         ("sh:property [ sh:path :p ; sh:minCount 1 , 2 ]", 59, "A shape has one sh:minCount at most."),
