@@ -259,7 +259,8 @@ def _wrong_bindings(value: object) -> Iterator[tuple[tuple[str, ...], str, str]]
         return
     for template, bound in value.items():
         if not isinstance(bound, dict):
-            yield (BIND, template), "SC-P03", f"The key {template!r} of {BIND} takes a table of parameters and values."
+            message = f"{template!r} of {BIND} is no table of parameters and values: [{BIND}.TEMPLATE] is one."
+            yield (BIND, template), "SC-P03", message
             continue
         for name, given in bound.items():
             if wrong := _is_value(given):
