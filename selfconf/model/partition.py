@@ -158,9 +158,12 @@ class Partition:
         return replace(self, recruits=())
 
     def with_only(self, role: int, component: IRI) -> Partition:
-        """The partition in which one component alone is eligible for a role, given by its number."""
+        """The partition in which one component alone may play a role, given by its number.
+
+        The values that others state for the role stay, as these are eligible all the same.
+        """
         only = tuple(c for c in self.candidates[role] if c.profile.component == component)
-        return self._narrowed((*self.candidates[:role], only, *self.candidates[role + 1 :]), self.recruits)
+        return replace(self, candidates=(*self.candidates[:role], only, *self.candidates[role + 1 :]))
 
     def _narrowed(self, left: tuple[tuple[Candidate, ...], ...], recruits: tuple[Recruit, ...]) -> Partition:
         """The partition with these candidates, and without the values of variables that none of them states."""

@@ -73,6 +73,24 @@ def test_without_a_cost_it_is_told_whether_there_is_a_configuration_with_it() ->
     assert not any(each.cost or each.total for each in one.values())
 
 
+def test_a_value_that_another_candidate_states_will_do_for_what_the_role_sets() -> None:
+    template = """
+:t a sc:Template ; sc:roles ( :a ) ; sc:parameter :robot %s . :robot a sc:Parameter ; sc:name "robot" .
+:a a sc:Role ; sh:class :A ; sh:property [ sh:path :on ; sh:in ( :robot ) ] ;
+    sc:sets [ sc:parameterType :Goal ; sc:value :robot ] .
+"""
+    said = {"a1": ":on :Astrid ; :price 9", "a2": ":price 1", "a3": ":price 2"}
+    goal = '; sc:hasParameter [ sc:name "goal" ; sc:parameterType :Goal ]'
+    ecology = HEAD + "\n".join(component(name, "A", f"{goal} ; {what}") for name, what in said.items())
+    one = found(ecology=ecology, template=HEAD + template)
+    assert [name for name in one if one[name].chosen] == ["a2"]
+    assert {name: (each.outcome, *each.total) for name, each in one.items()} == {
+        "a1": ("possible", 9),
+        "a2": ("possible", 1),
+        "a3": ("possible", 2),
+    }
+
+
 def test_without_any_configuration_none_is_chosen() -> None:
     one = found(ecology=HEAD + component("a1", "A", "", "S") + component("b1", "B", "", "T"))
     assert {each.outcome for each in one.values()} == {"impossible"}

@@ -70,13 +70,11 @@ def test_a_variable_takes_the_first_value_that_a_mask_allows() -> None:
     assert variable.first(1 << len(variable.domain)) is None
 
 
-def test_a_partition_with_one_candidate_for_a_role_keeps_the_others_and_only_the_values_that_are_stated() -> None:
+def test_a_partition_with_one_candidate_for_a_role_keeps_the_others_and_the_values_that_are_stated() -> None:
     a, b, c = (Candidate(Profile(IRI(f"urn:{name}")), (mask,)) for name, mask in (("a", 0b01), ("b", 0b10), ("c", -1)))
-    x, y = IRI("urn:x"), IRI("urn:y")
-    partition = Partition(((a, b), (c,)), (Variable(IRI("urn:p"), (x, y)),))
-    assert partition.with_only(0, IRI("urn:b")) == Partition(
-        ((Candidate(b.profile, (0b1,)),), (c,)), (Variable(IRI("urn:p"), (y,)),)
-    )
+    variables = (Variable(IRI("urn:p"), (IRI("urn:x"), IRI("urn:y"))),)
+    partition = Partition(((a, b), (c,)), variables)
+    assert partition.with_only(0, IRI("urn:b")) == Partition(((b,), (c,)), variables)
 
 
 def test_what_shapes_mention_stays_whatever_is_lost() -> None:
