@@ -4,7 +4,8 @@ All components of the target are woken at once, those that live are awake. Then 
 one after the other in the order of their IRIs; but what is kept for the task is reserved while others are woken. When
 all are held, each is applied to as soon as everything before it in the starting order has confirmed. A component that
 acts already, and gets other inputs, is applied to at once if a source of it is lost, else not before its new sources
-have confirmed: make before break. What is not needed any more is released when everything has confirmed.
+have confirmed: make before break. In an upgrade that is so in a loop as well. What is not needed any more is released
+when everything has confirmed.
 
 Why in the order of the IRIs: a task that waits for a component holds none that comes later, so tasks cannot wait for
 each other in a circle (Havender 1968). One that was asked in a deployment which began anew before the answer came
@@ -170,17 +171,28 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
 
 def _may_begin(state: State, component: IRI, plan: Plan) -> bool:
     """Whether everything is confirmed that must be before a component is applied to."""
+    if state.held[component].acts:
+        return _may_change(state, component, plan)
     order, held = plan.order, state.held
-    mine = held[component]
-    if mine.acts:
-        wanted = plan.inputs[component]
-        changed = [port for port in {**mine.inputs, **wanted} if mine.inputs.get(port) != wanted.get(port)]
-        sources = {wire.component for port in changed for wire in mine.inputs.get(port, ())}
-        if not changed or not all(source in held for source in sources):
-            return True
-    elif component in order.actuators and any(not held[c].confirmed for c in order.before if c not in order.actuators):
+    if component in order.actuators and any(not held[c].confirmed for c in order.before if c not in order.actuators):
         return False
-    return all(held[source].confirmed for source in order.before[component])
+    # In an upgrade what acts waits for what begins, in a loop as well: so that does not wait for what acts.
+    upgrades = state.fallback is not None
+    return all(held[source].confirmed or (upgrades and held[source].acts) for source in order.before[component])
+
+
+def _may_change(state: State, component: IRI, plan: Plan) -> bool:
+    """Whether everything is confirmed that must be before a component that acts is applied to."""
+    held, before, wanted = state.held, state.held[component].inputs, plan.inputs[component]
+    changed = [port for port in {**before, **wanted} if before.get(port) != wanted.get(port)]
+    followed = {wire.component for port in changed for wire in before.get(port, ())}
+    if not changed or not all(source in held for source in followed):
+        return True
+    if state.fallback is not None:  # an upgrade
+        new = (wire.component for port in changed for wire in wanted.get(port, ()))
+        if not all(held[source].acts for source in new if source in held):
+            return False
+    return all(held[source].confirmed for source in plan.order.before[component])
 
 
 def as_claimed(state: State, answer: Answered) -> State:
@@ -215,6 +227,8 @@ def confirmed(state: State, answer: Answered) -> Reaction:
     waiting: Iterable[IRI] = done.plan.order.after[answer.component]
     if not done.pending:  # the last of a wave: actuators may be waiting for it
         waiting = (*waiting, *done.plan.order.actuators)
+    if done.fallback is not None:  # what follows it by now waits for it, also where a loop has it come later
+        waiting = done.plan.inputs
     return apply_to(done, dict.fromkeys(waiting))
 
 

@@ -80,6 +80,24 @@ def test_a_change_for_the_better_is_made_before_the_old_source_is_let_go() -> No
     assert history.state.owed.keys() == {ODOMETRY}
 
 
+def looped(position: IRI) -> Configuration:
+    """A controller whose hints feed the position sensor that feeds it; its role comes first."""
+    whole = navigation(position)
+    sensor, control, drive = whole.assignments
+    hints = Connection(CONTROL, "hint", position, "prediction")
+    return replace(whole, assignments=(control, sensor, drive), connections=(*whole.connections, hints))
+
+
+def test_a_change_for_the_better_in_a_loop_begins_with_what_is_new() -> None:
+    """What acts follows it only once it has issued a signal: neither may wait for the other."""
+    history = History(TASK).running(looped(ODOMETRY))
+    history.hear(Improvable(), Discovered())
+    history.composed(looped(TRACKER))
+    assert applied(history.answer(TRACKER, Call.WAKE)) == [TRACKER]
+    assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
+    assert Running(looped(TRACKER)) in history.answer(CONTROL, Call.APPLY)
+
+
 def test_other_recruits_for_the_same_players_are_a_change_for_the_better() -> None:
     ran, better = (
         replace(whole, assignments=whole.assignments[1:], recruits=(recruit,))
