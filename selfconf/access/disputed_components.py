@@ -6,7 +6,7 @@ Where no person has said whose, it belongs to no site, but that on its own host 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from pathlib import Path
 
 from selfconf.atomic_write import READABLE, write_atomically
@@ -32,22 +32,29 @@ def believed(folder: Path) -> Mapping[IRI, str]:
 
 
 def claims(
-    advertised: Mapping[str, frozenset[IRI]], decided: Mapping[IRI, str], here: str
+    advertised: Mapping[str, frozenset[IRI]], decided: Mapping[IRI, str], here: str, gone: Set[str] = frozenset()
 ) -> tuple[dict[str, frozenset[IRI]], dict[IRI, list[str]]]:
     """Return which components belong to each of some sites, of which one is `here`, and which are disputed by which.
 
-    `advertised` is what each site advertises, `decided` the site that is believed for a component.
+    `advertised` is what each site advertises, `decided` the site that is believed for a component. Those that are
+    `gone` lose what they advertised to the one that advertises it now, unless they are believed.
     """
     claiming: dict[IRI, list[str]] = {}
     for site, components in sorted(advertised.items()):
         for component in components:
             claiming.setdefault(component, []).append(site)
-    disputed = {c: sites for c, sites in claiming.items() if len(sites) > 1 and decided.get(c) not in sites}
+    owners, disputed = dict[IRI, str](), dict[IRI, list[str]]()
+    for component, sites in claiming.items():
+        present = [site for site in sites if site not in gone] or sites
+        if decided.get(component) in sites:
+            owners[component] = decided[component]
+        elif len(present) == 1:
+            owners[component] = present[0]
+        else:
+            disputed[component] = sites
 
     def belongs(component: IRI, site: str) -> bool:
-        if component in disputed:
-            return site == here
-        return len(claiming[component]) == 1 or decided[component] == site
+        return site == (here if component in disputed else owners[component])
 
     owned = {site: frozenset(c for c in some if belongs(c, site)) for site, some in advertised.items()}
     return owned, disputed

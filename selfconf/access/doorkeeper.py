@@ -49,6 +49,8 @@ FAULT_AGAIN = 600.0
 """After how many seconds a fault that lasts is reported again."""
 WARNED = 0.05
 """Seconds between the word that a hub is about to be opened anew and that."""
+GONE_AFTER = 10.0
+"""Seconds after which a site that is away is taken to be gone: its lives blink where a hub is opened anew."""
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
 """Seconds after which a site shows its certificate to others, and from then on every `INTRODUCE_AGAIN` seconds."""
 INTRODUCE_AGAIN = 5.0
@@ -87,6 +89,8 @@ class _Advertised(NamedTuple):
     """The components that each other site advertises."""
     beside: frozenset[str]
     """The other sites of its host."""
+    gone: frozenset[str]
+    """The other sites that are there no more."""
 
 
 @immutable
@@ -238,9 +242,9 @@ class Doorkeeper:
         if not known:
             self._renew_rules()
 
-    def _site_changed(self, *_: object) -> None:
+    def _site_changed(self, key: str, alive: bool) -> None:
         self._known_for = 0
-        self._others.ask_soon()
+        self._others.life_changed(key, alive)
 
     def _others_answered(self) -> None:
         if self._advertised() != self._ruled:
@@ -251,9 +255,9 @@ class Doorkeeper:
     def _made(self) -> AccessRules:
         shown = _principals(self._folder, self._keys.ecology)
         sites = {process[0].name for process in shown if process[0].kind is PrincipalKind.SITE}
-        own, others, beside = ruled = self._advertised()
+        own, others, beside, gone = ruled = self._advertised()
         advertised = {self._name: frozenset(own), **{s: c for s, c in others.items() if s in sites}}
-        undisputed = self._undisputed(advertised)
+        undisputed = self._undisputed(advertised, gone)
         processes = _processes((component, own[component]) for component in undisputed[self._name])
         for site in beside & undisputed.keys():
             processes += _processes((component, component) for component in undisputed[site])
@@ -263,11 +267,13 @@ class Doorkeeper:
 
     def _advertised(self) -> _Advertised:
         beside = frozenset(self._hub.sites()) - {self._name}
-        return _Advertised(dict(self._own()), self._others.advertised(), beside)
+        return _Advertised(dict(self._own()), self._others.advertised(), beside, self._others.away(GONE_AFTER))
 
-    def _undisputed(self, advertised: Mapping[str, frozenset[IRI]]) -> dict[str, frozenset[IRI]]:
-        """The components that each site speaks for; complains of those that have become disputed."""
-        owned, disputed = claims(advertised, believed(self._folder.path), here=self._name)
+    def _undisputed(self, advertised: Mapping[str, frozenset[IRI]], gone: frozenset[str]) -> dict[str, frozenset[IRI]]:
+        """The components that each site speaks for; complains of those that have become disputed by sites that live."""
+        owned, disputed = claims(advertised, believed(self._folder.path), here=self._name, gone=gone)
+        away = self._others.away()
+        disputed = {component: sites for component, sites in disputed.items() if len({*sites} - away) > 1}
         for component in sorted(disputed.keys() - self._disputed):
             self._complain(
                 f"{component} is advertised by the sites {' and '.join(disputed[component])}; it belongs to none until"

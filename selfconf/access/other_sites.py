@@ -15,7 +15,7 @@ from selfconf.bus.port import Bus, Replies, Undo
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
-from selfconf.protocol.keys import Keys, site_of
+from selfconf.protocol.keys import Keys, life_of, owner_of, site_of
 from selfconf.protocol.messages import Known, Page
 
 SOON = 0.05
@@ -36,12 +36,30 @@ class OtherSites:
         self._advertised: dict[str, frozenset[IRI]] = {}
         self._revisions: dict[str, int] = {}
         """Of what is known, by the name and the life of the site, as of a `Known`."""
+        self._lives: dict[str, set[str]] = {}
+        self._away: dict[str, float] = {}
+        """Since when no life of a site is there, of those of which one was."""
         self._asks_soon = False
         self._undo_asking_again: Undo = lambda: None
 
     def advertised(self) -> dict[str, frozenset[IRI]]:
         """The components that each of them advertises, as far as is known."""
         return dict(self._advertised)
+
+    def away(self, seconds: float = 0.0) -> frozenset[str]:
+        """The sites of which no life is there any more, for so many seconds at least."""
+        now = self._bus.now()
+        return frozenset(site for site, since in self._away.items() if now - since >= seconds)
+
+    def life_changed(self, key: str, alive: bool) -> None:
+        """Note that a life of a site has begun or ended, and ask them all."""
+        site = owner_of(key)
+        lives = self._lives.setdefault(site, set())
+        (lives.add if alive else lives.discard)(life_of(key))
+        self._away.pop(site, None)
+        if not lives:
+            self._away[site] = self._bus.now()
+        self.ask_soon()
 
     def ask_soon(self) -> None:
         """Ask them what they advertise: something has changed."""

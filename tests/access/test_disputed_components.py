@@ -50,3 +50,16 @@ def test_of_two_sites_with_one_component_the_believed_one_has_it_or_on_its_own_h
 ) -> None:
     advertised = {"attic": frozenset((LAMP, BELL)), "cellar": frozenset((LAMP,))}
     assert claims(advertised, decided, here="attic") == (owned, disputed)
+
+
+@pytest.mark.parametrize(
+    ("decided", "owner"), [({}, "cellar"), ({LAMP: "attic"}, "attic")], ids=["nothing is said", "it is believed"]
+)
+def test_a_site_that_is_gone_has_no_claim_against_one_that_is_there_unless_it_is_believed(
+    decided: Mapping[IRI, str], owner: str
+) -> None:
+    advertised = {"attic": frozenset((LAMP, BELL)), "cellar": frozenset((LAMP,))}
+    owned, disputed = claims(advertised, decided, here="garage", gone={"attic"})
+    assert not disputed
+    assert [site for site, some in owned.items() if LAMP in some] == [owner]
+    assert BELL in owned["attic"], "no other claims it"

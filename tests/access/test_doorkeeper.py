@@ -24,7 +24,7 @@ from selfconf.access import (
     first_rules,
     keys_folder,
 )
-from selfconf.access.doorkeeper import INTRODUCE_AGAIN, KNOWN_FOR, LOOK_AT_ALL, RAREST_RETRY
+from selfconf.access.doorkeeper import GONE_AFTER, INTRODUCE_AGAIN, KNOWN_FOR, LOOK_AT_ALL, RAREST_RETRY
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
@@ -298,6 +298,18 @@ def test_what_two_sites_advertise_is_nobodys_until_somebody_says_whose(door: Doo
     door.pass_time(2.0)
     assert vouched(door, "attic") == set()
     assert vouched(door, "cellar") == {Principal.component(BELL).name}
+
+
+def test_what_a_site_has_advertised_that_is_gone_is_that_of_the_one_that_advertises_it_now(door: Door) -> None:
+    advertise(door, "attic", BELL).close()
+    advertise(door, "cellar", BELL)
+    assert vouched(door, "cellar") == set(), "only the way to the other one may be gone, for a moment"
+    door.pass_time(GONE_AFTER + LOOK_AT_ALL)
+    assert vouched(door, "cellar") == {Principal.component(BELL).name}
+    assert not [said for said in door.said if "is advertised by the sites" in said]
+    advertise(door, "attic", BELL)
+    assert vouched(door, "attic") == vouched(door, "cellar") == set()
+    assert [said for said in door.said if "urn:bell is advertised by the sites attic and cellar" in said]
 
 
 def test_a_site_goes_on_with_its_own(door: Door) -> None:
