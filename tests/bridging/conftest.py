@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ssl
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -16,8 +17,8 @@ def thing_server() -> Iterator[Callable[[], ThingServer]]:
     """Starts servers, which end with the test."""
     servers: list[ThingServer] = []
 
-    def start(port: int = 0) -> ThingServer:
-        servers.append(ThingServer(port))
+    def start(port: int = 0, tls: ssl.SSLContext | None = None) -> ThingServer:
+        servers.append(ThingServer(port, tls))
         return servers[-1]
 
     yield start

@@ -313,5 +313,10 @@ def _reason(error: Exception) -> str:
     for kind, reason in _REASONS.items():
         if isinstance(error, kind):
             return reason
+    if isinstance(error, aiohttp.ClientConnectorCertificateError):
+        why = getattr(error.certificate_error, "verify_message", "")  # such as "self-signed certificate"
+        return f"its certificate is not trusted: {why}; SSL_CERT_FILE names a file of the authorities that are"
+    if isinstance(error, aiohttp.ClientSSLError):  # an OSError, whose number is one of TLS
+        return "there is no TLS to speak with it"
     number = getattr(error, "errno", None)
     return os.strerror(number) if number and number > 0 else (str(error) or type(error).__name__)[:120]

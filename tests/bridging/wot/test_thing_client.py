@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import json
+import ssl
 import time
 from array import array
 from collections.abc import Callable, Coroutine
 from http.server import BaseHTTPRequestHandler
+from pathlib import Path
 from typing import Any, TypeVar
 
 import orjson
@@ -161,6 +163,28 @@ def test_an_answer_is_of_the_media_type_of_the_response(thing_server: Start) -> 
 def test_what_cannot_be_sent_is_said(value: Any, media: str, words: str) -> None:
     with pytest.raises(UnsendableValueError, match=words):
         asked(lambda client: client.send(ThingForm("http://127.0.0.1:1/", "POST", media), value, "image/png"))
+
+
+def test_a_certificate_that_is_not_trusted_is_said_and_how_it_is(
+    thing_server: Callable[..., ThingServer], tmp_path: Path
+) -> None:
+    certificates = pytest.importorskip("selfconf.access.certificates", reason="the extra `keys` is not installed")
+    certificate, key = certificates.new_authority("a thing")
+    shown = tmp_path / "thing.pem"
+    shown.write_bytes(certificate.pem + certificates.key_pem(key))
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(shown)
+    said = trouble(thing_server(tls=context), "/on")
+    assert said.startswith(
+        "GET /on does not answer: its certificate is not trusted: self"
+    )  # OpenSSL spells it two ways
+    assert said.endswith("; SSL_CERT_FILE names a file of the authorities that are")
+
+
+def test_a_thing_that_speaks_no_tls_is_said_to_speak_none(thing_server: Start) -> None:
+    form = ThingForm(thing_server().url.replace("http:", "https:"), "GET")
+    with pytest.raises(ThingError, match="does not answer: there is no TLS to speak with it"):
+        asked(lambda client: client.read(form))
 
 
 def test_html_is_no_value(thing_server: Start) -> None:
