@@ -48,7 +48,7 @@ class Searches:
     def after(self, problem: Problem, running: Configuration) -> Configuration | Refusal | Undecided:
         """Return what comes after a configuration that runs, as a running configurator would decide it."""
         if self.strategy is Strategy.BEST:
-            *_, found = self._with_additions(self._best, problem, running)
+            *_, found = self.answers(problem, running)
             if not isinstance(found, Undecided):
                 return found.configuration if isinstance(found, Optimum) else found
         again = self._search if self.strategy is Strategy.PAPER else self._nearest

@@ -23,7 +23,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.cost import CostTerm
 from selfconf.model.optimum import Optimum
 from selfconf.model.profile import Input, Output, needed_operation, offered_operation
-from selfconf.model.refusal import Outcome, Refusal
+from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.template import TemplatePort
 from selfconf.search.additions import asking_for
 from selfconf.search.problem import Problem
@@ -194,3 +194,22 @@ def test_after_a_failure_paper_begins_anew_and_first_keeps_what_runs() -> None:
         for answer in (outcome(strategy, left, running), Searches(strategy).after(left, running)):
             assert isinstance(answer, Configuration)
             assert answer.components == tuple(map(iri, kept))
+
+
+def test_where_the_best_after_a_failure_is_not_decided_the_first_comes_with_its_recruits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(searches, "best_configuration", lambda *_: Undecided(1))
+    plain = problem({"sink": [component("s", "i:X")]})
+    template = replace(plain.task.template, roles=(replace(plain.roles[0], recruits=True),))
+    suppliers = tuple(Recruit(component(name, outputs="o:X"), frozenset((0,))) for name in "ab")
+    asked = Problem(
+        replace(plain.task, template=template), replace(plain.partition, recruits=suppliers), plain.hierarchy
+    )
+    running = outcome(Strategy.FIRST, asked)
+    assert isinstance(running, Configuration)
+    assert running.recruits == (iri("a"),)
+    left = Problem(asked.task, asked.partition.without(frozenset((iri("a"),))), asked.hierarchy)
+    after = Searches(Strategy.BEST).after(left, running)
+    assert isinstance(after, Configuration)
+    assert after.recruits == (iri("b"),)
