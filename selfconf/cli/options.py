@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import gc
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf.cli.terminal import complain
-from selfconf.errors import AuthorError, BindingError
+from selfconf.errors import AuthorError, BindingError, NetworkError
 from selfconf.files import STDIN
 from selfconf.model.seconds import DELAY_IN_WORDS, LIMIT_IN_WORDS, is_delay, is_limit
 from selfconf.project import BIND, REASONING, STRATEGIES
@@ -237,7 +238,22 @@ def given_ecology(given: argparse.Namespace) -> Ecology:
         from selfconf.api.ecology import EndpointEcology
 
         return EndpointEcology(given.endpoint)
-    return joined(given)
+    with files_named(given):
+        return joined(given)
+
+
+@contextmanager
+def files_named(given: argparse.Namespace) -> Iterator[None]:
+    """Where no site is there at all, have the NetworkError name the option by which advertisements are in files."""
+    try:
+        yield
+    except NetworkError as error:
+        from selfconf import rendezvous, this_machine
+
+        ecology, endpoints = rendezvous.asked_for(given.ecology, given.connect)
+        if ecology is not None or endpoints or this_machine.local_sites():
+            raise
+        raise NetworkError(f"{error}, or --ads PATH for advertisements in files") from None
 
 
 def one_ecology(given: argparse.Namespace) -> None:

@@ -20,6 +20,7 @@ from selfconf.cli.options import (
     complain_of_left_out,
     complain_of_strategy,
     delay_option,
+    files_named,
     joined,
     method_of,
     one_ecology,
@@ -139,7 +140,7 @@ def run(given: argparse.Namespace) -> int:
         running.stop_on_signals()
         if running.task_name != running.wanted_name:
             complain(f"a task {running.wanted_name!r} lives already, so this one is {running.task_name!r}")
-        lines = TextLines(task)
+        lines = TextLines(task, "" if site is None else site.ecology)
         report, stream = (json_lines, sys.stdout) if given.format == "json" else (lines, sys.stderr)
         printer = LinePrinter(report, stream, running.stop)
         with ProgressLine() as shown:
@@ -204,7 +205,8 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     with ExitStack() as stack:
         paths = given.ads if given.endpoint is None else [stack.enter_context(_fetched(given, task, method))]
         if paths is None:
-            ecology, endpoints = rendezvous.find(given.ecology, given.connect, shown)
+            with files_named(given):
+                ecology, endpoints = rendezvous.find(given.ecology, given.connect, shown)
             running = Run(task, method, Membership(ecology, tuple(endpoints), shown), options, given.wait)
             yield stack.enter_context(running), None
             return

@@ -28,8 +28,10 @@ class TextLines:
     than before.
     """
 
-    def __init__(self, task: TaskSpecification) -> None:
+    def __init__(self, task: TaskSpecification, own_ecology: str = "") -> None:
+        """`own_ecology` is the name of an ecology that the command has begun itself; its log is kept by that name."""
         self._names = task.names
+        self._log_options = f"--ecology {own_ecology}" if own_ecology else ""
         self._began: float | None = None
         self.told: set[IRI] = set()
         """The components that were reported as lost, and why."""
@@ -98,7 +100,7 @@ class TextLines:
         if isinstance(event, CallDeclined | ComponentUnreachable):
             self._trouble[event.component] = event.detail
         elif isinstance(event, ComponentLost):
-            hint = log_hint(event) if event.component not in self.told else ""
+            hint = log_hint(event, self._log_options) if event.component not in self.told else ""
             self.told.add(event.component)
             if self._trouble.pop(event.component, None) == event.detail:
                 event = replace(event, detail="")

@@ -71,13 +71,13 @@ def sentence(event: RunEvent, name: Name) -> str:
     return SENTENCES[event.act].format(**facts)
 
 
-def log_hint(event: ComponentLost) -> str:
-    """Where to look for the last words of a component that has ended or hangs; empty for one that said them itself."""
-    return (
-        f"       `selfconf log {event.component.short}` shows what it has printed"
-        if event.cause in ("crash", "hung")
-        else ""
-    )
+def log_hint(event: ComponentLost, options: str = "") -> str:
+    """Where to look for the last words of a component that has ended or hangs; empty for one that said them itself.
+
+    `options` are those that the command needs to find its log.
+    """
+    command = f"selfconf log {event.component.short} {options}".rstrip()
+    return f"       `{command}` shows what it has printed" if event.cause in ("crash", "hung") else ""
 
 
 def details(event: RunEvent, name: Name, told: Collection[IRI] = ()) -> Iterator[str]:

@@ -55,6 +55,21 @@ def test_a_choice_that_there_is_not_is_one_sentence_with_those_that_there_are(
     assert configure(capsys, template, option, "worst").is_one_sentence(f"{option}: invalid choice: 'worst'")
 
 
+# An ecology that is not there.
+
+
+@pytest.mark.parametrize("command", ["configure", "partition", "run"])
+def test_where_no_site_is_there_at_all_the_option_for_files_is_named(
+    command: str, template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "runtime"))
+    refused = run(capsys, command, str(template), *BOUND)
+    assert refused.is_one_sentence("no site runs on this machine", "--connect ENDPOINT, or --ads PATH")
+    refused = run(capsys, command, str(template), *BOUND, "--ecology", "other")
+    assert "no site of the ecology 'other' runs" in refused.err
+    assert "--ads" not in refused.err
+
+
 # Options that may be given again.
 
 

@@ -163,7 +163,7 @@ def test_a_component_that_cannot_begin_is_asked_for_a_few_times_told_of_once_and
     said = run.complaints
     assert said.count("no bulb\n") == 4
     assert said.count("LOST   :lamp: crash, the process that its site started for it has ended with code 2") == 4
-    assert said.count("`selfconf log lamp` shows what it has printed") == 1
+    assert said.count("`selfconf log lamp --ecology run-") == 1
     assert said.count("has ended more than 3 times within 60 s") == 1
     assert "LOST   :lamp: refused\n" in said
     assert "was lost" not in said

@@ -182,5 +182,6 @@ def test_the_body_of_an_event_holds_the_bodies_of_its_values() -> None:
 def test_what_has_been_told_of_a_loss_is_not_told_again_and_the_log_is_named_for_what_has_ended() -> None:
     assert list(lost_sentences({CLOCK: "fail", SCREEN: "silence"}, short, {CLOCK})) == ["  screen was lost: silence"]
     assert log_hint(ComponentLost(CLOCK, "crash", "gone")) == "       `selfconf log clock` shows what it has printed"
+    assert "`selfconf log clock --now`" in log_hint(ComponentLost(CLOCK, "crash", "gone"), "--now")
     assert log_hint(ComponentLost(CLOCK, "fail", "said so")) == ""
     assert sentence(ComponentLost(CLOCK, "refused", ""), short) == "LOST   clock: refused"
