@@ -164,7 +164,10 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
         inputs, set_, called_by = plan.inputs[component], plan.values[component], plan.callers[component]
         rests = state.rests and component in plan.order.actuators
         held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, active=True, rests=rests)
-        gently, adopted = state.fallback is not None, before.is_adopted
+        sources = (wire.component for wires in inputs.values() for wire in wires)
+        # What is new in a loop cannot wait for a signal of what is started after it.
+        feeds = before.acts or all(held[source].acts for source in sources if source in held)
+        gently, adopted = state.fallback is not None and feeds, before.is_adopted
         effects.append(ApplyTo(component, state.epoch, inputs, set_, called_by, gently, adopted, rests))
     return then(effects, proceed(replace(state, held=held, pending=frozenset(pending))))
 

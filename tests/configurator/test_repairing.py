@@ -98,6 +98,22 @@ def test_a_change_for_the_better_in_a_loop_begins_with_what_is_new() -> None:
     assert Running(looped(TRACKER)) in history.answer(CONTROL, Call.APPLY)
 
 
+def test_what_is_new_in_a_loop_does_not_wait_for_a_signal_of_what_is_started_after_it() -> None:
+    ran, better = (
+        replace(looped(position), assignments=tuple(Assignment(IRI(f"urn:r:{one}"), (one,)) for one in players))
+        for position, players in ((ODOMETRY, (DRIVE, ODOMETRY)), (TRACKER, (DRIVE, TRACKER, CONTROL)))
+    )
+    ran = replace(ran, connections=(Connection(ODOMETRY, "pose", DRIVE, "velocity"),), settings=())
+    history = History(TASK).running(ran)
+    history.hear(Improvable(), Discovered())
+    history.composed(better)
+    history.all_answer(Call.WAKE)
+    history.all_answer(Call.RESERVE)
+    history.all_answer()
+    calls = [one for one in history.effects if isinstance(one, ApplyTo) and one.epoch == history.state.epoch]
+    assert [(one.component, one.gently) for one in calls] == [(TRACKER, False), (CONTROL, True), (DRIVE, True)]
+
+
 def test_other_recruits_for_the_same_players_are_a_change_for_the_better() -> None:
     ran, better = (
         replace(whole, assignments=whole.assignments[1:], recruits=(recruit,))

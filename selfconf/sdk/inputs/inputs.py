@@ -13,6 +13,9 @@ issued a signal. A new output that issues nothing in time while the old one does
 long as both is so; what becomes of that is for the configurator to say. An output that has nothing to issue, such as a
 doorbell, looks like one that never will: where the old one has issued nothing in that time either, and both
 live, the new one takes its place, and the input has lost nothing.
+
+*Opening.* Where such a call starts the component, an input has followed nothing before. Then it waits for the first
+signal of an output that promises a rate, as what the component takes the place of goes on until then.
 """
 
 from __future__ import annotations
@@ -103,7 +106,8 @@ class InputFollower(Protocol):
 class Handover:
     """The change of an input to other outputs: it follows the old and the new until one of the new has issued a signal.
 
-    `due` is when it is looked next whether the new ones issue nothing although the old ones do.
+    There are no old ones where it opens. `due` is when it is looked next whether the new ones issue nothing although
+    the old ones do, or although they promise a rate.
     """
 
     old: frozenset[Wire]
@@ -159,8 +163,8 @@ class Inputs:
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
                 self._subscriptions[port, wire] = self._subscription(port, wire)
-        left = self._left_without(message.inputs)
-        before, self._handovers = self._handovers, {}
+        left, opening = self._left_without(message.inputs), dict(self._opening(message, now))
+        before, self._handovers = self._handovers, opening
         for port, old in left.items():
             new = message.inputs.get(port, ())
             # A call that was repeated, or of another task that wants the same of the component.
@@ -199,6 +203,28 @@ class Inputs:
             if wires.isdisjoint(inputs.get(port, ()))
             and not any(self._subscriptions[port, wire].heard for wire in inputs.get(port, ()))
         }
+
+    def _opening(self, message: Apply, now: float) -> Iterator[tuple[str, Handover]]:
+        """Yield the inputs that have followed nothing, and are to wait for the first signal of an output."""
+        known = {port for port, _ in self._followed_before()}
+        for port, new in message.inputs.items():
+            last = self._handovers.get(port)
+            if last is not None and not last.old and last.new == new:  # a call that was repeated
+                yield port, last
+            elif message.gently and port not in known and self._promised(port, new):
+                yield port, Handover.beginning(now, frozenset(), new)
+
+    def _followed_before(self) -> Iterator[tuple[str, Wire]]:
+        """Yield which output each input follows, but for those to which it is only being handed over."""
+        for port, wire in self.followed:
+            if port not in self._handovers or wire in self._handovers[port].old:
+                yield port, wire
+
+    def _promised(self, port: str, new: tuple[Wire, ...]) -> bool:
+        """Whether one of the outputs promises to issue a signal soon, and none has just done so."""
+        periods = (wire.period for wire in new if not port.endswith(CALL_MARK))
+        soon = any(period is not None and PATIENCE * period <= BEGINNING for period in periods)
+        return soon and not any(self._subscriptions[port, wire].heard for wire in new)
 
     @property
     def patience(self) -> float:
@@ -242,7 +268,7 @@ class Inputs:
         delivers = any(subscription.heard_since(began) for subscription in new)
         if not delivers and now < handover.due:
             return
-        quiet = not any(one.heard_since(began) for one in old) and not all(one.lost for one in new)
+        quiet = old and not any(one.heard_since(began) for one in old) and not all(one.lost for one in new)
         if delivers or quiet:
             del self._handovers[port]
             return
@@ -320,7 +346,7 @@ class Inputs:
         following = [
             subscription
             for (one, wire), subscription in self._subscriptions.items()
-            if one == port and not subscription.muted and (handover is None or wire in handover.old)
+            if one == port and not subscription.muted and (handover is None or wire in (handover.old or handover.new))
         ]
         if all(subscription.lost for subscription in following):
             self._events.unfed(port)

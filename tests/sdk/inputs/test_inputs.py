@@ -16,7 +16,7 @@ from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.component import Component
 from selfconf.sdk.inputs.followed_output import JUST_COME
 from selfconf.sdk.inputs.inputs import HANDOVER, HANDOVER_CHECK
-from selfconf.sdk.inputs.silence_watch import PATIENCE
+from selfconf.sdk.inputs.silence_watch import BEGINNING, PATIENCE
 from selfconf.sdk.inputs.source_watch import UNSEEN
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.runtime.supervision import GRACE
@@ -531,6 +531,55 @@ def test_an_output_that_promises_to_issue_seldom_has_time_for_what_it_promises()
     change.let_pass(0.8, change.tracker)
     assert (ODOMETRY, "") in silence(change.stage)
     assert change.told == {TRACKER.short}
+
+
+class Opening(Change):
+    """A component that is started gently, as a part of what is to take the place of something else."""
+
+    def __init__(self, period: float | None) -> None:
+        self.stage = Stage(Watchful())
+        self.odometry = other_source(self.stage)
+        self.stage.call(reserve(1, US))
+        self.message = apply(2, US, {"position": (Wire(ODOMETRY, "pose", period),)}, gently=True)
+        self.answers: list[Replies] = []
+        self.ask()
+
+
+def test_what_is_started_gently_answers_once_an_output_that_promises_a_rate_has_issued_a_signal() -> None:
+    change = Opening(0.2)
+    change.let_pass(0.4)
+    change.ask()  # once more, as the answer takes long
+    change.let_pass(0.4)
+    assert change.stage.recorder.said == [("started",)]
+    assert not change.answers
+    change.let_pass(0.4, change.odometry)
+    assert len(change.answers) == 2
+    assert not silence(change.stage)
+
+
+def test_what_is_started_gently_says_that_an_output_issues_nothing_and_follows_it_still() -> None:
+    change = Opening(0.2)
+    change.let_pass(HANDOVER + 0.4)
+    assert silence(change.stage) == [(ODOMETRY, "")]
+    assert not change.answers
+    change.let_pass(0.4, change.odometry)
+    assert change.answers
+
+
+@pytest.mark.parametrize("period", [None, BEGINNING])
+def test_what_is_started_gently_waits_for_no_signal_that_nothing_promises_for_soon(period: float | None) -> None:
+    change = Opening(period)
+    change.let_pass(0.4)
+    assert change.answers
+
+
+def test_what_is_started_gently_answers_when_its_source_is_lost() -> None:
+    change = Opening(0.2)
+    change.let_pass(0.4)
+    change.odometry.component.fail("no wheels")
+    change.let_pass(0.4)
+    assert change.answers
+    assert change.told == {"unfed"}
 
 
 def test_an_output_that_stood_by_is_asked_for_what_it_issued_before() -> None:
