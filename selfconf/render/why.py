@@ -6,7 +6,7 @@ The events are those of `run --format json`, as a configurator keeps them. Of a 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -167,17 +167,23 @@ def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequ
     if before is not None and components and not others:
         sentences.append("  no other candidate went before it in the latest search")
     if others:
+        told = {found.replaced.get(one) for one in components}
         sentences.append(f"  passed over, though first in order: {', '.join(map(_name, others))}")
-        sentences += _changes(found, others)
+        sentences += _changes(found, others, told)
     return sentences
 
 
-def _changes(found: TaskStory, passed_over: Sequence[str]) -> Iterator[str]:
-    """What would change that candidates were passed over: for one that was never lost only a search can tell that."""
+def _changes(found: TaskStory, passed_over: Sequence[str], told: Container[str | None]) -> Iterator[str]:
+    """What would change that candidates were passed over: for one that was never lost only a search can tell that.
+
+    Of those that were lost it is said why, but for those of which that is `told`.
+    """
     lost = [one for one in passed_over if one in found.lost]
+    yield from (f"  {_name(one)} was {_loss(found.lost[one])}" for one in lost if one not in told)
     if lost:
         names = ", ".join(map(_name, lost))
-        yield f"  what would change it: {names} able to act again, and `run --upgrade`, or a new start"
+        again = "free" if all(found.lost[one].get("cause") == "yield" for one in lost) else "able to act"
+        yield f"  what would change it: {names} {again} again, and `run --upgrade`, or a new start"
     rest = [one for one in passed_over if one not in lost]
     if rest:
         yield f"  `selfconf partition TEMPLATE --why` says what comes of {', '.join(map(_name, rest))}"

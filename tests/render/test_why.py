@@ -43,6 +43,18 @@ def test_only_of_what_was_lost_it_is_said_that_it_has_to_be_able_to_act_again() 
     assert ask == "  `selfconf partition TEMPLATE --why` says what comes of slow-tracker"
 
 
+def test_of_what_others_play_on_without_it_is_said_why_it_was_lost_and_that_it_has_to_be_free_again() -> None:
+    both = running(10.0, "odometry")
+    both["configuration"]["roles"][0]["components"].insert(0, HOME + "tracker")
+    given_up = {**LOST, "cause": "yield", "detail": "the task tidy of priority 3 asks for it"}
+    found = story("navigate", [both, given_up, running(21.0, "odometry")])
+    *_, over, why, change = why_sentences(found, "position", PASSED)
+    assert over == "  passed over, though first in order: tracker"
+    assert why.startswith("  tracker was lost at ")
+    assert why.endswith("(yield, the task tidy of priority 3 asks for it)")
+    assert change == "  what would change it: tracker free again, and `run --upgrade`, or a new start"
+
+
 def test_who_goes_first_and_who_has_come_back_is_said() -> None:
     first, over, back, order = why_sentences(
         story("navigate", [*EVENTS, running(40.0, "tracker")]), "position", {HOME + "position": []}
