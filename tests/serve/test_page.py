@@ -16,15 +16,20 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from starlette.requests import Request
+from starlette.responses import Response
 
 from selfconf.access import Principal, PrincipalKind
 from selfconf.protocol.messages import TaskRecord
 from selfconf.serve import fits
 from selfconf.serve.board import Board
+from selfconf.serve.look_endpoint import Onlookers
 from selfconf.serve.metrics import Metrics
+from selfconf.serve.problems import problem
 from selfconf.serve.watching.change import Body, EcologyChange
 from tests.cli.processes import Home, dormant
 from tests.lab import PREFIXES, iri
+from tests.sdk.living import until
 from tests.serve.chromium import CHROMIUM, Chromium, Page
 from tests.serve.shown import advertised, found, serving
 
@@ -329,6 +334,24 @@ def test_a_component_that_is_advertised_anew_is_looked_at_anew(shown: Callable[[
     page.says(".signals", "pose")
     change(replace(one, components={component: {**body, "outputs": [{"name": "place", "signals": []}]}}))
     page.says(".signals", "place")
+
+
+def test_a_component_that_a_server_has_not_found_yet_is_looked_at_again(
+    shown: Callable[[Board], Shown], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    look, asked = Onlookers.respond, list[str]()
+
+    async def respond(self: Onlookers, request: Request) -> Response:
+        asked.append(request.url.query)
+        return problem(404, "it has just begun") if len(asked) == 1 else await look(self, request)
+
+    monkeypatch.setattr(Onlookers, "respond", respond)
+    board = Board("again", Metrics())
+    board.apply(advertised("tracker"))
+    page, _ = shown(board)
+    page.click("person-tracker", "#components button")
+    assert until(lambda: len(asked) == 2)
+    page.trouble = [one for one in page.trouble if "404" not in one]
 
 
 def test_what_is_asked_of_a_component_is_asked_no_more_once_another_is_chosen(

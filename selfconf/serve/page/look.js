@@ -2,7 +2,7 @@
 
 import { clock, h, keyed, plain, say, short } from "/page/dom.js";
 
-const MOST_LINES = 300;
+const MOST_LINES = 300, AGAIN = 2000;
 
 /** A value for the eye: numbers of four digits, names in place of IRIs; all of it is in the title. */
 function seen(value) {
@@ -55,7 +55,15 @@ export class Look {
       this.#stream = new EventSource(`/look?component=${encodeURIComponent(this.#iri)}`);
       this.#stream.addEventListener("signals", (event) => this.#heard(JSON.parse(event.data)));
       this.#stream.addEventListener("log", (event) => this.#printed(JSON.parse(event.data)));
+      this.#stream.addEventListener("error", (event) => this.#refused(event.target));
     }
+  }
+
+  /** Ask again where a stream was refused, as by a server that has just begun: a browser itself does not. */
+  #refused(stream) {
+    if (stream !== this.#stream || stream.readyState !== EventSource.CLOSED) return;
+    this.#stream = null;
+    setTimeout(() => this.#follow(), AGAIN);
   }
 
   #heard(signals) {
