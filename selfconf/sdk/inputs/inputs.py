@@ -192,10 +192,8 @@ class Inputs:
         An output that is lost, or to which an input is only being handed over, does not count as followed.
         """
         followed: dict[str, set[Wire]] = {}
-        for port, wire in self.followed:
-            if self._subscriptions[port, wire].lost:
-                continue
-            if port not in self._handovers or wire in self._handovers[port].old:
+        for port, wire in self._followed_before():
+            if not self._subscriptions[port, wire].lost:
                 followed.setdefault(port, set()).add(wire)
         return {
             port: frozenset(wires)
@@ -216,9 +214,12 @@ class Inputs:
 
     def _followed_before(self) -> Iterator[tuple[str, Wire]]:
         """Yield which output each input follows, but for those to which it is only being handed over."""
-        for port, wire in self.followed:
-            if port not in self._handovers or wire in self._handovers[port].old:
-                yield port, wire
+        return (key for key in self.followed if self._is_own(*key))
+
+    def _is_own(self, port: str, wire: Wire) -> bool:
+        """Whether an input is not only being handed over to an output: that may have delivered before it is looked."""
+        handover = self._handovers.get(port)
+        return handover is None or wire in handover.old or self._subscriptions[port, wire].heard_since(handover.began)
 
     def _promised(self, port: str, new: tuple[Wire, ...]) -> bool:
         """Whether one of the outputs promises to issue a signal soon, and none has just done so."""
@@ -340,13 +341,14 @@ class Inputs:
     def _lost(self, port: str) -> None:
         """One output that an input follows is lost; the input is unfed if that was the last one.
 
-        An output that the input is being handed over to has not fed it yet: there is nothing to hand over any more.
+        An output to which it is only being handed over has not fed it yet: there is nothing to hand over any more.
         """
         handover = self._handovers.get(port)
+        opens = handover is not None and not handover.old
         following = [
             subscription
             for (one, wire), subscription in self._subscriptions.items()
-            if one == port and not subscription.muted and (handover is None or wire in (handover.old or handover.new))
+            if one == port and not subscription.muted and (opens or self._is_own(port, wire))
         ]
         if all(subscription.lost for subscription in following):
             self._events.unfed(port)

@@ -524,6 +524,16 @@ def test_an_input_that_is_handed_over_is_unfed_when_what_fed_it_is_lost() -> Non
     assert change.told == {TRACKER.short, "unfed", "fed", ODOMETRY.short}
 
 
+def test_an_input_has_lost_nothing_when_the_next_output_has_just_delivered_as_what_fed_it_is_lost() -> None:
+    change = Change()
+    change.let_pass(0.4, change.tracker)
+    change.odometry.component.emit("pose", "the last")
+    assert change.stage.network.run(lambda: ("position", "the last") in change.stage.recorder.said, HANDOVER_CHECK)
+    change.tracker.component.fail("blind")
+    change.stage.let_pass(0.4)
+    assert change.told == {TRACKER.short, "the last"}
+
+
 def test_an_output_that_promises_to_issue_seldom_has_time_for_what_it_promises() -> None:
     change = Change({"position": (Wire(ODOMETRY, "pose", HANDOVER),)})
     change.let_pass(PATIENCE * HANDOVER - 0.4, change.tracker)
