@@ -47,12 +47,14 @@ class RosQuality:
             reliability, durability, kept, deadline, _, _ = parts
             history, depth = kept.split(",")
             seconds, nanoseconds = deadline.split(",")
-            period = int(seconds or 0) + int(nanoseconds or 0) / 1e9
+            period, kept_messages = int(seconds or 0) + int(nanoseconds or 0) / 1e9, int(depth or 42)
+            if kept_messages < 0:
+                raise ValueError(depth)
             return cls(
                 reliability in ("", "1"),
                 durability == "1",
                 history == "2",
-                int(depth or 42),
+                kept_messages,
                 period if 0 < period < 1e6 else None,
             )
         except (ValueError, OverflowError):  # a whole number may be longer than any number of seconds
@@ -152,6 +154,8 @@ class RosToken:
             raise PeerError(f"{found['type'][:80]!r} is no type of messages or services")
         quality = RosQuality.parse(found["quality"])
         topic = found["topic"].replace("%", "/")
+        if not all(topic.strip("/").split("/")):  # no key has an empty part
+            raise PeerError(f"{topic[:80]!r} is no name of a topic or service")
         message_type = MessageType(kind_name, found["hash"])
         return cls(node, namespace, name, kind, RosEndpoint(int(found["entity"]), kind, topic, message_type, quality))
 

@@ -64,7 +64,9 @@ def test_a_quality_of_service_is_read_and_written(text: str, quality: RosQuality
     assert str(quality) == text
 
 
-@pytest.mark.parametrize("text", ["", "::", "::,x:,:,:,,", "::,:a,:,:,,", "::,:,:,:,,:", f"::,:{'9' * 400},:,:,,"])
+@pytest.mark.parametrize(
+    "text", ["", "::", "::,x:,:,:,,", "::,-5:,:,:,,", "::,:a,:,:,,", "::,:,:,:,,:", f"::,:{'9' * 400},:,:,,"]
+)
 def test_what_is_no_quality_of_service_is_refused(text: str) -> None:
     with pytest.raises(PeerError, match="no quality of service"):
         RosQuality.parse(text)
@@ -91,6 +93,8 @@ def test_humble_is_refused_by_a_sentence_of_its_own() -> None:
         TOPIC_KEY.format("::,10:,:,:,,").replace("std_msgs::msg::dds_::String_", "String"),
         TOPIC_KEY.format("::,10:,:,:,,").replace("std_msgs::msg::dds_::String_", "Std::msg::dds_::String_"),
         TOPIC_KEY.format("*"),
+        TOPIC_KEY.format("::,10:,:,:,,").replace("%front%scan", "%front%%scan"),
+        TOPIC_KEY.format("::,10:,:,:,,").replace("%front%scan", "%"),
         NODE_KEY + "x" * 5000,
         NODE_KEY + "\x1b[2J\n",
     ],
