@@ -320,7 +320,7 @@ OF_PARTS: Mapping[IRI, tuple[IRI, ...]] = {
 
 def foreign_terms(subject: Subject) -> frozenset[IRI]:
     """What a subject does not say, and another part of an advertisement does: here nothing reads it."""
-    return frozenset(OF_PARTS) - subject.predicates
+    return frozenset(OF_PARTS).union((SC.value,)) - subject.predicates
 
 
 STRUCTURE = COMPONENT.predicates.union(OF_PORTS_ALONE, SAID_BY)

@@ -26,7 +26,7 @@ from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.model.immutable import immutable
 from selfconf.rdf.literal_comparison import only_ordered
-from selfconf.rdf.permitted_fields import COMPONENT
+from selfconf.rdf.permitted_fields import COMPONENT, LINKED
 from selfconf.rdf.positions import Positions
 from selfconf.rdf.rdflib_terms import merged
 from selfconf.rdf.read_shapes import ReadShapes
@@ -236,10 +236,24 @@ def shape_violations(
             BY_SHAPE[violation.shape.removeprefix(_SHAPES)].code,
             violation.message,
             violation.severity,
-            shape=str(violation.shape),
+            _remedy(violation, graph),
+            str(violation.shape),
         )
         for offset, violation in _without_firsts(found, graph)
     ]
+
+
+def _remedy(violation: ReportedViolation, graph: Graph) -> str | None:
+    """What to do where something is said in a wrong form, or of something else, as the shape itself cannot tell."""
+    focus = violation.focus
+    is_part = any((None, URIRef(link), focus) in graph for link in LINKED)
+    if is_part and (focus, RDF.first, None) in graph:
+        return "These are no list: write a comma between one [ ... ] and the next, and no parentheses."
+    if is_part and violation.shape == _SHAPES.ComponentTyped:
+        return "Here it is said of a part of a component: say it of the component."
+    if violation.shape == _SHAPES.Feeder and (focus, RDF.type, _SC.Component) in graph:
+        return "A component says nothing of others: say it of a role, in a template."
+    return None
 
 
 @immutable

@@ -50,6 +50,20 @@ def test_a_violation_is_where_its_author_would_look_for_it(text: str, at: tuple[
     assert at in [(line, column) for line, column, _ in told(LAMP + text)]
 
 
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        (f":bell a sc:Component, :B ; sc:hasInput ( {PORT.format('a')} {PORT.format('b')} ) .", "These are no list"),
+        (f":bell a sc:Component, :B ; sc:hasInput {PORT.format('a')[:-1]} ; sc:shareable true ] .", "of the component"),
+        (":bell a sc:Component, :B ; sc:feeds :lamp .", "say it of a role, in a template"),
+    ],
+)
+def test_a_violation_tells_what_to_do_where_its_shape_alone_would_mislead(text: str, hint: str) -> None:
+    graph, positions = parse_with_positions(PREFIXES + LAMP + text, "a.ttl")
+    (found,) = shape_violations(graph, positions, SHAPES)
+    assert hint in (found.hint or "")
+
+
 @pytest.mark.parametrize("counts", ["sc:minCount [ ]", "sc:minCount 1 ; sc:maxCount [ ]", "sc:maxCount ( 1 )"])
 def test_brackets_that_stand_for_a_number_are_a_violation(counts: str) -> None:
     """pySHACL cannot compare a blank node."""

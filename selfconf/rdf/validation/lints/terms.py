@@ -59,8 +59,9 @@ _SAID_OF: Mapping[IRI, tuple[IRI, ...]] = {
     **OF_PARTS,
     **_OF_PARTS_OF_TEMPLATES,
     _SC.template: (_SC.Grounding, _SC.Task),
+    _SC.value: (),
 }
-"""What is passed over elsewhere than at an instance of some classes, with these."""
+"""What is passed over elsewhere than at an instance of some classes, with these; a value is that of what has none."""
 _OF_TEMPLATES: Mapping[IRI, frozenset[IRI]] = {
     _SC.Template: frozenset((_SC.parameter,)),
     _SC.Interaction: frozenset((_SC.output, _SC.input)),
@@ -68,10 +69,12 @@ _OF_TEMPLATES: Mapping[IRI, frozenset[IRI]] = {
     **dict.fromkeys((_SC.Role, _SC.Parameter), frozenset[IRI]()),
 }
 """What templates and tasks are made of, each with what is said of it among that."""
+_WITH_VALUES = "a rate or a duration, of what a role sets, and of a binding"
 _INSTEAD: Mapping[tuple[str, IRI], str] = {
     (_SC.Role, _SC.optional): "A role that may stay unplayed has sc:minCount 0.",
     (_SC.Component, _SC.parameter): "What is set of a component is its sc:hasParameter.",
     (_SC.Task, _SC.parameter): "A task has sc:binding [ sc:parameter ... ; sc:value ... ].",
+    (_SC.Parameter, _SC.value): "The default of a parameter is sh:defaultValue.",
 }
 """What is written in place of a term that says nothing of an instance of a class."""
 _MEMBERSHIP = re.compile(re.escape(vocabulary.RDF.base) + r"_\d+")
@@ -264,7 +267,8 @@ def untyped_ports(file: LintedFile) -> Iterator[Diagnostic]:
     """Ports of components that have no signal type, which is allowed and seldom meant."""
     for link in (_SC.hasInput, _SC.hasOutput):
         for node in sorted(set(file.graph.objects(None, URIRef(link))), key=file.offset):
-            if isinstance(node, Literal) or (node, URIRef(_SC.signalType), None) in file.graph:
+            said = (URIRef(_SC.signalType), RDF.first)  # a list is no port at all
+            if isinstance(node, Literal) or any((node, one, None) in file.graph for one in said):
                 continue
             name = file.graph.value(node, URIRef(_SC.name))
             called = "This port" if name is None else f"The port {str(name)!r}"
@@ -297,7 +301,7 @@ def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
     for (node, predicate, _), offsets in file.positions.triples.items():
         said = IRI.unchecked(str(predicate))
         if said in foreign.get(node, ()):
-            owners = " or ".join(f"a {file.short(owner)}" for owner in _SAID_OF[said])
+            owners = " or ".join(f"a {file.short(owner)}" for owner in _SAID_OF[said]) or _WITH_VALUES
             kinds = file.graph.objects(node, RDF.type)
             instead = (_INSTEAD[str(kind), said] for kind in kinds if (str(kind), said) in _INSTEAD)
             hint = next(instead, f"It is said of {owners}.")

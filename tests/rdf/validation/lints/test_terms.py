@@ -213,6 +213,11 @@ def test_a_signal_type_of_an_operation_is_passed_over_and_that_of_a_port_is_not(
         assert only(f'{port} {link} [ sc:name "b" ; sc:signalType rob:Audio ] .').code == "SC-L24"
 
 
+def test_ports_in_parentheses_are_one_problem() -> None:
+    ports = "[ sc:name 'a' ; sc:signalType rob:Audio ] [ sc:name 'b' ; sc:signalType rob:Audio ]"
+    assert only(f":x a sc:Component, rob:Tuner ; sc:hasOutput ( {ports} ) .").code == "SC-A07"
+
+
 @pytest.mark.parametrize(
     ("text", "owners"),
     [
@@ -230,6 +235,10 @@ def test_a_signal_type_of_an_operation_is_passed_over_and_that_of_a_port_is_not(
             ":a a sc:Component, rob:Tuner ; sc:grounding [ sc:command 'python a.py' ; sc:frame 'map' ] .",
             "a sc:Input or a sc:Output",
         ),
+        (
+            ":a a sc:Component, rob:Tuner ; sc:hasOutput [ sc:name 'o' ; sc:signalType rob:Text ; sc:value 30 ] .",
+            "a rate or a duration, of what a role sets, and of a binding",
+        ),
     ],
 )
 def test_what_is_said_of_another_part_of_an_advertisement_is_passed_over_and_told(text: str, owners: str) -> None:
@@ -245,6 +254,10 @@ def test_what_is_said_of_another_part_of_an_advertisement_is_passed_over_and_tol
         (":r sc:rate [ sc:value 5 ; sc:unit <http://qudt.org/vocab/unit/HZ> ] .", "It is said of a sc:Output."),
         (":t sc:command 'python t.py' .", "It is said of a sc:Grounding."),
         (":t sc:template :t .", "It is said of a sc:Grounding or a sc:Task."),
+        (
+            ":t sc:parameter :p . :p a sc:Parameter ; sc:name 'p' ; sc:value 3 . :r sh:node [ sh:in ( :p ) ] .",
+            "The default of a parameter is sh:defaultValue.",
+        ),
         (
             ":k a sc:Task ; sc:template :t ; sc:parameter :p .",
             "A task has sc:binding [ sc:parameter ... ; sc:value ... ].",
