@@ -275,7 +275,8 @@ class Inputs:
             return
         self._handovers[port] = replace(handover, due=now + HANDOVER)
         for wire in handover.new:
-            self._events.silent(wire, now - began)
+            if old or wire.period is not None:  # where there is none to compare with, by what it has promised
+                self._events.silent(wire, now - began)
 
     def _let_go(self) -> None:
         """End or mute what no input is to follow any more; an input that is handed over goes on following it."""

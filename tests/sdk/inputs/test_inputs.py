@@ -576,6 +576,18 @@ def test_what_is_started_gently_says_that_an_output_issues_nothing_and_follows_i
     assert change.answers
 
 
+def test_what_is_started_gently_blames_no_output_that_has_promised_nothing() -> None:
+    change = Opening(0.2)
+    button = change.stage.neighbour()
+    both = {"position": (*change.message.inputs["position"], Wire(TRACKER, "pose"))}
+    change.message = replace(change.message, epoch=3, inputs=both)
+    change.ask()
+    change.let_pass(HANDOVER + 0.4)
+    assert {component for component, _ in silence(change.stage)} == {ODOMETRY}
+    change.let_pass(0.4, button)
+    assert change.answers
+
+
 @pytest.mark.parametrize("period", [None, BEGINNING])
 def test_what_is_started_gently_waits_for_no_signal_that_nothing_promises_for_soon(period: float | None) -> None:
     change = Opening(period)
