@@ -140,19 +140,26 @@ class Inquiry:
     def insides(self, answer: Answer) -> list[tuple[IRI, Configuration | str]]:
         """What the composites of an answer would be inside, if their sites had this ecology, or why that is nothing.
 
-        Composites inside of these follow each after the one that holds it.
+        Composites inside of these follow each after the one that holds it. Those are left out whose document, which
+        says what is inside, is not at hand: of a text, an endpoint or the living ecology.
         """
         if not any(self.ecology[component].profile.inside for component in answer.components):
             return []
         documents: dict[Place | None, Document] = {}  # one file may advertise many
+        unknown: set[IRI] = set()
 
         def document_of(advertisement: Advertisement) -> Document:
             place = advertisement.place
             if place not in documents:
-                documents[place] = described_in(advertisement)
+                try:
+                    documents[place] = described_in(advertisement)
+                except SelfconfError:
+                    unknown.add(advertisement.component)
+                    raise
             return documents[place]
 
-        return list(insides(self.ecology, document_of, answer.plain, self.composer.hierarchy))
+        found = list(insides(self.ecology, document_of, answer.plain, self.composer.hierarchy))
+        return [(component, inside) for component, inside in found if component not in unknown]
 
     def answer(self, what_if: bool = False) -> Answer | Refusal | Undecided:
         """The configuration, or why there is none, within the time of the method."""

@@ -179,6 +179,16 @@ def test_what_composites_of_one_file_are_inside_is_read_from_it_once(
     assert read_again == [iri("set0")]
 
 
+def test_what_a_composite_is_inside_is_not_told_where_no_file_says_it() -> None:
+    """It is not refused: an ecology that lives, or an endpoint, does not hand on the document of the composite."""
+    text = RADIO.replace("TYPE", "rob:Audio")
+    task = template(f"{PREFIXES}:listen a sc:Template ; sc:roles ( :set ) . :set a sc:Role ; sh:class :Radio .")
+    inquiry = Inquiry(task, read(text), Method())
+    answer = inquiry.answer()
+    assert isinstance(answer, Answer)
+    assert inquiry.insides(answer) == []
+
+
 def test_a_refusal_of_text_that_is_in_no_file_has_its_lines(clock: sc.TaskSpecification) -> None:
     ecology = sc.read(*(Path(f"examples/clock/{name}.ttl").read_text() for name in ("clock", "display")))
     refusal = sc.configure(clock.bind(room=":cellar"), ecology)
