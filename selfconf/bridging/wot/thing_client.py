@@ -23,6 +23,10 @@ from selfconf.model.immutable import immutable
 CONNECTIONS = 32
 """How many connections to one host are open at once to read and write, and as many to call actions; outputs that are
 followed keep one each besides."""
+IDLE = 15.0
+"""Seconds for which a connection on which nothing is asked is kept."""
+IDLE_FOR_ACTIONS = 1.0
+"""As long for actions: a thing may close it in the moment of the next request, and a call is not made a second time."""
 MOST_EVENTS = 1000
 """How many server-sent events of one stream are read in a second; a thing that sends more is held up."""
 _EVENT_STREAM = "text/event-stream"
@@ -72,12 +76,12 @@ class ThingClient:
         self._requests = self._opened(CONNECTIONS)
         # A host of many things may be followed by many outputs, and take long for many actions: they would leave no
         # connection to ask anything else.
-        self._followed, self._actions = self._opened(0), self._opened(CONNECTIONS)
+        self._followed, self._actions = self._opened(0), self._opened(CONNECTIONS, IDLE_FOR_ACTIONS)
 
-    def _opened(self, connections: int) -> aiohttp.ClientSession:
+    def _opened(self, connections: int, kept: float = IDLE) -> aiohttp.ClientSession:
         """A session with so many connections to a host at most, or without a limit if that is 0."""
         return aiohttp.ClientSession(
-            connector=aiohttp.TCPConnector(limit=0, limit_per_host=connections),
+            connector=aiohttp.TCPConnector(limit=0, limit_per_host=connections, keepalive_timeout=kept),
             cookie_jar=aiohttp.DummyCookieJar(),  # what one thing sets, another one must not be sent
             auto_decompress=False,  # what is compressed may be a thousand times larger than it looks
             headers={"Accept-Encoding": "identity", "User-Agent": "selfconf"},

@@ -18,6 +18,7 @@ import pytest
 from selfconf.bridging.wot.forms import ThingForm
 from selfconf.bridging.wot.thing_client import (
     CONNECTIONS,
+    IDLE_FOR_ACTIONS,
     MOST_EVENTS,
     ThingAnswer,
     ThingClient,
@@ -110,6 +111,28 @@ def test_actions_that_take_long_leave_room_for_requests_to_their_host(thing_serv
                 one.cancel()
 
     assert asked(lambda client: asyncio.wait_for(work(client), 30.0)) == ThingAnswer(True)
+
+
+def test_an_action_is_not_called_by_a_connection_that_its_thing_may_be_closing(thing_server: Start) -> None:
+    server = thing_server()
+    asked_by: list[object] = []
+
+    def move(handler: BaseHTTPRequestHandler) -> None:
+        if handler.client_address in asked_by:  # it has closed it as the request was on its way
+            handler.close_connection = True
+        else:
+            reply(handler, b"1")
+        asked_by.append(handler.client_address)
+
+    server.posts["/move"] = move
+
+    async def work(client: ThingClient) -> list[ThingAnswer]:
+        form = ThingForm(server.url + "/move", "POST")
+        first = await client.call(form, None)
+        await asyncio.sleep(1.1 * IDLE_FOR_ACTIONS)  # nothing is asked for so long
+        return [first, await client.call(form, None)]
+
+    assert asked(work) == [ThingAnswer(1)] * 2
 
 
 def test_a_form_sends_what_its_security_asks_for(thing_server: Start) -> None:
