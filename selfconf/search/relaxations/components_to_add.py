@@ -7,7 +7,8 @@ for a role that may feed one of its inputs, changes that. So breadth-first searc
 extended by these roles alone, finds the fewest, beginning with as many for each role as it has too few candidates that
 could be fed at all; then outputs are taken away again one by one, as long as there is a solution without them, the last
 one of a component after those of which it has several. Where there are players, but none that have recruits, one more
-component for any role may help.
+component for any role may help. That one for a role which the set is not about may feed recruits is not looked at:
+where roles recruit, a smaller set may do.
 """
 
 from __future__ import annotations
