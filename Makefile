@@ -55,7 +55,7 @@ FOREIGN := tests/bridging/ros2/test_native_nodes.py tests/benchmarks/test_lost_n
 # kills of a server that writes its history, the programs of others, and the ecologies of all tests once more with keys;
 # about forty minutes.
 nightly: $(VENV)/with-dev fuzz test-keys
-	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/composition/test_searches.py \
+	HYPOTHESIS_PROFILE=nightly $(BIN)/python -m pytest $(PARALLEL) tests/search tests/configurator tests/composition/test_searches.py \
 		tests/test_configuration_certificate.py tests/faults tests/hostile tests/recorded tests/sim/test_rehearsal.py tests/sim/test_demo.py \
 		tests/benchmarks/test_compare.py tests/docs/test_ci_for_users.py tests/access/test_expiry.py \
 		tests/access/test_intruder.py tests/access/test_strangers.py tests/access/test_two_hosts.py tests/cli/test_access.py $(FOREIGN)

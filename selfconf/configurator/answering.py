@@ -40,6 +40,8 @@ def heed_answer(state: State, event: Answered) -> Reaction:
     rest = replace(known, pending=state.pending - {(event.component, event.call)})
     if state.phase is Phase.DISMANTLING:
         return phases.released(rest)
+    if state.phase is Phase.RUNNING:
+        return deploying.release_next(rest)
     if event.call is Call.RESERVE and state.held[event.component].is_adopted:
         return _answered_claim(rest, event)
     return deploying.confirmed(rest, event) if event.verdict is Verdict.DONE else _declined(rest, event)

@@ -5,7 +5,7 @@ one after the other in the order of their IRIs; but what is kept for the task is
 all are held, each is applied to as soon as everything before it in the starting order has confirmed. A component that
 acts already, and gets other inputs, is applied to at once if a source of it is lost, else not before its new sources
 have confirmed: make before break. In an upgrade that is so in a loop as well. What is not needed any more is released
-when everything has confirmed.
+when everything has confirmed, what is fed before what feeds it.
 
 Why in the order of the IRIs: a task that waits for a component holds none that comes later, so tasks cannot wait for
 each other in a circle (Havender 1968). One that was asked in a deployment which began anew before the answer came
@@ -21,7 +21,7 @@ So it is claimed meanwhile: reserved as it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
 from selfconf.configurator.effects import (
     ApplyTo,
@@ -35,7 +35,7 @@ from selfconf.configurator.effects import (
     Watch,
 )
 from selfconf.configurator.events import Answered, Call
-from selfconf.configurator.starting_order import Plan, plan_of, resting_order
+from selfconf.configurator.starting_order import InputWires, Plan, plan_of, resting_waves
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
@@ -63,10 +63,11 @@ def then(effects: Iterable[Effect], following: Reaction) -> Reaction:
 def deploy(state: State) -> Reaction:
     """Watch every component of the target, and wake those that are not held yet."""
     plan, epoch = _plan_of_target(state), state.epoch + 1
+    state, releases = release_rest(state, plan.inputs)
     wires, held = plan.inputs, _to_be_confirmed(state, plan)
     asleep = sorted(component for component in wires if not held[component].reserved)
     claimed = _unclaimed(state) if asleep else []
-    effects: list[Effect] = [Watch(component) for component in wires if component not in state.watched]
+    effects: list[Effect] = [*releases, *(Watch(component) for component in wires if component not in state.watched)]
     effects += [WakeUp(component, epoch) for component in asleep]
     effects += [ReserveOf(one, epoch, held[one].inputs, held[one].values) for one in claimed]
     effects += [Unwatch(component) for component in sorted(state.watched - wires.keys() - held.keys())]
@@ -241,9 +242,8 @@ def end_deployment(state: State) -> Reaction:
     if state.rewired:
         return rewire(replace(state, rewired=frozenset()), state.rewired)
     wanted = set(state.target.components)
-    wires = {component: held.inputs for component, held in state.held.items()}
-    surplus = resting_order(wires, [component for component in state.held if component not in wanted])
-    unneeded = (*surplus, *sorted(state.queued - wanted - set(surplus)))
+    surplus = [component for component in state.held if component not in wanted]
+    unneeded = sorted(state.queued - wanted - state.held.keys())
     effects: list[Effect] = [Running(state.target)]
     effects += [ReleaseFrom(component, state.epoch) for component in unneeded]
     effects += [Unwatch(component) for component in sorted(state.watched - wanted)]
@@ -258,10 +258,33 @@ def end_deployment(state: State) -> Reaction:
         has_yielded=False,
         news=state.news or state.heeds_others,  # by the next loss others may have let go, which they tell no task
         held={component: held for component, held in state.held.items() if component in wanted},
-        owed={**state.owed, **dict.fromkeys(unneeded, state.epoch)},
+        unreleased=resting_waves(acting_wires(state), surplus),
+        owed={**state.owed, **dict.fromkeys((*surplus, *unneeded), state.epoch)},
         watched=state.watched & wanted,
     )
-    return running, tuple(effects)
+    return then(effects, release_next(running))
+
+
+def acting_wires(state: State) -> dict[IRI, InputWires]:
+    """What each component that may act follows."""
+    return {component: held.inputs for component, held in state.held.items() if held.active}
+
+
+def release_next(state: State) -> Reaction:
+    """Release those that feed none of the others that are to come to rest, if those before them have."""
+    if state.pending or not state.unreleased:
+        return state, ()
+    now, *left = state.unreleased
+    pending = frozenset((component, Call.RELEASE) for component in now)
+    effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
+    return replace(state, unreleased=tuple(left), pending=pending), effects
+
+
+def release_rest(state: State, wanted: Container[IRI] = ()) -> Reaction:
+    """Release at once what was not needed by a configuration that runs no more, but for what is `wanted` again."""
+    left = (component for wave in state.unreleased for component in wave if component not in wanted)
+    owed = tuple(ReleaseFrom(component, state.owed[component]) for component in left if component in state.owed)
+    return replace(state, unreleased=()), owed
 
 
 def rewire(state: State, components: frozenset[IRI]) -> Reaction:

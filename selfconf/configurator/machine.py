@@ -23,6 +23,7 @@ an older epoch, or the result of an older search, changes nothing; no component 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import chain
 
 from selfconf.configurator import answering, deploying, losing, phases, searching
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
@@ -138,7 +139,7 @@ def _appeared(state: State, event: Appeared) -> Reaction:
     if state.phase is Phase.IDLE or state.ended:
         return state, ()
     lost = {component: loss for component, loss in state.lost.items() if _stays_lost(component, loss, event.lives)}
-    owed = event.lives.keys() & state.owed.keys() - set(state.unreleased)  # those come to rest in their turn
+    owed = event.lives.keys() & state.owed.keys() - set(chain(*state.unreleased))  # those come to rest in their turn
     effects = [ReleaseFrom(component, state.owed[component]) for component in sorted(owed)]
     known = replace(state, lost=lost, news=True)
     if state.phase is Phase.REFUSED:  # what was kept for it when it was refused is kept no more

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from types import MappingProxyType
 
-from selfconf.configurator.deploying import Reaction, then
+from selfconf.configurator.deploying import Reaction, acting_wires, release_next, release_rest, then
 from selfconf.configurator.effects import (
     AwaitReturn,
     Compose,
@@ -17,11 +17,9 @@ from selfconf.configurator.effects import (
     Effect,
     Finish,
     QueueFor,
-    ReleaseFrom,
     Unwatch,
 )
-from selfconf.configurator.events import Call
-from selfconf.configurator.starting_order import resting_next
+from selfconf.configurator.starting_order import resting_waves
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
@@ -33,8 +31,9 @@ NOTHING: Avoided = MappingProxyType({})
 
 def discover(state: State) -> Reaction:
     """Ask the ecology what there is: act 1."""
+    state, releases = release_rest(state)
     asking = replace(state, phase=Phase.DISCOVERING, pending=frozenset(), news=False, repeats={}, improving=False)
-    return asking, (Discover(),)
+    return asking, (*releases, Discover())
 
 
 def compose(state: State, avoided: Avoided = NOTHING) -> Reaction:
@@ -49,8 +48,9 @@ def compose_ignoring_holders(state: State) -> Reaction:
 
 def _compose(state: State, avoided: Avoided) -> Reaction:
     running = state.target if state.policy is Policy.REPAIR else None
+    state, releases = release_rest(state)
     searching = replace(state, phase=Phase.COMPOSING, pending=frozenset())
-    return begin_search(searching, running, avoided)
+    return then(releases, begin_search(searching, running, avoided))
 
 
 def begin_search(state: State, running: Configuration | None, avoided: Avoided) -> Reaction:
@@ -81,7 +81,7 @@ def dismantle(state: State, afterwards: Phase) -> Reaction:
         afterwards=afterwards,
         epoch=epoch,
         pending=frozenset(),
-        unreleased=tuple(owed),
+        unreleased=resting_waves(acting_wires(state), owed),
         queued=state.queued - owed.keys(),
         offered=state.offered - owed.keys(),
         fallback=None,
@@ -93,10 +93,8 @@ def dismantle(state: State, afterwards: Phase) -> Reaction:
 
 def released(state: State) -> Reaction:
     """Go on once all that were to come to rest have: with those that feed nothing any more, or with what follows."""
-    if state.pending:
-        return state, ()
-    if state.unreleased:
-        return _release_next(state)
+    if state.pending or state.unreleased:
+        return release_next(state)
     empty = replace(state, held={}, target=None, plan=None)
     if state.afterwards is Phase.COMPOSING:
         return compose(empty)
@@ -108,22 +106,11 @@ def released(state: State) -> Reaction:
     return ended, (Finish(state.refusal if ended.phase is Phase.REFUSED else None),)
 
 
-def _release_next(state: State) -> Reaction:
-    """Release those that feed none of the others that are to come to rest."""
-    wires = {component: held.inputs for component, held in state.held.items() if held.active}
-    now = resting_next(wires, state.unreleased)
-    resting = frozenset(now)
-    left = tuple(component for component in state.unreleased if component not in resting)
-    pending = frozenset((component, Call.RELEASE) for component in now)
-    effects = tuple(ReleaseFrom(component, state.epoch) for component in now)
-    return replace(state, unreleased=left, pending=pending), effects
-
-
 def _wait_no_more(state: State) -> Reaction:
     """Have the components that remember that this task waits forget it: the task is about to end."""
     waited_for = tuple(sorted(state.queued))
     owed = {**state.owed, **dict.fromkeys(waited_for, state.epoch)}
-    return _release_next(replace(state, queued=frozenset(), unreleased=waited_for, owed=owed))
+    return release_next(replace(state, queued=frozenset(), unreleased=(waited_for,), owed=owed))
 
 
 def queue(state: State) -> Reaction:

@@ -183,13 +183,12 @@ def _reached(component: IRI, graph: Mapping[IRI, Iterable[IRI]]) -> set[IRI]:
     return reached
 
 
-def resting_order(wires: Mapping[IRI, InputWires], components: Iterable[IRI]) -> tuple[IRI, ...]:
-    """Components in the order in which they come to rest."""
-    order: list[IRI] = []
+def resting_waves(wires: Mapping[IRI, InputWires], components: Iterable[IRI]) -> tuple[tuple[IRI, ...], ...]:
+    """Components in the order in which they come to rest: those of a wave at once, when those before it are at rest."""
+    waves: list[tuple[IRI, ...]] = []
     left = tuple(components)
     while left:
-        now = resting_next(wires, left)
-        order += now
-        resting = frozenset(now)
+        waves.append(resting_next(wires, left))
+        resting = frozenset(waves[-1])
         left = tuple(component for component in left if component not in resting)
-    return tuple(order)
+    return tuple(waves)

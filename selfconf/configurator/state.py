@@ -126,8 +126,9 @@ class State:
     """What ran before a change for the better: if that does not come about, it is what is wanted again."""
     held: Mapping[IRI, Held] = field(default_factory=dict)
     pending: frozenset[tuple[IRI, Call]] = frozenset()
-    unreleased: tuple[IRI, ...] = ()
-    """While dismantling, the components that act on until those that they feed are at rest."""
+    unreleased: tuple[tuple[IRI, ...], ...] = ()
+    """The components that act on until those that they feed are at rest, wave by wave: all, while dismantling, and what
+    is not needed any more, while running."""
     owed: Mapping[IRI, int] = field(default_factory=dict)
     """The components that were released and have not obeyed yet, each with the epoch of the release."""
     watched: frozenset[IRI] = frozenset()

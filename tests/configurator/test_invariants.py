@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 
 import pytest
 from hypothesis import given
@@ -47,7 +48,7 @@ from selfconf.configurator.events import (
     WaitedLong,
 )
 from selfconf.configurator.machine import step
-from selfconf.configurator.starting_order import parameter_values, resting_order, wiring
+from selfconf.configurator.starting_order import parameter_values, wiring
 from selfconf.configurator.state import Held, Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
@@ -158,15 +159,17 @@ class Ledger:
             assert not state.watched
         if state.phase is Phase.RUNNING:
             self._check_running()
-        if state.phase in (Phase.RESERVING, Phase.DEPLOYING, Phase.DISMANTLING):
-            assert state.pending
+        if state.phase in (Phase.RESERVING, Phase.DEPLOYING, Phase.RUNNING, Phase.DISMANTLING):
+            assert state.pending or state.phase is Phase.RUNNING
             assert {call for _, call in state.pending} <= {
                 Phase.RESERVING: {Call.WAKE, Call.RESERVE},
                 Phase.DEPLOYING: {Call.APPLY},
+                Phase.RUNNING: {Call.RELEASE},
                 Phase.DISMANTLING: {Call.RELEASE},
             }[state.phase]
         else:
             assert not state.pending
+        assert state.pending or not state.unreleased
         reserved = [one for one, call in state.pending if call is Call.RESERVE and not state.held[one].is_adopted]
         assert len(reserved) <= 1
         assert {component for component, _ in state.pending} <= state.held.keys() | state.owed.keys()
@@ -266,15 +269,11 @@ class Ledger:
     def _order_of_releases(self, effects: tuple[Effect, ...], before: State) -> None:
         """Whatever is turned off because all is, or because it is not needed any more: sinks first."""
         released = [effect.component for effect in effects if isinstance(effect, ReleaseFrom)]
-        if self.state.phase is Phase.RUNNING and len(released) > 1:
-            surplus = [component for component in released if component in before.held]
-            wires = {component: held.inputs for component, held in before.held.items()}
-            assert surplus == list(resting_order(wires, surplus))
-        if self.state.phase is Phase.DISMANTLING and any(isinstance(effect, ReleaseFrom) for effect in effects):
-            for component in self.state.unreleased:
-                fed_by = self.state.held[component].inputs if component in self.state.held else {}
-                sources = {wire.component for wires in fed_by.values() for wire in wires}
-                assert not sources & set(released) or not self.state.held[component].active
+        if self.state.phase in (Phase.RUNNING, Phase.DISMANTLING):
+            for component in chain(*self.state.unreleased):
+                held = (before if self.state.phase is Phase.RUNNING else self.state).held.get(component, Held({}))
+                sources = {wire.component for wires in held.inputs.values() for wire in wires}
+                assert not sources & set(released) or not held.active
 
 
 @pytest.mark.parametrize("phase", Phase)
@@ -302,7 +301,7 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
     if state.pending and kind < 28:
         component, call = sorted(state.pending)[who % len(state.pending)]
         verdict = ([Verdict.DONE] * 8 + [*Verdict, None])[how % (9 + len(Verdict))]
-        holder = [*HOLDERS, SELF, None][when % (2 + len(HOLDERS))]
+        holder = [*HOLDERS, SELF, None][when % (2 + len(HOLDERS))] if verdict is Verdict.BUSY else None
         newest = state.epoch + when % 3
         return Answered(component, call, state.epoch, verdict, str(which % 2), newest, holder=holder)
     if kind < 32:

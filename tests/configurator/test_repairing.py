@@ -76,7 +76,7 @@ def test_a_change_for_the_better_is_made_before_the_old_source_is_let_go() -> No
     assert applied(history.answer(TRACKER, Call.WAKE)) == [TRACKER]  # not yet the controller
     assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
     effects = history.answer(CONTROL, Call.APPLY)
-    assert effects == [Running(navigation()), ReleaseFrom(ODOMETRY, history.state.epoch), Unwatch(ODOMETRY)]
+    assert effects == [Running(navigation()), Unwatch(ODOMETRY), ReleaseFrom(ODOMETRY, history.state.epoch)]
     assert history.state.owed.keys() == {ODOMETRY}
 
 
@@ -163,7 +163,7 @@ def test_what_moves_while_a_configuration_is_deployed_is_told_at_its_end() -> No
     assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
     assert applied(history.answer(CONTROL, Call.APPLY)) == [CONTROL]  # once more, with what stands behind now
     effects = history.answer(CONTROL, Call.APPLY)
-    assert effects == [Running(navigation()), ReleaseFrom(ODOMETRY, history.state.epoch), Unwatch(ODOMETRY)]
+    assert effects == [Running(navigation()), Unwatch(ODOMETRY), ReleaseFrom(ODOMETRY, history.state.epoch)]
 
 
 def test_what_moves_while_another_configuration_is_looked_for_is_told_once_that_is_deployed() -> None:
@@ -306,9 +306,30 @@ def test_what_is_not_needed_any_more_is_released_sinks_first() -> None:
     history = History(TASK).running()
     history.hear(Failed(TRACKER, "1", Cause.CRASH))
     history.composed(Configuration(navigation().template, (Assignment(IRI("urn:r:position"), (ODOMETRY,)),)))
-    assert released(history.all_answer()) == [DRIVE, CONTROL]
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    assert released(history.answer(ODOMETRY, Call.APPLY)) == [DRIVE]
     assert set(history.state.held) == history.state.watched == {ODOMETRY}
     assert history.state.owed.keys() == {TRACKER, CONTROL, DRIVE}
+    assert released(history.answer(DRIVE, Call.RELEASE, None)) == [CONTROL]  # what does not obey holds up no other
+    assert released(history.answer(CONTROL, Call.RELEASE)) == []
+    assert history.state.owed.keys() == {TRACKER, DRIVE}
+
+
+@pytest.mark.parametrize("wanted", [False, True])
+def test_what_has_not_come_to_rest_as_another_configuration_is_looked_for_is_released_at_once(wanted: bool) -> None:
+    """But for what that wants again, where it is known already."""
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    history.composed(Configuration(navigation().template, (Assignment(IRI("urn:r:position"), (ODOMETRY,)),)))
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    history.answer(ODOMETRY, Call.APPLY)
+    assert history.state.unreleased == ((CONTROL,),)
+    if wanted:
+        history.state = replace(history.state, target=navigation(ODOMETRY))
+        assert released(history.hear(Rewired(ODOMETRY))) == []
+    else:
+        assert released(history.hear(Failed(ODOMETRY, "1", Cause.CRASH))) == [ODOMETRY, CONTROL]
+    assert history.state.unreleased == ()
 
 
 def test_an_actuator_that_has_not_said_that_it_acts_is_not_started_before_the_rest_acts() -> None:

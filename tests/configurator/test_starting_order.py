@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import chain
 
 import pytest
 from hypothesis import given
@@ -13,8 +14,7 @@ from selfconf.configurator.starting_order import (
     Caller,
     callers,
     parameter_values,
-    resting_next,
-    resting_order,
+    resting_waves,
     starting_order,
     wiring,
 )
@@ -40,13 +40,8 @@ def configuration(components: str, *edges: str) -> Configuration:
 
 def waves(components: str, *edges: str) -> list[str]:
     """Who comes to rest together, in order."""
-    wires = wiring(configuration(components, *edges))
-    left, order = tuple(map(name, components)), []
-    while left:
-        now = resting_next(wires, left)
-        order.append("".join(one.rpartition(":")[2] for one in now))
-        left = tuple(one for one in left if one not in now)
-    return order
+    together = resting_waves(wiring(configuration(components, *edges)), map(name, components))
+    return ["".join(one.rpartition(":")[2] for one in wave) for wave in together]
 
 
 def test_the_wiring_names_all_the_outputs_that_an_input_follows() -> None:
@@ -140,8 +135,8 @@ def test_what_feeds_nothing_any_more_comes_to_rest_first(
 
 def test_only_those_that_still_act_count_for_who_is_next() -> None:
     wires = wiring(navigation())
-    assert resting_next(wires, (TRACKER, CONTROL)) == (CONTROL,)
-    assert resting_next({}, (TRACKER, CONTROL)) == (TRACKER, CONTROL)
+    assert resting_waves(wires, (TRACKER, CONTROL)) == ((CONTROL,), (TRACKER,))
+    assert resting_waves({}, (TRACKER, CONTROL)) == ((TRACKER, CONTROL),)
 
 
 graphs = st.integers(0, 6).flatmap(
@@ -187,9 +182,9 @@ def test_coming_to_rest_nobody_feeds_a_component_that_acts_on_but_in_a_loop(grap
     target = configuration(graph[0], *graph[1])
     wires, left = wiring(target), target.components
     fed = {one: {c.sink for c in target.connections if c.source == one} for one in target.components}
-    assert sorted(resting_order(wires, left)) == sorted(left)
-    while left:
-        now = resting_next(wires, left)
-        assert now
-        left = tuple(one for one in left if one not in now)
-        assert not any(fed[one] & set(left) for one in now)
+    together = resting_waves(wires, left)
+    assert sorted(chain(*together)) == sorted(left)
+    for wave in together:
+        assert wave
+        left = tuple(one for one in left if one not in wave)
+        assert not any(fed[one] & set(left) for one in wave)

@@ -114,7 +114,7 @@ def test_of_tasks_that_wait_for_the_same_the_one_that_began_first_runs_first(see
     [
         ("selfconf.sdk.runtime.waiting_tasks.YIELDING", 0.0, 116, "acts for"),
         ("selfconf.protocol.activation._blocked", lambda *_: False, 0, "is held for"),
-        ("selfconf.configurator.phases.resting_next", lambda wires, left: tuple(left), 20, "acts for"),
+        ("selfconf.configurator.phases.resting_waves", lambda wires, left: (tuple(left),), 20, "acts for"),
         ("selfconf.configurator.deploying._may_begin", lambda *_: True, 0, "is started before"),
     ],
     ids=["taken without asking", "held by all", "all rest at once", "all start at once"],
