@@ -1,6 +1,7 @@
 """The discovered ecology as an RDF dataset, one named graph per advertisement, for SPARQL.
 
-The name of an advertisement's graph is the component's IRI; the default graph is the union of all. Queries run on
+The name of an advertisement's graph is the component's IRI; the default graph is the union of all. The union is in the
+store as well: Oxigraph would find a triple as often as graphs have it, and the union has it once. Queries run on
 Oxigraph. They read the dataset and nothing else: SERVICE is refused, and FROM only chooses among the graphs there.
 """
 
@@ -14,7 +15,7 @@ import pyoxigraph as ox
 from selfconf.errors import QueryError
 from selfconf.model.term import IRI
 from selfconf.rdf.sparql.mistakes import mistake
-from selfconf.rdf.sparql.read_only import only_reads, says
+from selfconf.rdf.sparql.read_only import only_reads
 from selfconf.rdf.turtle import Triple, ox_term
 from selfconf.rdf.vocabulary import PROV, RDF, RDFS, ROB, SC, SH, XSD
 
@@ -31,6 +32,7 @@ QUERY_PREFIXES = {
     "xsd": XSD.base,
     "prov": PROV.base,
 }
+_UNION = ox.DefaultGraph()
 QueryAnswer = ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples
 
 
@@ -39,6 +41,8 @@ class Dataset:
 
     def __init__(self) -> None:
         self._store = ox.Store()
+        self._merged = True
+        """Whether the default graph is the union of all others."""
 
     def add_advertisements(self, found: Iterable[Advertisement]) -> None:
         """Add each advertisement as the graph that its component names."""
@@ -49,6 +53,7 @@ class Dataset:
         """Add triples to a named graph."""
         graph = ox.NamedNode(name)
         self._store.extend(ox.Quad(ox_term(s), ox.NamedNode(p), ox_term(o), graph) for s, p, o in triples)
+        self._merged = False
 
     def dump(self) -> bytes:
         """Everything in it, as N-Quads."""
@@ -57,13 +62,29 @@ class Dataset:
     def load(self, quads: bytes) -> None:
         """Add what another dataset has dumped."""
         self._store.bulk_load(quads, format=ox.RdfFormat.N_QUADS)
+        self._merged = False
 
     def replace(self, name: str, triples: bytes) -> None:
         """Let a named graph hold these N-Triples and nothing else; without any it is gone."""
         graph = ox.NamedNode(name)
+        for said in self._said_in(graph) if self._merged else ():
+            stating = self._store.quads_for_pattern(said.subject, said.predicate, said.object, None)
+            if all(quad.graph_name in (graph, _UNION) for quad in stating):
+                self._store.remove(_in_union(said))
         self._store.remove_graph(graph)
         if triples:
             self._store.load(triples, format=ox.RdfFormat.N_TRIPLES, to_graph=graph)
+        if self._merged:
+            self._store.extend(map(_in_union, self._said_in(graph)))
+
+    def _said_in(self, graph: ox.NamedNode) -> list[ox.Quad]:
+        return list(self._store.quads_for_pattern(None, None, None, graph))
+
+    def _merge(self) -> None:
+        if not self._merged:
+            self._store.clear_graph(_UNION)
+            self._store.update("INSERT { ?s ?p ?o } WHERE { GRAPH ?g { ?s ?p ?o } }")
+            self._merged = True
 
     def query(
         self,
@@ -80,6 +101,7 @@ class Dataset:
         """
         only_reads(text)
         lent = {**QUERY_PREFIXES, **(prefixes or {})}
+        self._merge()
         try:
             if default_graphs or named_graphs:
                 return self._store.query(
@@ -89,7 +111,11 @@ class Dataset:
                     default_graph=[ox.NamedNode(name) for name in default_graphs],
                     named_graphs=[ox.NamedNode(name) for name in named_graphs],
                 )
-            union = not says(text, "FROM")
-            return self._store.query(text, base_iri=base, prefixes=lent, use_default_graph_as_union=union)
+            return self._store.query(text, base_iri=base, prefixes=lent)
         except (SyntaxError, ValueError, OSError) as error:
             raise QueryError(f"not a SPARQL query: {mistake(text, str(error), lent)}") from None
+
+
+def _in_union(said: ox.Quad) -> ox.Quad:
+    """A triple of a graph, in the union of all."""
+    return ox.Quad(said.subject, said.predicate, said.object, _UNION)

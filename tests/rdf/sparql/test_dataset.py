@@ -32,6 +32,23 @@ def test_the_default_graph_is_the_union_of_all_advertisements(dataset: Dataset) 
     assert len(values(dataset, "SELECT ?c WHERE { ?c a sc:Component }")) == len(ADVERTISEMENTS)
 
 
+def test_what_several_advertisements_say_is_in_the_union_once() -> None:
+    dataset = Dataset()
+    for name in ("a", "b"):
+        document = turtle.parse(f"{PREFIXES} :{name} a sc:Component, :K ; :on :base . :base :place :hall .", name)
+        dataset.add_advertisements(advertisements.read_document(document)[0])
+    place = f"SELECT ?place WHERE {{ <{iri('base')}> <{iri('place')}> ?place }}"
+    joined = f"SELECT ?place WHERE {{ ?c <{iri('on')}>/<{iri('place')}> ?place }}"
+    assert (len(values(dataset, place)), len(values(dataset, joined))) == (1, 2)
+    loaded = Dataset()
+    loaded.load(dataset.dump())
+    assert len(values(loaded, place)) == 1
+    for name, left in (("a", 1), ("b", 0)):
+        dataset.replace(iri(name), f"<{iri(name)}> <{iri('on')}> <{iri('base')}> .\n".encode())
+        assert len(values(dataset, place)) == left
+    assert len(values(dataset, f"SELECT ?c WHERE {{ ?c <{iri('on')}> ?base }}")) == 2
+
+
 def test_each_graph_holds_what_one_component_says(dataset: Dataset) -> None:
     text = f"SELECT ?o WHERE {{ GRAPH <{iri('astrid-drive')}> {{ ?s rob:support ?o }} }}"
     assert values(dataset, text) == [iri("Astrid")]
