@@ -204,6 +204,11 @@ class State:
         return self.phase is Phase.STOPPED or (self.phase is Phase.REFUSED and not self.patient)
 
     @property
+    def phase_in_words(self) -> str:
+        """The name of its phase; `waiting` where there is no configuration and the task goes on."""
+        return self.phase.value if self.phase is not Phase.REFUSED or self.ended else "waiting"
+
+    @property
     def searches_again(self) -> bool:
         """Whether a search that finds nothing does not count yet: the next one has more to choose from."""
         return self.asks_again or any(loss.startable for loss in self.lost.values())

@@ -97,8 +97,8 @@ class MemoryRun:
 
     @property
     def phase(self) -> str:
-        """Where the configurator is: `discovering`, `deploying`, `running`, ..."""
-        return self._runner.state.phase.value
+        """Where the configurator is: `discovering`, `deploying`, `running`, `waiting`, ..."""
+        return self._runner.state.phase_in_words
 
     @property
     def running(self) -> bool:
@@ -115,7 +115,9 @@ class MemoryRun:
         self._ecology.until(lambda: self.running or self.ended)
         self._ecology.advance(REPORT_LAG)
         if not self.running:
-            why = ", without a refusal" if self.refusal is None else f": {self.refusal}"
+            waiting = (event.refusal for event in reversed(self.events) if isinstance(event, TaskWaiting))
+            refusal = next(waiting, None) if self.refusal is None else self.refusal
+            why = ", without a refusal" if refusal is None else f": {refusal}"
             raise ProgrammerError(f"the task does not run; it is {self.phase}{why}")
         return self
 

@@ -25,6 +25,7 @@ def test_a_patient_task_does_not_end_with_a_refusal_but_when_it_is_stopped() -> 
     refused = State(phase=Phase.REFUSED, patient=True)
     assert not refused.ended
     assert replace(refused, phase=Phase.STOPPED).ended
+    assert [one.phase_in_words for one in (refused, replace(refused, patient=False))] == ["waiting", "refused"]
 
 
 def test_a_search_that_finds_nothing_counts_as_long_as_nothing_has_changed() -> None:

@@ -142,6 +142,18 @@ def test_a_task_that_cannot_run_says_why() -> None:
     assert "source" in str(repair)
 
 
+def test_a_task_that_waits_says_why_it_does_not_run() -> None:
+    ecology = MemoryEcology()
+    ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK), wait=True)
+    with pytest.raises(ProgrammerError, match="the task does not run; it is waiting: no configuration for :tell\n"):
+        run.started()
+    assert not run.ended
+    assert repr(run) == "<run of tell: waiting>"
+    ecology.add(Clock("clock"), CLOCK.replace("NAME", "clock"))
+    assert run.started().phase == "running"
+
+
 def test_a_refusal_is_explained_as_that_of_configure() -> None:
     task, files = sc.template("examples/clock/tell-the-time.ttl").bind(room=":cellar"), "examples/clock"
     ecology = MemoryEcology()

@@ -293,7 +293,7 @@ class Run:
         return Places(self.task.document.task.template, self._described(), (self.task.text,)).placed(refusal)
 
     def __repr__(self) -> str:
-        phase = "not begun" if self._begun is None else self._begun.runner.state.phase.value
+        phase = "not begun" if self._begun is None else self._begun.runner.state.phase_in_words
         return f"<run of {self.task_name}: {phase}>"
 
     def _check(self) -> None:

@@ -191,6 +191,7 @@ def test_a_patient_run_waits_for_the_ecology_to_change(served: Home, clock: sc.T
         assert isinstance(waiting.refusal, sc.Refusal)
         assert [str(miss) for miss in waiting.refusal.near_misses] == ["its place is kitchen, not cellar"]
         assert waiting.refusal.repairs
+        assert repr(run) == "<run of tell-the-time: waiting>"
         ads = served.folder / "cellar"
         ads.mkdir()
         (ads / "display.ttl").write_text(DISPLAY_IN_THE_CELLAR)
