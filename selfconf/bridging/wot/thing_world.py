@@ -36,7 +36,7 @@ from selfconf.importing import (
     document_at,
     gather,
 )
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.term import IRI
 
 DESCRIPTIONS = (".json", ".jsonld")
@@ -306,7 +306,13 @@ def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[Describ
     unreadable: list[AuthorError] = []
     ledger = ImportLedger(NAMESPACE, unreadable.append)
     documents = fetched or gather([source], DESCRIPTIONS, unreadable.append)
-    return list(described_things(documents, ledger)), unreadable
+    found = list(described_things(documents, ledger))
+    # An import calls the second of two of one name otherwise, as each gets a file; here they are one thing.
+    was = {one.component: one.was for one in ledger.names.renamed}
+    names = [was.get(thing.component.iri, thing.component.iri) for thing in found]
+    return [
+        replace(thing, component=replace(thing.component, iri=name)) for thing, name in zip(found, names, strict=True)
+    ], unreadable
 
 
 def _places(shown: str) -> list[str]:

@@ -57,6 +57,17 @@ def test_a_thing_that_is_described_anew_is_another_component(
         assert len(list(found.folder.glob("*.ttl"))) == 1
 
 
+def test_a_thing_that_a_source_describes_twice_is_one_component(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values["/on"] = True
+    with bridging(living, tmp_path / "ads", written(tmp_path, *[server.describe()] * 3)) as found:
+        assert until(lambda: found.complained("urn:thing:lamp is described twice; the first description counts"))
+        assert until(lambda: found.lives("lamp"))
+        assert [path.name for path in found.folder.glob("*.ttl")] == ["urn-thing-lamp-1.ttl"]
+
+
 def test_a_thing_that_is_described_with_more_is_advertised_anew_once_no_task_holds_it(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:
