@@ -232,13 +232,21 @@ class MemoryEcology:
         return found.component
 
     def run(
-        self, task: TaskSpecification, *, policy: str = "repair", wait: bool = False, strategy: str = "first"
+        self,
+        task: TaskSpecification,
+        *,
+        policy: str = "repair",
+        wait: bool = False,
+        strategy: str = "first",
+        reasoning: str = "syntactic",
     ) -> MemoryRun:
         """Begin to run a task; `started()` of the result lets time pass until it runs.
 
-        Raises BindingError, and ProgrammerError for a task or word that is none.
+        Its roles see the ontologies of selfconf and those of the ecology in the mode `reasoning`. Raises BindingError,
+        and ProgrammerError for a task or word that is none.
         """
-        complete, method, chosen = completed(task), Method.of(strategy), option(Policy, "policy", policy)
+        complete, chosen = completed(task), option(Policy, "policy", policy)
+        method = Method.of(strategy, reasoning, self._ontologies)
         self.advance(1.5)  # the site looks at its shelf once a second
         return MemoryRun(self, complete, method, chosen, checked_flag(wait, "wait"))
 

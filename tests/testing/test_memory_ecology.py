@@ -154,6 +154,19 @@ def test_a_task_that_waits_says_why_it_does_not_run() -> None:
     assert run.started().phase == "running"
 
 
+def test_a_task_sees_the_ontologies_of_the_ecology_in_its_own_mode(tmp_path: Path) -> None:
+    rdfs = "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+    (tmp_path / "clocks.ttl").write_text(f"{PREFIXES}{rdfs}:SunClock rdfs:subClassOf :Clock .")
+    ecology = MemoryEcology(ontologies=tmp_path / "clocks.ttl")
+    ecology.add(Clock("dial"), CLOCK.replace("NAME", "dial").replace(":Clock", ":SunClock"))
+    ecology.add(Screen(), SCREEN)
+    with pytest.raises(ProgrammerError, match="which lies below it"):
+        ecology.run(sc.template(TASK)).started()
+    run = ecology.run(sc.template(TASK), reasoning="subclass").started()
+    assert run.configuration is not None
+    assert run.configuration["source"] == (sc.IRI("urn:test:dial"),)
+
+
 def test_a_refusal_is_explained_as_that_of_configure() -> None:
     task, files = sc.template("examples/clock/tell-the-time.ttl").bind(room=":cellar"), "examples/clock"
     ecology = MemoryEcology()
