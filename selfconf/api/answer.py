@@ -82,11 +82,11 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
         return len(self.assignments)
 
     def __contains__(self, role: object) -> bool:
-        return any(role in (one, one.short, self.names(one)) for one in self.roles)
+        return any(self.names.means(role, one) for one in self.roles)
 
     def __getitem__(self, role: str) -> tuple[IRI, ...]:
         for assignment in self.assignments:
-            if role in (assignment.role, assignment.role.short, self.names(assignment.role)):
+            if self.names.means(role, assignment.role):
                 return assignment.components
         known = ", ".join(assignment.role.short for assignment in self.assignments)
         raise KeyError(f"there is no role {role!r}; the roles are {known}")

@@ -128,7 +128,7 @@ class PartitionTable(Tabular, Mapping[str, RolePartition]):
 
     def __getitem__(self, role: str) -> RolePartition:
         for one in self.roles:
-            if role in (one.role.iri, one.role.iri.short, self.names(one.role.iri)):
+            if self.names.means(role, one.role.iri):
                 return one
         raise KeyError(f"there is no role {role!r}; the roles are {', '.join(self)}")
 

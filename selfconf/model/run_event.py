@@ -273,8 +273,6 @@ def _brief(value: object) -> str:
         return f"<{len(value.components)} components>"
     if isinstance(value, Refusal | Undecided):
         return "<refused>" if isinstance(value, Refusal) else "<undecided>"
-    if isinstance(value, tuple):
-        return f"({', '.join(map(_brief, value))})"
-    if isinstance(value, Mapping):
+    if isinstance(value, tuple | Mapping):
         return f"({', '.join(map(_brief, value))})"
     return value if isinstance(value, str) and value.isidentifier() else repr(value)

@@ -97,7 +97,7 @@ class Positions:
 
     def of_node(self, node: Node) -> TextPosition | None:
         """Where a node is first the subject of a statement, or else where it is first spoken of."""
-        offset = self.offset(node)
+        offset = self._known_offset(node)
         return None if offset is None else self.place(offset)
 
     def line_of(self, iri: str) -> int | None:
@@ -108,7 +108,7 @@ class Positions:
     def at_the_end_of(self, subject: str | None, steps: Sequence[tuple[str, int]]) -> TextPosition | None:
         """Where the steps of a TemplateError end, or the last place to which they can be followed."""
         node: Node | None = None if subject is None else URIRef(subject)
-        offset = None if node is None else self.offset(node)
+        offset = None if node is None else self._known_offset(node)
         for predicate, index in steps:
             found = self._values(node, predicate) if node is not None else self._roots()
             if index >= len(found):
@@ -125,10 +125,13 @@ class Positions:
         """The blank nodes to which nothing leads, with their offsets, in the order of the text."""
         values = {value for _, _, value in self.triples}
         roots = {subject for subject, _, _ in self.triples if isinstance(subject, BNode)} - values
-        return sorted((self.offset(node) or 0, node) for node in roots)
+        return sorted((self.offset(node), node) for node in roots)
 
-    def offset(self, node: Node) -> int | None:
-        """The offset that belongs to `of_node`."""
+    def offset(self, node: Node) -> int:
+        """Where a node is first described, or else first spoken of; 0, the beginning, where the text has none."""
+        return self._known_offset(node) or 0
+
+    def _known_offset(self, node: Node) -> int | None:
         if self._nodes is None:
             self._nodes = {}
             for (subject, _, _), offsets in self.triples.items():
@@ -139,7 +142,7 @@ class Positions:
 
 
 def parse_with_positions(text: str, file: str, base: str = "file:///") -> tuple[Graph, Positions]:
-    """The triples of a Turtle text and their places; raises NotTurtle, or RecursionError for brackets too deep."""
+    """The triples of a Turtle text and their places; raises NotTurtleError, or RecursionError for brackets too deep."""
     text = with_plain_lines(text)
     graph = Graph()
     positions = Positions(file, text)

@@ -24,6 +24,10 @@ class Names:
                 return f"{prefix}:{term[len(base) :]}"
         return f"<{term}>" if isinstance(term, IRI) else str(term)
 
+    def means(self, word: object, iri: IRI) -> bool:
+        """Whether a word stands for an IRI: it is that, its local name, or as this shortens it."""
+        return word in (iri, iri.short, self(iri))
+
 
 def ecology_names(prefixes: Mapping[str, str], iris: Iterable[str]) -> tuple[Names, str]:
     """What shortens the IRIs of an ecology, and a line that says what the empty prefix stands for; empty if for none.

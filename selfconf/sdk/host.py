@@ -71,11 +71,11 @@ class Host:
         self.code = CodeThread(inline=not bus.run_aside())
         self._hung, self._ontologies = hung, tuple(ontologies)
         self._overdue: RunningCode | None = None
+        """The code that was found to hang last."""
         self._looked = self._went_on = time.monotonic()
         """When the code was looked at last, and when this process has gone on last that had stood still."""
         self._used = time.process_time()
         """How many seconds of a processor this process had used by the last look."""
-        """The code that was found to hang last."""
         if not self.code.inline:
             bus.wake_up(self._watch_code)
             bus.later(AT_REST, self._settle)

@@ -36,8 +36,6 @@ class LifeWatch:
         self._lives: set[str] = set()
         self._had: set[str] = set()
         """The lives that the component has had since the process began."""
-        self.lived = False
-        """Whether the component has had a life since the process began."""
         self._lifeless_since = bus.now()
         self._unanswered_since: float | None = None
         self._closed = False
@@ -55,6 +53,11 @@ class LifeWatch:
     def alive(self) -> bool:
         """Whether the component has a life."""
         return bool(self._lives)
+
+    @property
+    def lived(self) -> bool:
+        """Whether the component has had a life since the process began."""
+        return bool(self._had)
 
     @property
     def last_life(self) -> str:
@@ -89,7 +92,6 @@ class LifeWatch:
 
     def _life_changed(self, key: str, alive: bool) -> None:
         if alive:
-            self.lived = True
             self._lives.add(life_of(key))
             self._had.add(life_of(key))
         else:

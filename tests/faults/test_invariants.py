@@ -160,7 +160,7 @@ MUTATIONS = {
     "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
     "nobody waits in vain": Mutation(
         {
-            "selfconf.deployment.components.component_messages.ComponentMessages._received_free": nothing,
+            "selfconf.deployment.components.component_messages.ComponentMessages._freed": nothing,
             "selfconf.deployment.retries.Retries._forgive": nothing,
         },
         (SECOND, Action(4.0, "stop_task", "task-1")),

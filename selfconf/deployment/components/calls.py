@@ -29,7 +29,6 @@ from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.run_request import Standby, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.configuration import Configuration, Connection
-from selfconf.model.immutable import replace
 from selfconf.model.run_event import (
     ActivationSent,
     ComponentAwaited,
@@ -161,8 +160,8 @@ class Calls:
         inputs = self._ends.wires(effect.inputs)
         claim = self._calling.claim(effect.component, effect.epoch)
         calling = self._ends.callers(effect.callers)
-        message = Apply(**claim, inputs=inputs, values=dict(effect.values), callers=calling, gently=effect.gently)
-        message = replace(message, rests=effect.rests)
+        values, gently, rests = dict(effect.values), effect.gently, effect.rests
+        message = Apply(**claim, inputs=inputs, values=values, callers=calling, gently=gently, rests=rests)
         self._stood_by.pop(effect.component, None)
         self._calling.call(effect.component, Call.APPLY, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}

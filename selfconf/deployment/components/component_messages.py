@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
 
 from selfconf.bus.port import Sample, Urgency
 from selfconf.configurator import Failed, Freed, Rewired, WaitedLong
@@ -14,9 +16,11 @@ from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import component_chunk, owner_of_fail
-from selfconf.protocol.messages import Cause, Fail, Free, Moved
+from selfconf.protocol.messages import Cause, Fail, Free, Message, Moved
 
 log = logging.getLogger(__name__)
+
+Said = TypeVar("Said", bound=Message)
 
 
 class ComponentMessages:
@@ -38,9 +42,9 @@ class ComponentMessages:
         bus = task.ecology.bus
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
         self._subscriptions = [
-            bus.subscribe(self._keys.any_fail(), self._received_fail, Urgency.EVENT),
-            bus.subscribe(self._keys.any_free(), self._received_free, Urgency.EVENT),
-            bus.subscribe(self._keys.any_moved(), self._received_moved, Urgency.EVENT),
+            bus.subscribe(self._keys.any_fail(), partial(self._received, Fail, self._failed), Urgency.EVENT),
+            bus.subscribe(self._keys.any_free(), partial(self._received, Free, self._freed), Urgency.EVENT),
+            bus.subscribe(self._keys.any_moved(), partial(self._received, Moved, self._moved), Urgency.EVENT),
         ]
 
     def watch(self, component: IRI) -> None:
@@ -56,14 +60,18 @@ class ComponentMessages:
         for undo in self._subscriptions:
             undo()
 
-    def _received_fail(self, sample: Sample) -> None:
+    def _received(self, kind: type[Said], heed: Callable[[str, Said], None], sample: Sample) -> None:
+        """Heed a message, given the key on which it came, unless it cannot be read."""
         try:
-            fail = decode(sample.payload, Fail)
+            message = decode(sample.payload, kind)
         except PeerError as error:
-            log.warning("passed over a FAIL on %s: %s", sample.key, error)
-            return
-        own = sample.key == self._keys.fail(fail.component)
-        reported = fail.cause is Cause.SILENCE and self._may_report(owner_of_fail(sample.key), fail.component)
+            log.warning("passed over a message on %s: %s", sample.key, error)
+        else:
+            heed(sample.key, message)
+
+    def _failed(self, key: str, fail: Fail) -> None:
+        own = key == self._keys.fail(fail.component)
+        reported = fail.cause is Cause.SILENCE and self._may_report(owner_of_fail(key), fail.component)
         if not self._heeds(fail):
             return
         if (
@@ -98,24 +106,14 @@ class ComponentMessages:
         held = self._state().held.get(fail.component)
         return held is not None and held.reserved
 
-    def _received_moved(self, sample: Sample) -> None:
-        try:
-            moved = decode(sample.payload, Moved)
-        except PeerError as error:
-            log.warning("passed over a notice on %s: %s", sample.key, error)
-            return
-        mine = sample.key == self._keys.moved(moved.component) and moved.component in self._state().held
+    def _moved(self, key: str, moved: Moved) -> None:
+        mine = key == self._keys.moved(moved.component) and moved.component in self._state().held
         if mine and self._state().held[moved.component].life in ("", moved.life):
             self._ends.moved(moved.component, moved.outputs, moved.callers)
             self._step(Rewired(moved.component))
 
-    def _received_free(self, sample: Sample) -> None:
-        try:
-            free = decode(sample.payload, Free)
-        except PeerError as error:
-            log.warning("passed over a notice on %s: %s", sample.key, error)
-            return
-        if sample.key != self._keys.free(free.component):
+    def _freed(self, key: str, free: Free) -> None:
+        if key != self._keys.free(free.component):
             return
         if free.task == self._task:
             self._step(Freed(free.component))

@@ -34,7 +34,7 @@ def unaccepted_shapes(graph: Graph, positions: Positions) -> Iterator[Diagnostic
             wrong = error.statement, f"This is no shape that an advertisement may hold: {error}"
         if wrong is not None:
             statement, message = wrong
-            yield at(positions, places.get(statement or (), positions.offset(shape) or 0), "SC-A20", f"{message}.")
+            yield at(positions, places.get(statement or (), positions.offset(shape)), "SC-A20", f"{message}.")
 
 
 def _offset(positions: Positions, triple: tuple[rdflib.term.Node, rdflib.term.Node, rdflib.term.Node]) -> int:

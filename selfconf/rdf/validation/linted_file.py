@@ -42,7 +42,7 @@ class LintedFile:
 
     def offset(self, node: Node) -> int:
         """Where a node is described."""
-        return self.positions.offset(node) or 0
+        return self.positions.offset(node)
 
     def items(self, head: Node) -> Iterator[Node]:
         """The members of a list, as far as it is one."""

@@ -25,6 +25,7 @@ from rdflib.term import Node
 from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.model.immutable import immutable
+from selfconf.rdf import vocabulary
 from selfconf.rdf.literal_comparison import only_ordered
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED
 from selfconf.rdf.positions import Positions
@@ -34,9 +35,8 @@ from selfconf.rdf.validation.described_elsewhere import with_hierarchy
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.term_index import TermIndex
 
-_SC = Namespace("https://w3id.org/selfconf#")
-_SH = Namespace("http://www.w3.org/ns/shacl#")
-_SHAPES = Namespace("https://w3id.org/selfconf/shapes#")
+_SC, _SH, _SHAPES = (Namespace(one.base) for one in (vocabulary.SC, vocabulary.SH, vocabulary.SHAPES))
+"""As rdflib makes terms of them."""
 
 _MADE_DISTINCT_BY: dict[Node, URIRef] = {
     _SHAPES.PortNamesDistinct: _SC.name,
@@ -279,7 +279,7 @@ class _Places:
             candidates = own or self._mentions(violation.value, predicates)
         else:
             candidates = []
-        return candidates[0] if candidates else self.positions.offset(violation.focus) or 0
+        return candidates[0] if candidates else self.positions.offset(violation.focus)
 
     def _objects(self, subject: Node, predicates: frozenset[Node], value: Node | None = None) -> list[int]:
         """Where the objects of a subject stand, or those equal to `value`, in the order of the text."""

@@ -70,7 +70,7 @@ def endless_lists(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
             passed.add(cell)
             cell = graph.value(cell, RDF.rest)
         if cell in passed and cell is not None:
-            yield at(positions, positions.offset(cell) or 0, "SC-S06", "This list has no end.")
+            yield at(positions, positions.offset(cell), "SC-S06", "This list has no end.")
         finished |= passed
 
 
@@ -97,7 +97,7 @@ def _trials(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterat
         reason = _trial(shapes, role)
         if reason:
             message = f"The shape of this role cannot be evaluated: {reason}"
-            yield at(positions, positions.offset(URIRef(role)) or 0, "SC-T13", message)
+            yield at(positions, positions.offset(URIRef(role)), "SC-T13", message)
 
 
 def _with_samples(graph: Graph) -> Graph:
@@ -152,12 +152,12 @@ def _with_own_path(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
         for path in shapes.objects(shape, SH.path):
             offsets = positions.triples.get((shape, SH.path, path))
             message = "A role is about its component itself, so it has no sh:path: write sh:property [ sh:path ... ]."
-            yield at(positions, offsets.object if offsets else positions.offset(shape) or 0, "SC-T13", message)
+            yield at(positions, offsets.object if offsets else positions.offset(shape), "SC-T13", message)
 
 
 def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, str]:
     """What is wrong with a shape as a whole, and where."""
-    offset = positions.offset(focus) or 0
+    offset = positions.offset(focus)
     if (None, SH.property, focus) in shapes and len(set(shapes.objects(focus, SH.path))) != 1:
         return offset, "A property shape has exactly one sh:path, the property that it is about."
     for once in sorted(STATED_ONCE):
@@ -180,7 +180,7 @@ def _malformed_with_path(shapes: Graph, positions: Positions, shape: Node) -> tu
     """What is wrong with a shape that has a path, and where: that it stands behind sh:node, as far as is known."""
     asking = [positions.triples.get((one, SH.node, shape)) for one in shapes.subjects(SH.node, shape)]
     places = [one.object for one in asking if one]
-    return (min(places), unfit(IRI.unchecked(SH.node))) if places else (positions.offset(shape) or 0, ILL_FORMED)
+    return (min(places), unfit(IRI.unchecked(SH.node))) if places else (positions.offset(shape), ILL_FORMED)
 
 
 def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
@@ -231,7 +231,7 @@ def _too_deep(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iter
     for role in map(URIRef, roles):
         if _height(shapes, role) > DEEPEST_SHAPE:
             message = f"The shape of this role nests shapes more than {DEEPEST_SHAPE} deep."
-            yield at(positions, positions.offset(role) or 0, "SC-T13", message)
+            yield at(positions, positions.offset(role), "SC-T13", message)
 
 
 def _height(shapes: Graph, role: Node) -> int:

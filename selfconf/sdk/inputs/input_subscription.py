@@ -85,7 +85,7 @@ class InputSubscription:
         return self._output.dropped
 
     @property
-    def heard(self) -> bool:
+    def just_issued(self) -> bool:
         """Whether the output has just issued a signal, so that the input that follows it from now on is fed."""
         return self._output.just_issued
 
@@ -97,7 +97,7 @@ class InputSubscription:
         """Deliver what is received, from the newest signal on if that has only just come, else from the last one on."""
         if not self.muted:
             return
-        if self._last_signal.asked and not self.heard:
+        if self._last_signal.asked and not self.just_issued:
             self._last_signal.request_if_quiet()
         self._source.expect_life()
         self._silence.expect(first=self._output.order.newest is NONE)

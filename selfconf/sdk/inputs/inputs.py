@@ -199,7 +199,7 @@ class Inputs:
             port: frozenset(wires)
             for port, wires in sorted(followed.items())
             if wires.isdisjoint(inputs.get(port, ()))
-            and not any(self._subscriptions[port, wire].heard for wire in inputs.get(port, ()))
+            and not any(self._subscriptions[port, wire].just_issued for wire in inputs.get(port, ()))
         }
 
     def _opening(self, message: Apply, now: float) -> Iterator[tuple[str, Handover]]:
@@ -225,7 +225,7 @@ class Inputs:
         """Whether one of the outputs promises to issue a signal soon, and none has just done so."""
         periods = (wire.period for wire in new if not port.endswith(CALL_MARK))
         soon = any(period is not None and PATIENCE * period <= BEGINNING for period in periods)
-        return soon and not any(self._subscriptions[port, wire].heard for wire in new)
+        return soon and not any(self._subscriptions[port, wire].just_issued for wire in new)
 
     @property
     def patience(self) -> float:

@@ -138,9 +138,9 @@ def test_what_stands_by_has_not_just_issued_what_comes_late_of_another_task() ->
     late.issue(2)
     late.answer_nothing()
     (by,) = [one for key, one in late.subscriptions.items() if key[1].component == TRACKER]
-    assert not by.heard
+    assert not by.just_issued
     late.issue(4)
-    assert by.heard
+    assert by.just_issued
 
 
 def test_what_stands_by_has_not_just_issued_what_it_may_have_issued_for_a_task_that_it_has_let_go_of() -> None:
@@ -149,15 +149,15 @@ def test_what_stands_by_has_not_just_issued_what_it_may_have_issued_for_a_task_t
     late.stage.call(apply(2, US, {"position": (Wire(CAP, "velocity"),)}, standby=standby))
     late.issue(2)
     (by,) = [one for key, one in late.subscriptions.items() if key[1].component == TRACKER]
-    assert by.heard
+    assert by.just_issued
     late.let_go(3)
-    assert not by.heard, "it has not said yet whether it acts for another task"
+    assert not by.just_issued, "it has not said yet whether it acts for another task"
     late.issue(3)
-    assert not by.heard
+    assert not by.just_issued
     late.issue(4)
-    assert by.heard
+    assert by.just_issued
     late.answer_nothing()
-    assert by.heard, "it acts, for another task or this one"
+    assert by.just_issued, "it acts, for another task or this one"
 
 
 def test_what_stands_by_and_acts_on_for_another_task_still_has_its_last_signal() -> None:
