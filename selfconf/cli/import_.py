@@ -62,7 +62,7 @@ def run(given: argparse.Namespace) -> int:
         complain(str(unreadable) if unreadable.file else f"selfconf import: {unreadable}")  # a place comes first
     for each in (*report.renamed, *report.left_out):
         complain(str(each))
-    if not report.files and not report.unreadable:
+    if not (report.files or report.unreadable or report.left_out):
         complain(f"selfconf import: {_looked_for(given)}")
     if given.format == "json":
         display_json(_body(report))

@@ -38,7 +38,7 @@ def import_rdf(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Itera
             if component in seen and component not in refused:
                 ledger.leave_out("components", "an earlier source advertises them already", source)
                 refused.add(component)
-        seen.update(components)
+        seen.update(component for component in components if component not in refused)
         descriptions = tuple(each for each in described(document, refused) if each.subject not in refused)
         if any(SC.Component in each.values(TYPE) for each in descriptions):
             yield ImportedDocument(stem(source), source.name, descriptions, document.prefixes)

@@ -75,6 +75,16 @@ def test_nothing_to_import_is_an_honest_no(things: Path, capsys: pytest.CaptureF
     assert peis.err.endswith("of a folder the files that end in .cmp are read\n")
 
 
+def test_where_all_is_left_out_it_is_not_said_that_there_is_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a.nt").write_text("<urn:a> <urn:b> <urn:c> .\n")
+    outcome = run(capsys, "import", "rdf", str(tmp_path), "--out", str(tmp_path / "ads"))
+    assert outcome.code == 1
+    assert "left out documents without components" in outcome.err
+    assert "there is nothing of the format" not in outcome.err
+
+
 def test_of_a_folder_with_nothing_but_what_was_imported_it_is_said_that_this_is_not_read(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

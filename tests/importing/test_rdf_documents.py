@@ -114,6 +114,12 @@ def test_a_component_that_an_earlier_source_advertises_is_left_out(workshop: Wor
     assert left_out(report) == {"components": 1}
 
 
+def test_a_component_that_an_earlier_source_advertises_ill_is_that_of_a_later_one(workshop: Workshop) -> None:
+    report = workshop.imported("rdf", {"a.ttl": f"{HEAD}:lamp a sc:Component .", "b.ttl": HEAD + LAMP})
+    assert list(workshop.texts()) == ["b.ttl"]
+    assert left_out(report) == {"components that do not conform": 1}
+
+
 def test_what_advertises_nothing_is_named_and_what_is_no_rdf_is_unreadable(workshop: Workshop) -> None:
     report = workshop.imported("rdf", {"a.ttl": ":a", "b.nt": "", "c.jsonld": '{"@context": "https://x.example/c"}'})
     assert left_out(report) == {"documents without components": 1}
