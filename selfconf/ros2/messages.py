@@ -16,6 +16,7 @@ import importlib.util
 import keyword
 import os
 import re
+import reprlib
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
@@ -342,7 +343,7 @@ def _numbers(datatype: str, given: Any) -> Any:
 def _base(datatype: str, given: Any) -> Any:
     if given is not None:
         if datatype == "bool" and given not in (True, False):  # of a text Python would make true, whatever it says
-            raise MessageError(f"has {repr(given)[:40]}, where a bool is true or false")
+            raise MessageError(f"has {reprlib.repr(given)[:40]}, where a bool is true or false")
         return given
     if datatype in ("string", "wstring"):
         return ""

@@ -7,6 +7,7 @@ import struct
 from array import array
 from typing import Any
 
+import orjson
 import pytest
 
 from selfconf.ros2 import messages
@@ -70,6 +71,7 @@ def test_what_is_not_given_is_zero_and_arrays_are_those_of_numpy() -> None:
         ({"covariance": [0.1] * 35}, "geometry_msgs/msg/PoseWithCovariance", "Unexpected array length"),
         ({"names": "speed"}, "rcl_interfaces/srv/GetParameters_Request", r"has a value that is no string\[\]"),
         ({"transforms": {}}, "tf2_msgs/msg/TFMessage", r"no geometry_msgs/msg/TransformStamped\[\]"),
+        ({"data": orjson.loads("[" * 1020 + "]" * 1020)}, "std_msgs/msg/Bool", "where a bool is true or false"),
         ({"data": "false"}, "std_msgs/msg/Bool", "has 'false', where a bool is true or false"),
     ],
 )
