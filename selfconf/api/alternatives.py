@@ -14,7 +14,7 @@ from selfconf.composition import TimeLimit
 from selfconf.model import cost
 from selfconf.model.alternative import Alternative
 from selfconf.model.configuration import Configuration
-from selfconf.model.optimum import Optimum
+from selfconf.model.optimum import Optimum, outcome_of
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.template import Role
@@ -88,7 +88,7 @@ def _with(one: Alternative, answer: Optimum | Outcome) -> Alternative:
 
 
 def _players(answer: Optimum | Outcome, role: IRI) -> tuple[IRI, ...]:
-    outcome = answer.configuration if isinstance(answer, Optimum) else answer
+    outcome = outcome_of(answer)
     if not isinstance(outcome, Configuration):
         return ()
     return next((one.components for one in outcome.assignments if one.role == role), ())

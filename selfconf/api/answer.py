@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field, fields
+from dataclasses import field
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.consequence import Consequence
-from selfconf.model.immutable import FrozenMapping, immutable
+from selfconf.model.immutable import FrozenMapping, immutable, recast, replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.optimum import Optimum
 from selfconf.model.refusal import Refusal
@@ -58,8 +58,8 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
         left_out: tuple[LeftOut, ...] = (),
     ) -> Answer:
         """A configuration of a task as an answer to it."""
-        facts = {one.name: getattr(configuration, one.name) for one in fields(Configuration)}
-        return cls(**facts, task=task, optimum=optimum, unknown=unknown, what_if=what_if, left_out=left_out)
+        more = {"task": task, "optimum": optimum, "unknown": unknown, "what_if": what_if, "left_out": left_out}
+        return recast(configuration, cls, Configuration, **more)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bindings", FrozenMapping(self.bindings))
@@ -94,9 +94,7 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     @property
     def plain(self) -> Configuration:
         """The configuration by itself."""
-        return Configuration(
-            self.template, self.assignments, self.connections, self.settings, dict(self.bindings), self.recruits
-        )
+        return replace(recast(self, Configuration, Configuration), bindings=dict(self.bindings))
 
     def to_turtle(self) -> str:
         """The configuration in RDF, as Turtle."""
@@ -133,7 +131,7 @@ class ExplainedRefusal(Refusal):
     @classmethod
     def of(cls, refusal: Refusal, task: TaskDocument) -> ExplainedRefusal:
         """A refusal of a task with the prefixes of its document."""
-        return cls(**{one.name: getattr(refusal, one.name) for one in fields(Refusal)}, task=task)
+        return recast(refusal, cls, Refusal, task=task)
 
     @property
     def names(self) -> Names:

@@ -21,7 +21,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.literal_values import number
-from selfconf.model.optimum import Optimum
+from selfconf.model.optimum import Optimum, outcome_of
 from selfconf.model.partition import Partition
 from selfconf.model.profile import Place, Profile
 from selfconf.model.refusal import Outcome, Refusal, Undecided
@@ -195,7 +195,6 @@ class Inquiry:
         found, taken = agreed(
             lambda left_out: composed(self.composer, self.ecology, held | left_out, None, limit),
             self._sharers,
-            lambda one: one.configuration if isinstance(one, Optimum) else one,
         )
         self.holders |= taken
         self._sharers = {component: one for component, one in self._sharers.items() if component not in taken}
@@ -206,7 +205,7 @@ class Inquiry:
         if not self.holders:
             return ()
         found = composed(self.composer, self.ecology, frozenset(), None, limit)
-        wanted = found.configuration if isinstance(found, Optimum) else found
+        wanted = outcome_of(found)
         if not isinstance(wanted, Configuration):
             return ()
         named = usable or self.holders.keys() & set(wanted.components)

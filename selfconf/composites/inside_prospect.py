@@ -90,9 +90,7 @@ class InsideProspect:
         shared = {one: held[one] for one in held if known[one].profile.is_shareable}
         without = lost | (held.keys() - shared)
         try:
-            outcome, _ = agreed(
-                lambda left_out: self._request.compose(known, left_out | without, None), shared, lambda one: one
-            )
+            outcome, _ = agreed(lambda left_out: self._request.compose(known, left_out | without, None), shared)
         except SelfconfError:
             return False
         return isinstance(outcome, Configuration)

@@ -18,7 +18,7 @@ from selfconf.model.consequence import Consequence
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.obstacle import NotJudged
-from selfconf.model.optimum import Optimum
+from selfconf.model.optimum import Optimum, outcome_of
 from selfconf.model.partition import ANY_VALUE, Barred, Candidate, NearMiss, Partition, Variable
 from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, ValueUnknown
 from selfconf.model.requirement import InputFed, RolePlayed
@@ -156,7 +156,7 @@ class Composer:
     ) -> Outcome:
         """The configuration without what is left out, keeping what runs where that can be; or why there is none."""
         *_, answer = self.answers(ecology, left_out, running)
-        return answer.configuration if isinstance(answer, Optimum) else answer
+        return outcome_of(answer)
 
     def answers(
         self,
@@ -177,7 +177,7 @@ class Composer:
         problem = self._problem(self.partition(ecology), left_out, played)
         misses: dict[frozenset[IRI], tuple[NearMiss, ...]] = {}
         for answer in self.searches.answers(problem, running):
-            outcome = answer.configuration if isinstance(answer, Optimum) else answer
+            outcome = outcome_of(answer)
             if isinstance(outcome, Configuration):
                 wrong = broken_conditions(self._task, problem.partition, outcome, self.hierarchy)
                 if wrong:

@@ -87,7 +87,7 @@ class Inside:
             composer.leave_unfed(unfed)
             shared = {one: user for one, user in held.items() if ecology[one].profile.is_shareable}
             alone = held.keys() - shared
-            outcome, _ = agreed(lambda without: composer.compose(ecology, without | alone, None), shared, lambda it: it)
+            outcome, _ = agreed(lambda without: composer.compose(ecology, without | alone, None), shared)
         except SelfconfError as error:
             return str(error)
         if isinstance(outcome, Configuration):

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from enum import Enum
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.optimum import Optimum
+from selfconf.model.optimum import Optimum, outcome_of
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.search.additions import with_additions
 from selfconf.search.problem import Problem
@@ -50,7 +50,7 @@ class Searches:
         if self.strategy is Strategy.BEST:
             *_, found = self.answers(problem, running)
             if not isinstance(found, Undecided):
-                return found.configuration if isinstance(found, Optimum) else found
+                return outcome_of(found)
         again = self._search if self.strategy is Strategy.PAPER else self._nearest
         *_, near = self._with_additions(again, problem, running)
         assert not isinstance(near, Optimum)  # for the nearest is not chosen by what it costs

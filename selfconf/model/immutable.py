@@ -19,6 +19,7 @@ from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, TypeVar
 
 Class = TypeVar("Class", bound=type)
+_Made = TypeVar("_Made")
 _Key = TypeVar("_Key")
 _Mapped = TypeVar("_Mapped", covariant=True)
 Methods = dict[str, Callable[..., Any]]
@@ -58,6 +59,11 @@ else:
         if hasattr(made, "__post_init__"):
             made.__post_init__()
         return made
+
+
+def recast(value: object, kind: type[_Made], base: type, **more: Any) -> _Made:
+    """Return a value of another class with the fields of `base`, which both have, and with more."""
+    return kind(**{field.name: getattr(value, field.name) for field in dataclasses.fields(base)}, **more)
 
 
 class _Initializer:

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
+from selfconf.model.refusal import Outcome
 from selfconf.model.term import IRI
 
 
@@ -27,3 +28,8 @@ class Optimum:
     def unknown(self) -> int:
         """How many terms of the cost are over a property that a component does not have."""
         return len(self.missing)
+
+
+def outcome_of(answer: Optimum | Outcome) -> Outcome:
+    """What a search has come to, without what that costs."""
+    return answer.configuration if isinstance(answer, Optimum) else answer

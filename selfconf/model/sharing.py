@@ -12,15 +12,16 @@ from typing import TypeVar
 
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
+from selfconf.model.optimum import Optimum, outcome_of
 from selfconf.model.partition import Barred
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Outcome, Refusal
 from selfconf.model.term import IRI
 
 Avoided = Mapping[Barred, IRI]
 """The sources that a search does without in the roles in which they would feed a shared component, with that."""
 MOST_AVOIDED = 10
 """How many sources a search avoids before it does without the components that would follow them."""
-Found = TypeVar("Found")
+Found = TypeVar("Found", bound=Optimum | Outcome)
 
 
 def avoid(
@@ -58,17 +59,16 @@ def avoided_in_vain(avoided: Avoided, sharers: Mapping[IRI, Holder]) -> dict[IRI
 def agreed(
     search: Callable[[frozenset[Barred]], Found],
     sharers: Mapping[IRI, Holder],
-    configuration_of: Callable[[Found], object],
 ) -> tuple[Found, dict[IRI, Holder]]:
     """What a search finds that no sharer contests, and the sharers' components that are taken for it.
 
-    `search` is given what to leave out, and `configuration_of` tells the outcome of what it found.
+    `search` is given what to leave out.
     """
     taken: dict[IRI, Holder] = {}
     avoided: Avoided = {}
     while True:
         found = search(frozenset((*taken, *avoided)))
-        outcome = configuration_of(found)
+        outcome = outcome_of(found)
         if isinstance(outcome, Refusal) and avoided:
             taken |= avoided_in_vain(avoided, sharers)
             avoided = {}

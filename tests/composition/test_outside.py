@@ -94,6 +94,6 @@ def test_what_is_outside_is_not_avoided_without_end_where_another_task_wants_ano
         return composer.compose({tracker.component: tracker}, left_out, None)
 
     holder = Holder("other~1", wants=Wants(frozenset({("help", iri("helper"), "hint")})))
-    found, taken = agreed(search, {tracker.component: holder}, lambda outcome: outcome)
+    found, taken = agreed(search, {tracker.component: holder})
     assert isinstance(found, Refusal)
     assert taken == {tracker.component: holder}

@@ -16,7 +16,7 @@ import pytest
 import selfconf
 from selfconf.model.configuration import Connection
 from selfconf.model.diagnostic import Report
-from selfconf.model.immutable import FIRST_VALUES, FrozenMapping, immutable, replace
+from selfconf.model.immutable import FIRST_VALUES, FrozenMapping, immutable, recast, replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.term import IRI
 
@@ -72,6 +72,12 @@ ARGUMENTS: list[tuple[tuple[object, ...], Mapping[str, object]]] = [
     (("a",), {"note": "n", "watts": 7.0}),
     (("b",), {}),
 ]
+
+
+def test_a_value_is_recast_with_the_fields_of_what_both_are() -> None:
+    spot = recast(Lamp("a", 7.0, note="n"), Spot, Lamp, angle=1.0)
+    assert (spot, spot.note) == (Spot("a", 7.0, angle=1.0), "n")
+    assert type(recast(spot, Lamp, Lamp)) is Lamp
 
 
 def test_values_compare_hash_and_print_as_those_of_the_standard_library() -> None:

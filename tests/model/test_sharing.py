@@ -52,17 +52,12 @@ def holders(followed: tuple[int | None, ...]) -> dict[IRI, Holder]:
     }
 
 
-def itself(outcome: Configuration | Refusal) -> object:
-    """The outcome of a search that finds nothing else."""
-    return outcome
-
-
 @given(st.tuples(*[st.sampled_from((None, 0, 1, 2, 3))] * 3), st.sets(st.sampled_from(CAMERAS)), st.booleans())
 def test_a_configuration_is_found_that_all_agree_with_if_there_is_one(
     followed: tuple[int | None, ...], gone: set[IRI], guarded: bool
 ) -> None:
     sharers = holders(followed)
-    found, taken = agreed(lambda left_out: first(left_out | gone, guarded), sharers, itself)
+    found, taken = agreed(lambda left_out: first(left_out | gone, guarded), sharers)
     cameras = [camera for camera in CAMERAS if camera not in gone]
     guards: Sequence[IRI | None] = cameras if guarded else (None,)
     choices = [one for one in product(cameras, TRACKERS, guards) if one[0] != one[2]]
@@ -76,7 +71,7 @@ def test_a_configuration_is_found_that_all_agree_with_if_there_is_one(
 def test_a_source_is_avoided_only_where_it_would_feed_the_shared_component() -> None:
     """Of two cameras the tracker is to follow the second, so that the first can keep guard."""
     sharers, others = holders((1, None, None)), frozenset({*CAMERAS[2:], *TRACKERS[1:]})
-    found, taken = agreed(lambda left_out: first(left_out | others, guarded=True), sharers, itself)
+    found, taken = agreed(lambda left_out: first(left_out | others, guarded=True), sharers)
     assert (found, taken) == (watching(CAMERAS[1], TRACKERS[0], CAMERAS[0]), {})
 
 
@@ -97,7 +92,7 @@ def test_a_component_is_taken_after_so_many_sources_were_avoided_for_it() -> Non
         free = [camera for camera in cameras if (EYE, camera) not in left_out]
         return watching(free[0], TRACKERS[0]) if TRACKERS[0] not in left_out else REFUSAL
 
-    found, taken = agreed(search, {TRACKERS[0]: holder}, itself)
+    found, taken = agreed(search, {TRACKERS[0]: holder})
     assert (found, taken) == (REFUSAL, {TRACKERS[0]: holder})
     assert searches <= MOST_AVOIDED + 3
 

@@ -10,15 +10,15 @@ another search may have been made, in another ecology.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import field, fields
+from dataclasses import field
 from typing import TypeAlias, overload
 
 from selfconf.api.answer import Answer, ExplainedRefusal
 from selfconf.composition import Composer, TimeLimit, composed
 from selfconf.deployment import ComposeFunction
 from selfconf.model.configuration import Configuration
-from selfconf.model.immutable import FrozenMapping, immutable, replace
-from selfconf.model.optimum import Optimum
+from selfconf.model.immutable import FrozenMapping, immutable, recast, replace
+from selfconf.model.optimum import Optimum, outcome_of
 from selfconf.model.partition import Barred
 from selfconf.model.refusal import Outcome, Refusal, Undecided
 from selfconf.model.run_event import (
@@ -93,8 +93,8 @@ def outcome_among(
     """What a search in an ecology without what is left out has come to: a refusal keeps that ecology."""
     if isinstance(answer, Refusal):
         able = FrozenMapping({component: one for component, one in found.items() if component not in left_out})
-        return RefusalAmong(**{one.name: getattr(answer, one.name) for one in fields(Refusal)}, ecology=able)
-    return answer.configuration if isinstance(answer, Optimum) else answer
+        return recast(answer, RefusalAmong, Refusal, ecology=able)
+    return outcome_of(answer)
 
 
 def composing(composer: Composer, seconds: float | None = None) -> ComposeFunction:
