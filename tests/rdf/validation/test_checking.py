@@ -42,6 +42,43 @@ def found(report: Report) -> list[str]:
     return [f"{each.line - head}:{each.column} {each.code}" for each in report.diagnostics]
 
 
+INSIDE = """
+:radio-set a sc:Component, :Radio ; sc:grounding [ sc:template :play ] ;
+    sc:hasInput [ sc:name "choice" ; sc:signalType rob:Text ] ;
+    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] ;
+    sc:hasOperation [ sc:name "mute" ; sc:response rob:Text ] .
+:play a sc:Template ; sc:roles ( :source ) ;
+    sc:hasInput [ sc:name "choice" ; sc:signalType rob:Text ; sc:of :source ] ;
+    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :source ] ;
+    sc:hasOperation [ sc:name "mute" ; sc:response rob:Text ; sc:of :source ] .
+:source a sc:Role ; sh:class rob:Tuner .
+:tuner a sc:Component, rob:Tuner ; sc:hasInput [ sc:name "station" ; sc:signalType rob:Text ] ;
+    sc:hasOutput [ sc:name "audio" ; sc:signalType rob:Audio ] ;
+    sc:hasOperation [ sc:name "hush" ; sc:response rob:Text ] .
+:now a sc:Configuration ; sc:template :play ; sc:insideOf :radio-set ;
+    sc:assignment [ a sc:Assignment ; sc:role :source ; sc:component :tuner ] ;
+    sc:connection [ a sc:Connection ; sc:from :tuner ; sc:output "audio" ; sc:to :radio-set ; sc:input "sound" ] ,
+        [ a sc:Connection ; sc:from :tuner ; sc:output "hush()" ; sc:to :radio-set ; sc:input "mute()" ] ,
+        [ a sc:Connection ; sc:from :radio-set ; sc:output "choice" ; sc:to :tuner ; sc:input "station" ] .
+"""
+"""What a composite is inside: its outputs hear what issues them, and its inputs feed what follows them."""
+
+
+def test_a_configuration_inside_of_a_composite_is_connected_with_its_ports() -> None:
+    assert {each.severity for each in check(INSIDE).diagnostics} <= {Severity.WARNING}
+
+
+@pytest.mark.parametrize("port", ['sc:input "sound"', 'sc:input "mute()"', 'sc:output "choice"'])
+def test_a_configuration_inside_of_a_composite_is_connected_with_no_port_that_it_does_not_have(port: str) -> None:
+    report = check(INSIDE.replace(port, f'{port.partition(" ")[0]} "other"'))
+    assert [each.code for each in report.diagnostics if each.severity is Severity.ERROR] == ["SC-C09"]
+
+
+def test_a_configuration_that_is_inside_of_nothing_is_connected_with_nothing_outside() -> None:
+    report = check(INSIDE.replace(" ; sc:insideOf :radio-set", ""))
+    assert "SC-C06" in {each.code for each in report.diagnostics}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
 def test_a_bad_file_earns_what_its_first_line_says(path: Path) -> None:
