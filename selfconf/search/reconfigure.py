@@ -3,7 +3,8 @@
 *Which configuration is nearest.* Every solution is extended as usual, except that a component that runs is tried for
 the role that it plays before all other candidates. Of the configurations that come out, the answer keeps the most
 running components in their roles, among those the most running connections, and among those it belongs to the
-lexicographically first solution. So the answer is determined, and does not depend on how it was found.
+lexicographically first solution. So the answer is determined, and does not depend on how it was found. Where a role
+recruits the answer is not extended, as recruits come first; what it will keep is counted as if those that run stayed.
 
 *How it is found.* By the number of losses, that is of running components that have to give up their roles: none, then
 one, and so on. For each number, depth-first search in lexicographic order leaves out every candidate that would
@@ -35,7 +36,7 @@ from selfconf.model.term import IRI
 from selfconf.search import explain
 from selfconf.search.budget import Budget
 from selfconf.search.engines import CandidateSearch, ClauseSolver, least_of_clauses, solver_available
-from selfconf.search.extension import solved
+from selfconf.search.extension import solved, with_further_players
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, assigned, pruned, reduced
 from selfconf.search.strategies import solution
@@ -97,7 +98,7 @@ def nearest(problem: Problem, running: Configuration, steps: int | None = None) 
             found = search.by_clauses(budget)
         if found is None or not budget.steps:
             found = search.nearest_of(found, solved(problem, playing, running), search.incumbent)
-    return Reconfiguration(found, *preserved(found, running), proved=bool(budget.steps))
+    return Reconfiguration(found, *search.score(found), proved=bool(budget.steps))
 
 
 def preserved(after: Configuration, before: Configuration) -> Score:
@@ -127,6 +128,8 @@ class _NearestSearch:
         """The steps that it takes to extend a solution."""
         self.incumbent: Configuration | None = None
         self._score: Score = (-1, -1)
+        self._grows_later = not fixed and any(role.recruits for role in problem.roles)
+        """Whether a solution is extended only once it has its recruits."""
 
     def _available(self) -> set[IRI]:
         """Return the components that run and are still eligible for some role, if not for their own."""
@@ -136,11 +139,18 @@ class _NearestSearch:
             available |= others.intersection(map(_COMPONENT, candidates))
         return available
 
+    def score(self, configuration: Configuration) -> Score:
+        """Count what a configuration keeps, with the further players that it gets once it has its recruits."""
+        if self._grows_later:
+            beside = tuple(one for one in self.running.recruits if one not in configuration.players)
+            configuration = with_further_players(self.problem, replace(configuration, recruits=beside), self.running)
+        return preserved(configuration, self.running)
+
     def meet(self, configuration: Configuration | None) -> Score:
         """Make a configuration the incumbent if it is nearer than the last one; of equals the first one stays."""
         if configuration is None:
             return -1, -1
-        score = preserved(configuration, self.running)
+        score = self.score(configuration)
         if score > self._score:
             self._score, self.incumbent = score, configuration
         return score
@@ -148,7 +158,7 @@ class _NearestSearch:
     def nearest_of(self, *configurations: Configuration | None) -> Configuration:
         """Return the nearest of some configurations, at least one of which is there; of equals the first one."""
         met = [configuration for configuration in configurations if configuration is not None]
-        return max(met, key=lambda configuration: preserved(configuration, self.running))
+        return max(met, key=self.score)
 
     def without_losses(self, steps: int, fixed: bool) -> tuple[Configuration | None, Budget]:
         """Return the best configuration without losses, if one is met, and what is left of the steps.

@@ -14,12 +14,14 @@ from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal
 from selfconf.search import explain, reconfigure
 from selfconf.search.problem import Problem
+from selfconf.search.recruiting import recruited
 from selfconf.search.strategies import first
 from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, with_chance
 from tests.search.oracle import World
+from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.without_solvers import without_solvers
-from tests.search.worlds import a_problem, agreement, component, explained_once, problem
+from tests.search.worlds import a_problem, agreement, component, explained_once, iri, problem
 
 
 def _score(after: Configuration, before: Configuration) -> tuple[int, int]:
@@ -162,6 +164,22 @@ def test_a_lost_tracker_is_replaced_and_the_rest_stays() -> None:
     answer = reconfigure.nearest_configuration(given_, running)
     assert isinstance(answer, Configuration)
     assert [c.short for c in answer.components] == ["sonar", "odometry", "cap"]
+
+
+def test_further_players_stay_where_a_role_recruits() -> None:
+    lamps = [component("first"), component("second")]
+    keepers = [component("keeper"), lamps[1], component("substitute")]
+    plain = problem({"keeper": keepers, "lamp": lamps, "sink": [component("sink", "i:S")]}, counts={"lamp": (1, None)})
+    asked = with_recruits(plain, component("mic", outputs="o:S"))
+    whole = recruited(asked, first.search(asked))
+    assert whole is not None
+    running, _ = whole
+    assert running.components == tuple(map(iri, ("keeper", "first", "second", "sink", "mic")))
+    left = Problem(asked.task, asked.partition.without(frozenset((iri("keeper"),))), asked.hierarchy)
+    after = reconfigure.nearest(left, running)
+    assert isinstance(after, reconfigure.Reconfiguration)
+    assert after.configuration.assignments[0].components == (iri("substitute"),)
+    assert (after.kept, after.proved) == (3, True)
 
 
 def test_where_no_candidate_is_left_the_answer_is_a_refusal() -> None:

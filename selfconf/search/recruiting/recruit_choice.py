@@ -76,12 +76,15 @@ class RecruitChoice:
         running: Collection[IRI],
         among: Collection[int] | None = None,
         price: Price | None = None,
+        busy: Collection[IRI] = (),
     ) -> None:
         """`among` are the only recruits that are looked at, where some were chosen by what else they are worth.
 
         By its `price`, if there is one, a recruit comes before others rather than because it runs or is preferred.
+        Those that are `busy` in a role, which they might keep, come after others.
         """
         self.problem, self.plain, self.running, self._price = problem, configuration, running, price
+        self._busy = frozenset(busy)
         self.players = dict(players_of(problem, configuration))
         self.recruits: Sequence[Recruit] = problem.supply.recruits
         outputs = [output for _, profile in self.players.values() for output in profile.outputs]
@@ -189,13 +192,13 @@ class RecruitChoice:
 
     def ordered(self, numbers: Iterable[int]) -> list[int]:
         """Recruits in the order in which they are chosen: by price, then those that run, by preference and IRI."""
-        if self._price is None and not self.running:
+        if self._price is None and not self.running and not self._busy:
             return sorted(numbers)
         return sorted(numbers, key=self._rank)
 
-    def _rank(self, number: int) -> tuple[tuple[Fraction, ...], bool, int]:
-        prices = () if self._price is None else self._price(number)
-        return prices, self.recruits[number].component not in self.running, number
+    def _rank(self, number: int) -> tuple[tuple[Fraction, ...], bool, bool, int]:
+        prices, component = () if self._price is None else self._price(number), self.recruits[number].component
+        return prices, component not in self.running, component in self._busy, number
 
     def placed(self, chosen: Collection[int]) -> list[int]:
         """The chosen recruits that are fed without a cycle among them, each after those that feed it."""

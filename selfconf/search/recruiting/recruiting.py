@@ -49,11 +49,13 @@ def recruited(
     """Return a configuration with the recruits that it needs, and whether they are proved to be the fewest.
 
     None where its players have inputs that no recruits can feed. Of equally few recruits those of a lower `price` come
-    before others, then those of the `running` configuration; so do its players, of the further ones.
+    before others, then those of the `running` configuration, and its players last; of the further players these come
+    first.
     """
     if not any(role.recruits for role in problem.roles):
         return configuration, True
-    choice = RecruitChoice(problem, configuration, () if running is None else running.recruits, price=price)
+    recruits, players = ((), ()) if running is None else (running.recruits, running.players)
+    choice = RecruitChoice(problem, configuration, recruits, price=price, busy=players)
     if not choice.possible:
         return None
     chosen, proved = fewest(choice, Budget(steps))

@@ -228,6 +228,18 @@ def test_of_equally_few_recruits_those_that_run_are_kept() -> None:
     assert found[0].recruits == (iri("b"),)
 
 
+def test_a_further_player_that_runs_is_not_recruited_where_another_would_do() -> None:
+    lamps = [component("lamp"), component("loud", outputs="o:S")]
+    given_ = problem({"sink": [component("a", "i:S")], "lamp": lamps}, counts={"lamp": (1, None)})
+    helped = with_recruits(given_, lamps[1], component("mic", outputs="o:S"))
+    fresh = first.search(helped)
+    assert isinstance(fresh, Configuration)
+    ran = replace(fresh.assignments[1], components=(iri("lamp"), iri("loud")))
+    found = recruited(helped, fresh, replace(fresh, assignments=(fresh.assignments[0], ran), recruits=(iri("gone"),)))
+    assert found is not None
+    assert found[0].components == tuple(map(iri, ("a", "lamp", "loud", "mic")))
+
+
 def test_of_further_players_those_that_run_are_kept() -> None:
     given_ = problem({"sink": [component("a", "i:S"), component("b"), component("c")]}, counts={"sink": (1, 2)})
     helped = with_recruits(given_, component("mic", outputs="o:S"), component("phone", outputs="o:S"))
