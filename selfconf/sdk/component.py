@@ -189,7 +189,10 @@ class Component:
 
     def _attached(self) -> ComponentRuntime:
         if self._runtime is None:
-            raise ProgrammerError(f"{type(self).__name__} is not part of an ecology yet; hand it to `main` or a Host")
+            name = type(self).__name__
+            raise ProgrammerError(
+                f"{name} is not part of an ecology yet; hand it to `main` or a Host, and begin in `started`"
+            )
         return self._runtime
 
     @classmethod

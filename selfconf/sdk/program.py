@@ -13,7 +13,7 @@ from typing import NoReturn
 from selfconf import rendezvous
 from selfconf.aside_writer import AsideHandler, AsideWriter, write_line
 from selfconf.bus.zenoh import client
-from selfconf.errors import SelfconfError
+from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.setting_names import options_named
 from selfconf.model.wording import plain
 from selfconf.sdk.component import Component
@@ -36,12 +36,14 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
     `--connect`, else from `SELFCONF_ECOLOGY` and `SELFCONF_CONNECT` (as set by a site that starts a dormant
     component), else from the sites that run on this machine.
     """
-    parser = argparse.ArgumentParser(description=(kinds[0].__doc__ or "a component").splitlines()[0])
+    said = next((kind.__doc__ for kind in kinds), None)
+    parser = argparse.ArgumentParser(description=(said or "a component").splitlines()[0])
     add_connection_arguments(parser)
     given, _ = parser.parse_known_args(arguments)
     life = os.environ.pop(rendezvous.LIFE_VARIABLE, "")  # it is this process's own: what it starts shall not have it
     logging.basicConfig(level=logging.WARNING, handlers=[AsideHandler("%(name)s: %(message)s")])
     try:
+        _check(kinds)
         host = open_host(given.ecology, given.connect, given.keys, kinds)
         # All are made first: one that has joined is called, and starts once this is over.
         components = [kind() for kind in kinds]
@@ -52,6 +54,14 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
         print(plain(str(error)), file=sys.stderr)
         raise SystemExit(2) from None
     raise SystemExit(0)
+
+
+def _check(kinds: Sequence[object]) -> None:
+    """Raises ProgrammerError for what are no classes of components."""
+    wrong = [kind for kind in kinds if not (isinstance(kind, type) and issubclass(kind, Component))]
+    if wrong or not kinds:
+        found = repr(wrong[0]) if wrong else "nothing"
+        raise ProgrammerError(f"`main` takes classes that are derived from selfconf.sdk.Component, not {found}")
 
 
 def add_connection_arguments(parser: argparse.ArgumentParser) -> None:

@@ -48,7 +48,10 @@ def test_a_class_without_an_advertisement_is_told_that_it_needs_one() -> None:
     ids=["emit", "fail", "every"],
 )
 def test_outside_an_ecology_a_component_can_do_nothing_and_says_why(act: Callable[[Lamp], None]) -> None:
-    with pytest.raises(ProgrammerError, match=r"^Lamp is not part of an ecology yet; hand it to `main` or a Host$"):
+    with pytest.raises(
+        ProgrammerError,
+        match=r"^Lamp is not part of an ecology yet; hand it to `main` or a Host, and begin in `started`$",
+    ):
         act(Lamp())
 
 

@@ -11,6 +11,7 @@ import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -81,6 +82,20 @@ def test_no_component_lives_that_cannot_start_as_another_one_of_its_program_take
     with pytest.raises(SystemExit, match="0"):
         main(Noted, Noted, arguments=())
     assert said == ["made", "made", "joined", "joined"]
+
+
+@pytest.mark.parametrize(
+    ("kinds", "found"),
+    [((), "not nothing"), ((object,), "not <class 'object'>"), ((Lamp, Lamp()), "not <tests.sdk.test_program.Lamp ")],
+)
+def test_what_is_no_class_of_a_component_is_refused_in_a_sentence(
+    kinds: tuple[Any, ...], found: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(*kinds, arguments=())
+    said = capsys.readouterr().err
+    assert said.startswith("`main` takes classes that are derived from selfconf.sdk.Component, not ")
+    assert found in said
 
 
 def test_help_tells_what_the_component_is(capsys: pytest.CaptureFixture[str]) -> None:
