@@ -50,11 +50,15 @@ def heed_answer(state: State, event: Answered) -> Reaction:
 def _answered_claim(state: State, event: Answered) -> Reaction:
     """A component that was adopted has answered its claim: what it says otherwise of it, it says again to the apply.
 
-    But one that has obeyed a newer epoch, by a configurator that was repairing, would have let go of the task by then.
+    But one that has obeyed a newer epoch has come to rest, or its configurator was repairing; and while another task
+    holds one, nothing is to start.
     """
     if _is_held_elsewhere(state, event):
         return phases.stand_down(state)
-    return deploying.proceed(state) if event.verdict is not Verdict.STALE else _declined(state, event)
+    if event.verdict is Verdict.STALE:
+        return _declined(state, event)
+    taken = event.verdict is Verdict.BUSY and not event.shared
+    return deploying.proceed(_forgotten(state, event.component) if taken else state)
 
 
 def _declined(state: State, event: Answered) -> Reaction:
@@ -62,7 +66,7 @@ def _declined(state: State, event: Answered) -> Reaction:
     repeats = state.repeats.get(event.component, 0)
     counted = replace(_told(state, event), repeats={**state.repeats, event.component: repeats + 1})
     if event.verdict is Verdict.STALE and _can_catch_up(event) and repeats < MOST_REPEATS:
-        return deploying.deploy(replace(counted, epoch=max(state.epoch, event.newest)))
+        return _catch_up(counted, event)
     if event.verdict is Verdict.NOT_HELD and repeats < MOST_REPEATS:
         return _reserve_anew(counted, event.component)
     if event.verdict is Verdict.BUSY:
@@ -88,6 +92,12 @@ def _told(state: State, event: Answered) -> State:
 def _can_catch_up(event: Answered) -> bool:
     """Whether a component that has obeyed a newer epoch may have it from a clock that was ahead."""
     return 0 < event.newest - event.epoch < MOST_AHEAD
+
+
+def _catch_up(state: State, event: Answered) -> Reaction:
+    """Deploy in an epoch newer than what a component has obeyed: one that is adopted may have let go of the task."""
+    known = _forgotten(state, event.component) if state.held[event.component].is_adopted else state
+    return deploying.deploy(replace(known, epoch=max(state.epoch, event.newest)))
 
 
 def _busy(state: State, event: Answered) -> Reaction:
@@ -118,8 +128,13 @@ def _is_held_elsewhere(state: State, event: Answered) -> bool:
 
 def _reserve_anew(state: State, component: IRI) -> Reaction:
     """Reserve a component that does not act for this task, as it was not held any more, or not yet."""
+    return deploying.deploy(_forgotten(state, component))
+
+
+def _forgotten(state: State, component: IRI) -> State:
+    """The state in which a component is not held, and does not act, as far as is known."""
     forgotten = replace(state.held[component], asked=False, reserved=False, active=False, acts=False, confirmed=False)
-    return deploying.deploy(replace(state, held={**state.held, component: forgotten}))
+    return replace(state, held={**state.held, component: forgotten})
 
 
 def _unasked(state: State, event: Answered) -> Reaction:

@@ -15,8 +15,9 @@ that is held by another task counts as taken, unless that task is of lower prior
 A repair that lacks only one component, and that is no actuator, does not reserve it first: the apply is the
 reservation, and everything else acts already.
 
-What a task that is adopted holds acts under a configurator that is gone, and would let go of it while others are woken.
-So it is claimed meanwhile: reserved as it is.
+What a task that is adopted holds acts under a configurator that is gone, or has come to rest since. So it is claimed
+first, and while others are woken: reserved as it is. What does not act any more, or has obeyed a newer epoch, starts in
+its turn, and what another task holds by now is reserved like all that is not held.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ def deploy(state: State) -> Reaction:
     state, releases = release_rest(state, plan.inputs)
     wires, held = plan.inputs, _to_be_confirmed(state, plan)
     asleep = sorted(component for component in wires if not held[component].reserved)
-    claimed = _unclaimed(state) if asleep else []
+    claimed = _unclaimed(state)
     effects: list[Effect] = [*releases, *(Watch(component) for component in wires if component not in state.watched)]
     effects += [WakeUp(component, epoch) for component in asleep]
     effects += [ReserveOf(one, epoch, held[one].inputs, held[one].values) for one in claimed]

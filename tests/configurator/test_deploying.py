@@ -186,11 +186,39 @@ def test_a_task_that_is_adopted_goes_on_and_every_component_hears_for_whom() -> 
     history = History(TASK)
     assert kinds(history.hear(Adopted(500, navigation()))) == [Watch] * 3 + [Discover]
     assert history.hear(Discovered()) == [Compose(1, frozenset(), navigation())]
-    effects = history.composed(navigation())
+    claims = history.composed(navigation())
+    assert reserved(claims) == [CONTROL, DRIVE, TRACKER]
+    effects = [one for component in reserved(claims) for one in history.answer(component, Call.RESERVE, acts=True)]
     assert kinds(effects) == [ApplyTo] * 3
-    assert {effect.epoch for effect in effects if isinstance(effect, ApplyTo)} == {500}
+    assert {effect.epoch for effect in (*claims, *effects) if isinstance(effect, (ReserveOf, ApplyTo))} == {500}
     assert history.all_answer() == [Running(navigation())]
     assert history.hear(Adopted(900, navigation())) == []
+
+
+def test_what_is_adopted_and_has_come_to_rest_starts_in_its_turn() -> None:
+    history = History(TASK)
+    history.hear(Adopted(500, navigation()), Discovered())
+    history.composed(navigation())
+    stale = Answered(TRACKER, Call.RESERVE, 500, Verdict.STALE, "1", 700)
+    assert reserved(history.hear(stale)) == [CONTROL, DRIVE]
+    history.answer(TRACKER, Call.WAKE)
+    history.answer(CONTROL, Call.RESERVE)
+    assert reserved(history.answer(DRIVE, Call.RESERVE)) == [TRACKER]
+    assert applied(history.answer(TRACKER, Call.RESERVE)) == [TRACKER]
+    assert applied(history.answer(TRACKER, Call.APPLY)) == [CONTROL]
+    assert history.all_answer() == [Running(navigation())]
+
+
+def test_nothing_that_is_adopted_starts_where_another_task_holds_a_part_by_now() -> None:
+    history = History(replace(TASK, patient=True))
+    history.hear(Adopted(500, navigation()), Discovered())
+    history.composed(navigation())
+    history.answer(CONTROL, Call.RESERVE)
+    history.answer(TRACKER, Call.RESERVE)
+    assert reserved(history.busy(DRIVE)) == [DRIVE]
+    effects = history.busy(DRIVE)
+    assert not applied(effects)
+    assert history.state.phase is Phase.COMPOSING
 
 
 @pytest.mark.parametrize("policy", Policy)

@@ -278,6 +278,21 @@ def test_a_task_that_waits_starts_nothing_and_takes_nothing_as_it_changes_hands(
     assert lab.active() == {"conveyor"}
 
 
+def test_the_next_site_starts_nothing_of_a_task_that_was_letting_go_as_its_site_ended(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=PACKING)
+    lab.site("shared", *PACKING)
+    for name in PACKING:
+        lab.component(name)
+    keepers = Keepers(lab, tmp_path / "disks", partial(request_for, template=PACK, bound=()))
+    keeper = keepers.settled()
+    lab.agent(ALONE.replace("CLASS", ":Conveyor"), (), priority=RECORD.priority + 1)
+    assert lab.until(lambda: lab.components["camera"].said[-1] == ("stopped",))
+    keepers.end(keeper)
+    lab.let_pass(5.0)
+    assert [one for one in keepers.keepers.values() if one.runners]
+    assert lab.components["camera"].said == [("started",), ("stopped",)]
+
+
 def test_the_next_site_does_without_what_a_task_that_waits_had_lost(tmp_path: Path) -> None:
     lab = home(tmp_path, "odometry")
     keepers = Keepers(lab, tmp_path / "disks")
