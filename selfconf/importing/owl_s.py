@@ -14,7 +14,7 @@ from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import NumberedNames, absolute, stem
 from selfconf.importing.rdf_documents import rdf_documents
 from selfconf.importing.sources import SourceDocument
-from selfconf.model.profile import CALL_MARK
+from selfconf.model.profile import CALL_MARK, is_port_name
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import RDFS, SC, TYPE, Namespace
@@ -183,7 +183,11 @@ class _ServiceReader:
             kind = absolute(said.lexical.strip()) if isinstance(said, Literal) else said
             if said is not None and not isinstance(kind, IRI):
                 self.ledger.leave_out("types that are no IRIs", "the parameter is kept without one", self.source)
-            yield names.free(name or "parameter"), kind if isinstance(kind, IRI) else None, parameter
+            yield (
+                names.free(name if is_port_name(name) else "parameter"),
+                kind if isinstance(kind, IRI) else None,
+                parameter,
+            )
 
     def _ports(self, parameters: Iterable[Term]) -> Iterator[ImportedPort]:
         for name, kind, said in self._typed(parameters):

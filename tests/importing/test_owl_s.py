@@ -79,6 +79,15 @@ def test_a_profile_without_parameters_has_those_of_the_process(workshop: Worksho
     assert left_out(report) == {"types that are no IRIs": 1, "services without an IRI": 1, "types of selfconf": 1}
 
 
+def test_a_parameter_whose_name_no_port_may_have_gets_another(workshop: Workshop) -> None:
+    base = "http://www.daml.org/services/owl-s/1.1/Profile.owl#"
+    names = (f"http://e.org/s#{'x' * 1_001}", "http://e.org/s#\u202eb")
+    inputs = " , ".join(f"<{name}>" for name in names)
+    workshop.imported("owl-s", {"x.ttl": f"<http://e.org/s> a <{base}Profile> ; <{base}hasInput> {inputs} ."})
+    assert sc.validate([workshop.out]).errors == 0
+    assert '[ sc:name "parameter-2" ]' in workshop.texts()["x.ttl"]
+
+
 def test_a_profile_is_found_by_its_service_and_a_process_by_either_of_them(workshop: Workshop) -> None:
     head = TURTLE.partition("<#s>")[0]
     text = """<#a> process:parameterType <urn:A>, <urn:B> . <#m> process:hasInput <#a> .
