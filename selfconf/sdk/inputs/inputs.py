@@ -9,10 +9,10 @@ or a slow component would take it for news. So is what an output that stands by 
 acts for no more.
 
 *Handing over.* Where a call asks for it (`gently`), an input goes on following the old output until the new one has
-issued a signal. A new output that issues nothing in time while the old one does is reported as silent, and again as
-long as both is so; what becomes of that is for the configurator to say. An output that has nothing to issue, such as a
-doorbell, looks like one that never will: where the old one has issued nothing in that time either, and both
-live, the new one takes its place, and the input has lost nothing.
+issued a signal, also where it follows others before and afterwards. A new output that issues nothing in time while the
+old one does is reported as silent, and again as long as both is so; what becomes of that is for the configurator to
+say. An output that has nothing to issue, such as a doorbell, looks like one that never will: where the old one has
+issued nothing in that time either, and both live, the new one takes its place, and the input has lost nothing.
 
 *Opening.* Where such a call starts the component, an input has followed nothing before. Then it waits for the first
 signal of an output that promises a rate, as what the component takes the place of goes on until then.
@@ -106,8 +106,8 @@ class InputFollower(Protocol):
 class Handover:
     """The change of an input to other outputs: it follows the old and the new until one of the new has issued a signal.
 
-    There are no old ones where it opens. `due` is when it is looked next whether the new ones issue nothing although
-    the old ones do, or although they promise a rate.
+    What it goes on following is neither. There are no old ones where it opens. `due` is when it is looked next whether
+    the new ones issue nothing although the old ones do, or although they promise a rate.
     """
 
     old: frozenset[Wire]
@@ -163,22 +163,31 @@ class Inputs:
         for port, wire in (*wanted, *spare):
             if (port, wire) not in self._subscriptions:
                 self._subscriptions[port, wire] = self._subscription(port, wire)
-        left, opening = self._left_without(message.inputs), dict(self._opening(message, now))
+        fed, opening = self._fed(), dict(self._opening(message, now))
         before, self._handovers = self._handovers, opening
-        for port, old in left.items():
-            new = message.inputs.get(port, ())
-            # A call that was repeated, or of another task that wants the same of the component.
-            same = before[port] if port in before and before[port].new == new else None
-            gently = message.gently or same is not None
-            if not gently or not new:
-                self._events.unfed(port)
-                continue
-            self._handovers[port] = same or Handover.beginning(now, old, new)
-        self._tell_unfed(left.keys(), message.inputs)
+        for port, wires in fed.items():
+            handover = self._change(port, wires, message, before.get(port))
+            if handover is not None:
+                self._handovers[port] = handover
+        self._tell_unfed(fed.keys(), message.inputs)
         self._wanted, self._spare = frozenset(wanted), frozenset(spare)
         for key in wanted:
             self._subscriptions[key].unmute()
         self._let_go()
+
+    def _change(self, port: str, fed_by: frozenset[Wire], message: Apply, last: Handover | None) -> Handover | None:
+        """Return how an input is handed over, if it is; tell that it is unfed if it loses all that may feed it."""
+        new = message.inputs.get(port, ())
+        awaited = tuple(wire for wire in new if wire not in fed_by)
+        if fed_by.issubset(new) or any(self._subscriptions[port, wire].just_issued for wire in awaited):
+            return None
+        if last is not None and awaited and last.new == awaited:
+            return last  # a call that was repeated, or of another task that wants the same of the component
+        if awaited and message.gently:
+            return Handover.beginning(self._bus.now(), fed_by.difference(new), awaited)
+        if fed_by.isdisjoint(new):
+            self._events.unfed(port)
+        return None
 
     def _tell_unfed(self, known: Set[str], inputs: Mapping[str, tuple[Wire, ...]]) -> None:
         """Tell of the required inputs that nothing feeds: behind a composite may stand nothing just now."""
@@ -186,21 +195,13 @@ class Inputs:
             if not inputs.get(port):
                 self._events.unfed(port)
 
-    def _left_without(self, inputs: Mapping[str, tuple[Wire, ...]]) -> dict[str, frozenset[Wire]]:
-        """The inputs that lose every output they follow, with these, to others of which none has just issued a signal.
-
-        An output that is lost, or to which an input is only being handed over, does not count as followed.
-        """
-        followed: dict[str, set[Wire]] = {}
+    def _fed(self) -> dict[str, frozenset[Wire]]:
+        """The inputs that may be fed, with what they follow: an output that is lost, or not theirs yet, feeds none."""
+        fed: dict[str, set[Wire]] = {}
         for port, wire in self._followed_before():
             if not self._subscriptions[port, wire].lost:
-                followed.setdefault(port, set()).add(wire)
-        return {
-            port: frozenset(wires)
-            for port, wires in sorted(followed.items())
-            if wires.isdisjoint(inputs.get(port, ()))
-            and not any(self._subscriptions[port, wire].just_issued for wire in inputs.get(port, ()))
-        }
+                fed.setdefault(port, set()).add(wire)
+        return {port: frozenset(wires) for port, wires in sorted(fed.items())}
 
     def _opening(self, message: Apply, now: float) -> Iterator[tuple[str, Handover]]:
         """Yield the inputs that have followed nothing, and are to wait for the first signal of an output."""
@@ -219,7 +220,9 @@ class Inputs:
     def _is_own(self, port: str, wire: Wire) -> bool:
         """Whether an input is not only being handed over to an output: that may have delivered before it is looked."""
         handover = self._handovers.get(port)
-        return handover is None or wire in handover.old or self._subscriptions[port, wire].heard_since(handover.began)
+        return (
+            handover is None or wire not in handover.new or self._subscriptions[port, wire].heard_since(handover.began)
+        )
 
     def _promised(self, port: str, new: tuple[Wire, ...]) -> bool:
         """Whether one of the outputs promises to issue a signal soon, and none has just done so."""

@@ -301,7 +301,7 @@ def test_an_input_loses_no_source_that_acts_for_another_task_and_has_issued_noth
     assert stage.recorder.said == [("started",), ("unfed", "position"), ("stopped",)]
 
 
-ODOMETRY = IRI("urn:c:odometry")
+ODOMETRY, BUTTON = IRI("urn:c:odometry"), IRI("urn:c:button")
 
 
 def other_source(stage: Stage) -> ComponentRuntime:
@@ -541,6 +541,26 @@ def test_an_output_that_promises_to_issue_seldom_has_time_for_what_it_promises()
     change.let_pass(0.8, change.tracker)
     assert (ODOMETRY, "") in silence(change.stage)
     assert change.told == {TRACKER.short}
+
+
+@pytest.mark.parametrize("delivers", [False, True])
+def test_an_input_of_several_outputs_goes_on_following_each_until_what_takes_its_place_delivers(delivers: bool) -> None:
+    stage = Stage(Watchful())
+    button, tracker, odometry = stage.neighbour(component=BUTTON), stage.neighbour(), other_source(stage)
+    kept = Wire(BUTTON, "pose")
+    stage.call(apply(1, US, {"position": (kept, Wire(TRACKER, "pose"))}))
+    answers: list[Replies] = []
+    message = apply(2, US, {"position": (kept, Wire(ODOMETRY, "pose"))}, gently=True)
+    stage.caller.ask(KEYS.call(CAP, "apply"), encode(message), 60.0, answers.append)
+    for _ in range(round(HANDOVER / 0.2) + 2):
+        for source in (tracker, odometry) if delivers else (button, tracker):
+            source.component.emit("pose", source.profile.component.short)
+        stage.let_pass(0.2)
+    assert [component for component, _ in silence(stage)] == ([] if delivers else [ODOMETRY])
+    assert bool(answers) is delivers
+    heard = {said[1] for said in stage.recorder.said if said[0] == "position"}
+    assert heard == ({ODOMETRY.short, TRACKER.short} if delivers else {BUTTON.short, TRACKER.short})
+    assert stage.recorder.said[-1] == ("position", ODOMETRY.short if delivers else TRACKER.short)
 
 
 class Opening(Change):
