@@ -53,7 +53,10 @@ class KeysFolder:
         """
         self.path = path
         if not path.is_dir():
-            raise AuthorError(f"there is no folder {path}; make an authority with `selfconf keys init {path}`")
+            missing = f"there is no folder {path}{'' if path.is_absolute() else ' here'}"
+            raise AuthorError(
+                f"{missing}; name that of your keys, or make an authority with `selfconf keys init {path}`"
+            )
         check_unwritable(path)
         self.authority = read_certificate(path / f"{AUTHORITY}.pem")
         for believed in (AUTHORITY, HOST_AUTHORITY):

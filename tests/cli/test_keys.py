@@ -96,7 +96,7 @@ def test_a_key_that_is_broken_is_shown(authority: Path, tmp_path: Path, capsys: 
         (("issue", "site.a", "--host", "a b", "--out", "x"), ("neither the name of a host",)),
         (("renew", "nowhere"), ("there is no folder nowhere",)),
         (("revoke", "read.nobody"), ("nothing to revoke",)),
-        (("show", "nowhere"), ("there is no folder nowhere", "keys init")),
+        (("show", "nowhere"), ("there is no folder nowhere here; name that of your keys", "keys init")),
         (("issue", "read.a", "--out", "x", "--days", "0"), ("no number of days",)),
         (("issue", "read.a", "--out", "x", "--days", "nan"), ("no number of days",)),
     ],
