@@ -47,14 +47,8 @@ class Searches:
 
     def after(self, problem: Problem, running: Configuration) -> Configuration | Refusal | Undecided:
         """Return what comes after a configuration that runs, as a running configurator would decide it."""
-        if self.strategy is Strategy.BEST:
-            *_, found = self.answers(problem, running)
-            if not isinstance(found, Undecided):
-                return outcome_of(found)
-        again = self._search if self.strategy is Strategy.PAPER else self._nearest
-        *_, near = self._with_additions(again, problem, running)
-        assert not isinstance(near, Optimum)  # for the nearest is not chosen by what it costs
-        return near
+        *_, found = self.answers(problem, running)
+        return outcome_of(found)
 
     def _with_recruits(
         self, problem: Problem, found: Iterator[Optimum | Outcome], running: Configuration | None
@@ -99,11 +93,6 @@ class Searches:
             *_, whole = answers(problem, self.steps)
             near = nearest(problem, running, self.steps) if isinstance(whole, Configuration) else whole
             yield near.configuration if isinstance(near, Reconfiguration) else near
-
-    def _nearest(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
-        """What keeps most of a configuration that runs."""
-        assert running is not None
-        yield from self._with_recruits(problem, iter((nearest_configuration(problem, running),)), running)
 
     def _best(self, problem: Problem, running: Configuration | None) -> Iterator[Optimum | Outcome]:
         most = SLICES[-1] if self.steps is None else self.steps

@@ -213,3 +213,18 @@ def test_where_the_best_after_a_failure_is_not_decided_the_first_comes_with_its_
     after = Searches(Strategy.BEST).after(left, running)
     assert isinstance(after, Configuration)
     assert after.recruits == (iri("b"),)
+
+
+@pytest.mark.parametrize("strategy", Strategy)
+def test_what_comes_after_a_failure_is_decided_within_the_steps_of_a_search(strategy: Strategy) -> None:
+    sources = [component("a", outputs="o:X"), *(component(name, outputs="o:Y") for name in "bc")]
+    asked = problem(
+        {"source": [*sources, component("d", outputs="o:X")], "sink": [component("s", "i:X")]}, "source>sink"
+    )
+    running = outcome(Strategy.FIRST, asked)
+    assert isinstance(running, Configuration)
+    left = Problem(asked.task, asked.partition.without(frozenset((iri("a"),))), asked.hierarchy)
+    assert isinstance(Searches(strategy, steps=1).after(left, running), Undecided)
+    after = Searches(strategy, steps=1000).after(left, running)
+    assert isinstance(after, Configuration)
+    assert after.components == (iri("d"), iri("s"))
