@@ -111,12 +111,20 @@ def _outcome(one: Alternative, chosen: Alternative | None, some_held: bool) -> s
         return {"impossible": impossible, "undecided": "not decided in time"}.get(one.outcome, "not tried")
     if not one.total:
         return "possible, and comes later in the order"
+    return f"with it all in all{proved} {_amounts(one.total)}{_beside(one, chosen)}"
+
+
+def _beside(one: Alternative, chosen: Alternative | None) -> str:
+    """How much more or less the cheapest configuration with a candidate costs than the answer."""
     level, more = next(((n, x) for n, x in enumerate(one.extra(chosen), 1) if x), (0, Fraction(0)))
-    least = f"with it all in all{proved} {_amounts(one.total)}"
-    if not level:
-        return f"{least}, which is no more: it comes later in the order"
     where = f" on level {level}" if len(one.total) > 1 else ""
-    return f"{least}, {_decimal(abs(more))} {'more' if more > 0 else 'less'}{where}"
+    if chosen is None or not level:
+        return ", which is no more: it comes later in the order"
+    if more > 0:
+        return f", {_decimal(more)} more{where}"
+    # With as few components of optional roles, and as few unknown terms, as the answer has, nothing costs less.
+    known = one.proved and chosen.proved and one.total_unknown == chosen.total_unknown
+    return f", {_decimal(-more)} less{where}{', but with more of the optional roles' if known else ''}"
 
 
 def _amounts(levels: Iterable[Fraction]) -> str:

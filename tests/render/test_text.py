@@ -183,3 +183,18 @@ def test_a_component_that_does_not_obey_is_named_with_how_it_is_where_that_is_kn
         "out of control: :lamp was turned off and has not obeyed",
         "out of control: :screen was turned off and has not obeyed: it hangs",
     ]
+
+
+@pytest.mark.parametrize(
+    ("proved", "said"),
+    [
+        (True, "with it all in all 2, 1 less, but with more of the optional roles"),
+        (False, "with it all in all 2, 1 less"),
+    ],
+)
+def test_what_would_cost_less_than_the_best_has_more_of_the_optional_roles(proved: bool, said: str) -> None:
+    best, one = (
+        Alternative(CLOCK, Decimal(0), (), 0, chosen, "possible", (Fraction(total),), 0, proved or not chosen)
+        for chosen, total in ((True, 3), (False, 2))
+    )
+    assert alternative_text(one, best, False) == f"no preference; {said}"
