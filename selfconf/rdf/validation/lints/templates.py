@@ -10,7 +10,7 @@ from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf import vocabulary
-from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, PERMITTED_IN_SHAPES, SHAPE_VALUED
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, OF_COMPONENT, PERMITTED_IN_SHAPES, SHAPE_VALUED
 from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
@@ -58,8 +58,18 @@ def unjoined_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
-    """Roles that say by their own type, or by a target alone, of which class their component should be."""
+    """Roles that say by their own type, or by a target alone, of which class their component should be.
+
+    Where all else that a component says is there as well, a role and a component have one name.
+    """
+    both = _roles_and_components(file)
+    for one in both:
+        message = f"{file.short(str(one))} is a component and a role as well."
+        offset = file.positions.triples[one, RDF.type, URIRef(SC.Role)].object
+        yield at(file.positions, offset, "SC-L14", message, hint="Give one of the two another IRI.")
     for role, said, kind in _told_otherwise(file):
+        if role in both:
+            continue
         name = file.short(kind)
         message = (
             f"This says that the role is a component of the type {name}; it asks for none."
@@ -68,6 +78,14 @@ def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
         )
         offset = file.positions.triples[role, said, kind].object
         yield at(file.positions, offset, "SC-L14", message, hint=f"Write sh:class {name}.")
+
+
+def _roles_and_components(file: LintedFile) -> set[Node]:
+    """The roles that are declared components, and say of themselves what components alone say."""
+    declared = set(file.graph.subjects(RDF.type, URIRef(SC.Role))).intersection(
+        file.graph.subjects(RDF.type, URIRef(SC.Component))
+    )
+    return {one for one in declared if not OF_COMPONENT.isdisjoint(map(str, file.graph.predicates(one)))}
 
 
 def _told_otherwise(file: LintedFile) -> Iterator[tuple[Node, URIRef, URIRef]]:
@@ -158,7 +176,7 @@ def properties_of_roles(file: LintedFile) -> Iterator[Diagnostic]:
     These are the properties of selfconf's own ontologies, and what shapes of the file ask for.
     """
     asked = set(file.graph.objects(None, SH.path))
-    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))) - _roles_and_components(file):
         for predicate, value in file.graph.predicate_objects(role):
             property_, home = str(predicate), namespace(str(predicate))
             ours = home.startswith(OWN) and property_ in file.index.properties

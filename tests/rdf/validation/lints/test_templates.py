@@ -11,6 +11,13 @@ def test_a_role_that_has_the_type_of_its_component_is_told_what_to_write() -> No
     assert only(TEMPLATE.replace("sc:Role ; sh:class rob:Lamp", "sc:Role, rob:Lamp")).hint == "Write sh:class rob:Lamp."
 
 
+def test_a_component_of_the_name_of_a_role_is_told_to_have_another_and_not_what_a_role_writes() -> None:
+    lamp = ':r a sc:Component, rob:Lamp ; rob:place :hall ; sc:hasInput [ sc:name "on" ; sc:signalType rob:Switch ] .'
+    found = only(TEMPLATE + lamp)
+    assert (found.code, found.message) == ("SC-L14", ":r is a component and a role as well.")
+    assert found.hint == "Give one of the two another IRI."
+
+
 def test_a_role_may_say_that_it_is_a_shape() -> None:
     assert not lints(TEMPLATE + ":r a sh:NodeShape, :Pivotal .")
 
