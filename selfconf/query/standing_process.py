@@ -122,6 +122,7 @@ class StandingProcess:
             # It must not hold the sockets of other questions, or their askers would wait for its end.
             os.dup2(line.fileno(), 3)
             os.closerange(4, 1 << 16)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # what the engine says as it goes down, at each such query
             _answer_and_exit(self._dataset, question)
         copy = self._copies[process] = _Copy(process, line)
         self._selector.register(line, selectors.EVENT_READ, copy)

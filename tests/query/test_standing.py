@@ -99,6 +99,19 @@ def test_a_query_without_end_is_ended_and_others_are_answered_meanwhile(standing
     assert ended == ["the query takes more than 1 s; ask for less"]
 
 
+def test_a_query_that_takes_too_much_memory_is_ended_and_leaves_no_line(capfd: pytest.CaptureFixture[str]) -> None:
+    own = StandingDataset()
+    own.replace("urn:second", b"".join(b"<urn:a> <urn:p> <urn:%d> .\n" % number for number in range(100)))
+    own.start()
+    joined = " ".join(f"?a{n} ?b{n} ?c{n} ." for n in range(4))
+    try:
+        with pytest.raises(QueryTimeoutError, match="of memory"):
+            own.ask(StandingQuestion(f"SELECT * {{ {joined} }} ORDER BY ?c3", [JSON], memory=1 << 29))
+    finally:
+        own.close()
+    assert capfd.readouterr().err == ""
+
+
 def test_a_query_whose_asker_hangs_up_is_ended(standing: StandingDataset) -> None:
     before = copies(standing)
     line = standing.begin(StandingQuestion(ENDLESS, [JSON], seconds=300.0))
