@@ -106,4 +106,5 @@ def written_component(text: str) -> IRI:
             return IRI(bare)
     except ValueError:  # it has what no IRI has, a space for example
         pass
-    raise AuthorError(f"{text!r} is no IRI of a component; write it in full, such as <https://example.org/home#clock>")
+    example = "<https://example.org/home#clock>"
+    raise AuthorError(f"{text!r} is no IRI of a component; write it in full, with nothing before it, such as {example}")

@@ -62,5 +62,7 @@ def test_a_component_is_written_as_its_iri() -> None:
     "text", [":clock", "home:clock", f"comp.{CLOCK}", "https://example.org/my clock", "<:>", "a:", "<>:", "<clock:"]
 )
 def test_what_is_no_iri_in_full_is_not_taken_for_another_component(text: str) -> None:
-    with pytest.raises(AuthorError, match="is no IRI of a component; write it in full"):
+    with pytest.raises(
+        AuthorError, match="is no IRI of a component; write it in full, with nothing before it, such as <"
+    ):
         Principal.written(text)
