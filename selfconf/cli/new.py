@@ -46,7 +46,7 @@ def run(given: argparse.Namespace) -> int:
     return 0
 
 
-def scaffold(kind: str, name: str, folder: Path, namespace: str | None = None) -> list[Path]:
+def scaffold(kind: str, name: str, folder: Path, namespace: str | None) -> list[Path]:
     """Write the files of one thing; raises AuthorError, and writes nothing, if there is a file of that name."""
     if not _NAME.fullmatch(name):
         raise AuthorError(

@@ -6,7 +6,6 @@ import argparse
 import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
@@ -137,7 +136,7 @@ def _value(value: Any, names: Names) -> str:
     return names(IRI.unchecked(value)) if is_iri else json.dumps(value, ensure_ascii=False)
 
 
-def _body(status: Status, deployed: Mapping[str, Any] = MappingProxyType({})) -> dict[str, object]:
+def _body(status: Status, deployed: Mapping[str, Any]) -> dict[str, object]:
     return {
         "configurator": status.configurator,
         "phase": status.phase,

@@ -296,16 +296,10 @@ def rewire(state: State, components: frozenset[IRI]) -> Reaction:
     assert state.plan is not None
     actuators = components & state.plan.order.actuators
     held = {
-        one: replace(held, confirmed=held.confirmed and one not in actuators and not is_wired_to(held, components))
+        one: replace(held, confirmed=held.confirmed and one not in actuators and not held.is_wired_to(components))
         for one, held in state.held.items()
     }
     return deploy(replace(state, held=held))
-
-
-def is_wired_to(held: Held, components: frozenset[IRI]) -> bool:
-    """Whether a component follows some others, or may be called by them."""
-    sources = (wire.component for wires in held.inputs.values() for wire in wires)
-    return not components.isdisjoint((*sources, *(one.component for some in held.callers.values() for one in some)))
 
 
 def may_wait_for(state: State, component: IRI, holder: Holder | None) -> bool:

@@ -15,7 +15,7 @@ from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.effects import ApplyTo
 from selfconf.configurator.events import Call
 from selfconf.configurator.starting_order import InputWires
-from selfconf.configurator.state import Held, Phase, State
+from selfconf.configurator.state import Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
@@ -26,14 +26,9 @@ def disconnect(state: State, components: frozenset[IRI]) -> Reaction:
     fewer = {
         one: {port: tuple(w for w in wires if w.component not in components) for port, wires in mine.inputs.items()}
         for one, mine in state.held.items()
-        if mine.active and one not in components and _follows(mine, components)
+        if mine.active and one not in components and not components.isdisjoint(mine.sources)
     }
     return _follow_fewer(state, fewer)
-
-
-def _follows(held: Held, components: frozenset[IRI]) -> bool:
-    """Whether an input of a component follows one of some others."""
-    return any(wire.component in components for wires in held.inputs.values() for wire in wires)
 
 
 def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires]) -> Reaction:
@@ -60,7 +55,7 @@ def loss_lasts(state: State, actuators: frozenset[IRI]) -> Reaction:
     """
     if state.phase not in (Phase.DISCOVERING, Phase.COMPOSING, *DEPLOYING):
         return state, ()
-    followed = {wire.component for held in state.held.values() for wires in held.inputs.values() for wire in wires}
+    followed = {source for held in state.held.values() for source in held.sources}
     followed -= _outside(state)
     gone = frozenset(one for one in followed if one not in state.held or not state.held[one].active)
     act_on = state.fallback is not None or _lacks_actuators_alone(state)

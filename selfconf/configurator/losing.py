@@ -94,15 +94,15 @@ def lose(state: State, component: IRI, loss: Loss) -> Reaction:
         without = replace(without, ended_lives={**state.ended_lives, component: loss.life})
     effects = (ReleaseFrom(component, epoch),)  # also what seems to be dead: it may hear, and not be heard
     if not is_needed(state, component):
-        return then(effects, deploying.deploy(replace(without, target=state.fallback or state.target, fallback=None)))
+        return then(effects, deploying.deploy(without.unchanged))
     if state.policy is Policy.DISMANTLE:
         return phases.dismantle(without, Phase.COMPOSING)
     if state.phase is Phase.DISCOVERING:
         return without, effects
-    return then(effects, phases.compose(replace(without, target=state.fallback or state.target, fallback=None)))
+    return then(effects, phases.compose(without.unchanged))
 
 
 def is_needed(state: State, component: IRI) -> bool:
     """Whether a component may be part of what is to run: not if that is being deployed, or ran before, without it."""
-    wanted = state.fallback or state.target
+    wanted = state.wanted
     return state.phase not in DEPLOYING or wanted is None or component in wanted.components

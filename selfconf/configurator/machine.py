@@ -160,7 +160,7 @@ def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
     The component is one of this configuration, or the composite that this is the inside of, which is what is outside.
     """
     changed = frozenset((component,))
-    wired = component in state.held or any(deploying.is_wired_to(held, changed) for held in state.held.values())
+    wired = component in state.held or any(held.is_wired_to(changed) for held in state.held.values())
     if component not in state.held and rests != state.rests:
         state, wired = replace(state, rests=rests), True
         changed |= state.held.keys() & (state.plan.order.actuators if state.plan is not None else frozenset())
@@ -175,7 +175,7 @@ def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
 def _waits_for(state: State, components: frozenset[IRI]) -> bool:
     """Whether a component, in a change for the better, does not answer before it is fed by what stood behind others."""
     asked = (one for one, call in state.pending if call is Call.APPLY and one in state.held)
-    return state.fallback is not None and any(deploying.is_wired_to(state.held[one], components) for one in asked)
+    return state.fallback is not None and any(state.held[one].is_wired_to(components) for one in asked)
 
 
 def _reconnected(state: State) -> Reaction:
@@ -183,7 +183,7 @@ def _reconnected(state: State) -> Reaction:
     if state.phase in (Phase.IDLE, Phase.DISMANTLING) or state.ended:
         return state, ()
     unsure = {component: replace(held, acts=False, confirmed=False) for component, held in state.held.items()}
-    return phases.discover(replace(state, target=state.fallback or state.target, held=unsure, fallback=None))
+    return phases.discover(replace(state.unchanged, held=unsure))
 
 
 def _ranked(state: State, priority: int) -> Reaction:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import field
 from enum import Enum
 
@@ -10,7 +10,7 @@ from selfconf.configurator.events import Call
 from selfconf.configurator.starting_order import Callers, InputWires, Plan
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
-from selfconf.model.immutable import immutable
+from selfconf.model.immutable import immutable, replace
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.sharing import Avoided, contested_by
 from selfconf.model.term import IRI, Term
@@ -64,6 +64,17 @@ class Held:
     """Whether it is an actuator that is to rest by its last call, as something lacks a part."""
     confirmed: bool = False
     """Whether it has said that it acts with these inputs and values, for these callers."""
+
+    @property
+    def sources(self) -> Iterator[IRI]:
+        """The components of which its inputs follow outputs."""
+        return (wire.component for wires in self.inputs.values() for wire in wires)
+
+    def is_wired_to(self, components: Set[IRI]) -> bool:
+        """Whether it follows some others, or may be called by them."""
+        return not components.isdisjoint(
+            (*self.sources, *(one.component for some in self.callers.values() for one in some))
+        )
 
     @property
     def may_be_held(self) -> bool:
@@ -187,6 +198,16 @@ class State:
         """
         others = {c: one for c, one in self.sharers.items() if c not in self.held or self.phase is Phase.RUNNING}
         return contested_by(others, configuration)
+
+    @property
+    def wanted(self) -> Configuration | None:
+        """What is to run: during a change for the better still what ran before."""
+        return self.fallback or self.target
+
+    @property
+    def unchanged(self) -> State:
+        """The same, but for a change for the better, which is given up."""
+        return replace(self, target=self.wanted, fallback=None)
 
     @property
     def heeds_others(self) -> bool:

@@ -167,7 +167,7 @@ class TaskRunner:
         self._reachability.pulse()
         self._step(Accepted(int(self.clock() * 1000), lost))
 
-    def adopt(self, configuration: Configuration, epoch: int, lost: tuple[RecordedLoss, ...] = ()) -> None:
+    def adopt(self, configuration: Configuration, epoch: int, lost: tuple[RecordedLoss, ...]) -> None:
         """Go on with a task that runs, in that configuration since that epoch, and whose configurator is gone.
 
         That had lost some components, as `recorded_losses` of its runner said.

@@ -25,7 +25,7 @@ class TaskDiscovery:
         task: TaskContext,
         name: str,
         liveness: Liveness,
-        without_configurator: WithoutConfigurator = lambda known: (),
+        without_configurator: WithoutConfigurator,
     ) -> None:
         """`name` is that of the configurator; `without_configurator` that of the `RunRequest`."""
         self._bus, self._ecology, self._name, self._liveness = task.ecology.bus, task.ecology, name, liveness

@@ -88,7 +88,7 @@ def import_documents(
     return ImportReport(form, files, ledger.omissions(), tuple(ledger.names.renamed), tuple(unreadable))
 
 
-def import_descriptions(form: str, given: Sequence[str], out: Path, namespace: str | None = None) -> ImportReport:
+def import_descriptions(form: str, given: Sequence[str], out: Path, namespace: str | None) -> ImportReport:
     """Import files, folders and URLs of a format, which is a name of `IMPORT_FORMATS`, as `import_documents` does."""
     known = IMPORT_FORMATS[form]
 

@@ -238,7 +238,7 @@ class Host:
                 self._hung(f"{runtime.profile.component}: `{overdue.what}` has not returned within {overdue.limit:g} s")
 
 
-def signal_fields_of(path: Path, profile: Profile, ontologies: Sequence[Path] = ()) -> Mapping[IRI, SignalFields]:
+def signal_fields_of(path: Path, profile: Profile, ontologies: Sequence[Path]) -> Mapping[IRI, SignalFields]:
     """The fields of what a component emits, sends along and answers.
 
     What they are is said by its advertisement, the ontologies of selfconf, those of the site that has started it, and

@@ -52,8 +52,8 @@ def application(
     fits: Fits,
     explained: ExplainedRefusals,
     link: Callable[[], str],
-    hosts: Collection[str] = LOOPBACK,
-    origins: Collection[str] = (),
+    hosts: Collection[str],
+    origins: Collection[str],
 ) -> ASGIApp:
     """The server as an ASGI application; `link` tells by what the ecology can be heard, if it can be.
 

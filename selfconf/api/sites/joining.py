@@ -78,14 +78,14 @@ class Joining:
         """Opens the bus, in a turn (`this_machine.turn`). Raises NetworkError."""
         self._ecology, self._name, self._security = ecology, name, security
         self._usual = rendezvous.usual_endpoints(ecology, secure=security is not None)
-        relays = self._relays()
-        self._elsewhere = [endpoint for endpoint in connect if endpoint not in (*relays, *self._usual)]
-        self.bus = self._opened(listen, relays)
-        self._reached_at = relays[0] if relays else ""
+        hubs = self._other_hubs()
+        self._elsewhere = [endpoint for endpoint in connect if endpoint not in (*hubs, *self._usual)]
+        self.bus = self._opened(listen, hubs)
+        self._reached_at = hubs[0] if hubs else ""
         self._file = AnnouncedSite(self._described)
         self.log = ""
         """The log of the site, for others on this machine."""
-        self._awaited = relays
+        self._awaited = hubs
         """Those that relayed when this site last had a hub, or that it has been trying to reach since."""
         self._hung_at: float | None = None
         """When they are taken to hang; None while there is a hub."""
@@ -167,22 +167,22 @@ class Joining:
         """The other sites of this machine that relay."""
         return [site for site in this_machine.relaying_sites(self._ecology) if site.site != self._name]
 
-    def _relays(self) -> list[str]:
-        """Where they are reached."""
+    def _other_hubs(self) -> list[str]:
+        """Where their hubs are reached."""
         return _reached_at(self._relaying())
 
     def _from_here(self) -> list[str]:
         """Where the sites of this machine that relay are reached by their own host."""
         return [site.from_here for site in this_machine.relaying_sites(self._ecology) if site.from_here]
 
-    def _opened(self, listen: str | None, relays: list[str]) -> ZenohBus:
-        connect = [*relays, *self._elsewhere]
+    def _opened(self, listen: str | None, hubs: list[str]) -> ZenohBus:
+        connect = [*hubs, *self._elsewhere]
         if listen is not None:
-            return router(listen, [*connect, *(self._usual if relays else ())], security=self._security)
-        if relays and not self._elsewhere:
+            return router(listen, [*connect, *(self._usual if hubs else ())], security=self._security)
+        if hubs and not self._elsewhere:
             try:
                 own = None if self._security is None else self._security.credentials
-                return client(list(dict.fromkeys([*self._from_here(), *relays, *self._usual])), credentials=own)
+                return client(list(dict.fromkeys([*self._from_here(), *hubs, *self._usual])), credentials=own)
             except NetworkError:  # those that relay hang
                 pass
         for endpoint in self._usual:
@@ -205,7 +205,7 @@ class Joining:
 
     def _reached(self) -> None:
         """There is a hub; where it is one that has begun since, say so, or others would try the one before first."""
-        self._awaited, self._hung_at = self._relays(), None
+        self._awaited, self._hung_at = self._other_hubs(), None
         if self._file.is_there and not self.relays and self._awaited and self._reached_at not in self._awaited:
             self._reached_at = self._awaited[0]
             self._file.write_again()
@@ -216,21 +216,21 @@ class Joining:
             self._hung_at = self.bus.now() + HUNG
 
     def _look_from_time_to_time(self) -> None:
-        self.bus.later(STILL_MINE * (1 if self.bus.endpoint else STILL_HEARD), self._look_from_time_to_time)
+        self.bus.later(STILL_MINE * (1 if self.relays else STILL_HEARD), self._look_from_time_to_time)
         if not self._file.is_there:
             return
         if self._file.is_lost:
             self._file.write_again()
         # It may have lost its hub before it was announced, and looked in vain. Whether others relay is not looked at:
         # of many sites each would read the files of all.
-        if self._is_replaced() or not (self.bus.endpoint or self.bus.link):
+        if self._is_replaced() or not (self.relays or self.bus.link):
             self._look_again()
             self._look()
-        elif self.bus.link or (self.bus.endpoint and self._hangs(SLOW)):
+        elif self.bus.link or (self.relays and self._hangs(SLOW)):
             self._hub_health.ask()
 
     def _hub_is_broken(self) -> None:
-        if self.bus.endpoint:
+        if self.relays:
             self._replace_hub()
         else:
             self._connect_anew()
@@ -238,7 +238,7 @@ class Joining:
     def _connect_anew(self) -> None:
         """Cut the connection to a hub that is there, but seems to answer nothing; the bus makes another one."""
         log.error("nothing is heard from the hub; connecting to it anew")
-        for endpoint in dict.fromkeys([self._reached_at, *self._relays(), *self._usual, *self._elsewhere]):
+        for endpoint in dict.fromkeys([self._reached_at, *self._other_hubs(), *self._usual, *self._elsewhere]):
             cut_connections(endpoint, from_here=True)
 
     def _replace_hub(self) -> None:
@@ -250,7 +250,7 @@ class Joining:
         with self._turn() as mine:
             if mine:
                 self.bus.relay_no_more()
-                self._relay_at(list(dict.fromkeys((before, *self._usual))), self._relays())
+                self._relay_at(list(dict.fromkeys((before, *self._usual))), self._other_hubs())
 
     def _look(self) -> None:
         if not self._file.is_there:
@@ -263,7 +263,7 @@ class Joining:
 
     def _in_order(self) -> bool:
         """Whether there is nothing to change; a turn is not taken then, as one that is stopped in it keeps it."""
-        return not (self._is_replaced() if self.bus.endpoint else self._lacks_hub())
+        return not (self._is_replaced() if self.relays else self._lacks_hub())
 
     def _is_replaced(self) -> bool:
         """Whether this site relays, and another has written into its file that it does not, as it has its place."""
@@ -271,12 +271,12 @@ class Joining:
 
     def _lacks_hub(self) -> bool:
         """Whether this site is connected to no hub of its ecology: to none, or while no site of this machine relays."""
-        return not (self.bus.link and self._relays())
+        return not (self.bus.link and self._other_hubs())
 
     def _looked_in_turn(self) -> bool:
         """Give or take the place of the one that relays, if it is this site's turn; whether it was."""
         with self._turn() as mine:
-            if mine and self.bus.endpoint:
+            if mine and self.relays:
                 self._give_place()
             elif mine and self._lacks_hub():
                 self._take_place()
@@ -287,18 +287,18 @@ class Joining:
         if self._is_replaced():
             before = self.bus.endpoint
             self.bus.relay_no_more()
-            self._reached_at = next(iter(self._relays()), before)
+            self._reached_at = next(iter(self._other_hubs()), before)
             self._file.write_again()
 
     def _take_place(self) -> None:
         """Relay, if no site does, or if those that do hang."""
         relaying = self._relaying()
-        relays = _reached_at(relaying)
-        if relays != self._awaited:
-            self._await(relays)
+        hubs = _reached_at(relaying)
+        if hubs != self._awaited:
+            self._await(hubs)
         patience = 0.0 if all(site.is_suspended() for site in relaying) else SLOW
-        if (not relays or self._hangs(patience)) and self._is_believed():
-            self._relay_at(self._places(), relays)
+        if (not hubs or self._hangs(patience)) and self._is_believed():
+            self._relay_at(self._places(), hubs)
 
     def _places(self) -> list[str]:
         """Where this site can relay: at the usual ports, or at that of loopback where the one before did."""
@@ -306,13 +306,13 @@ class Joining:
         before = [self._reached_at] if self._reached_at.rpartition(":")[0] == loopback else []
         return list(dict.fromkeys([*self._usual, *before]))
 
-    def _await(self, relays: list[str]) -> None:
+    def _await(self, hubs: list[str]) -> None:
         """Let those that relay since this moment be reached: those before may have to be given up one by one first."""
         endpoints = 1 if self._security is None else 2  # with keys a hub has one for its own host, too
         handshakes = endpoints * max(1, len(self._awaited))
-        self._awaited, self._hung_at = relays, self.bus.now() + handshakes * GREETING + REACHED
+        self._awaited, self._hung_at = hubs, self.bus.now() + handshakes * GREETING + REACHED
 
-    def _hangs(self, patience: float = 0.0) -> bool:
+    def _hangs(self, patience: float) -> bool:
         """Whether there is no hub, and has been none for longer than it takes to reach one, and some seconds more."""
         return self._hung_at is not None and self.bus.now() > self._hung_at + patience
 
@@ -324,7 +324,7 @@ class Joining:
 
         return is_in_time(self._security.credentials)
 
-    def _relay_at(self, endpoints: Sequence[str], relays: Sequence[str]) -> None:
+    def _relay_at(self, endpoints: Sequence[str], hubs: Sequence[str]) -> None:
         """Relay at the first of some endpoints that is free, beside others that relay and keep their places.
 
         And beside what has a usual port and is no site of this ecology: if it is the hub of another, what has lost its
@@ -343,7 +343,7 @@ class Joining:
                 if other.relays and other.endpoint in self._usual:
                     with suppress(NetworkError):  # then two relay once that one goes on
                         this_machine.announce_for(other, relays=False)
-            known = [relay for relay in relays if relay not in self._usual]
+            known = [one for one in hubs if one not in self._usual]
             self.bus.relay(hub, [*known, *strange, *self._elsewhere])
             self._await([endpoint])
             self._file.write_again()

@@ -166,7 +166,7 @@ class _SiteProgram:
             self._ecology,
             described_in,
             self._complain,
-            self._work.work,
+            self._work.add,
             self._believed,
             self._hierarchy,
             lambda why: self._site.tell_unable(why),  # it refreshes the composites while it is made
@@ -212,7 +212,7 @@ def _do_next(work: WorkQueue) -> None:
     try:
         work.next(WORK_CHECK)
     except Exception:
-        log.exception("a work broke; going on")
+        log.exception("a job broke; going on")
 
 
 def _check_readable(paths: Sequence[Path], ontologies: Sequence[Path]) -> None:
@@ -293,7 +293,7 @@ def _request_of(work: WorkQueue, believed: Beliefs | None, record: TaskRecord) -
     from selfconf.api.tasks.detached import request_of
 
     at_leisure = partial(work.at_leisure, owner=record.task)
-    request = request_of(record, partial(work.work, owner=record.task), believed, at_leisure)
+    request = request_of(record, partial(work.add, owner=record.task), believed, at_leisure)
     return replace(request, abandon=partial(work.abandon, record.task))
 
 

@@ -252,7 +252,7 @@ class Run:
     def _aside(self, work: Callable[[], None]) -> Undo:
         """Have the thread that reads the events do what takes long, once it has read what has led to it."""
         self._in_ecology().runner.reports.tell()
-        return self._work.work(work, OF_TASK)
+        return self._work.add(work, OF_TASK)
 
     def _distrusted(self) -> None:
         self._revoked = True

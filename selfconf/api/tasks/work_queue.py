@@ -23,7 +23,7 @@ MOST_UNDISTURBED = 5.0
 """For how many seconds at most, where it was interrupted again and again: it is begun anew each time."""
 
 HELD_UP = 0.05
-"""For how many seconds a work may wait for the events before it to be read: a reader is to hear what has led to a long
+"""For how many seconds a job may wait for the events before it to be read: a reader is to hear what has led to a long
 search, and one that takes long over each event is to hold up no search."""
 
 MOST_AT_LEISURE = 30.0
@@ -31,8 +31,8 @@ MOST_AT_LEISURE = 30.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Work:
-    """Work that takes long, and its owner; what is done twice is two works."""
+class _Job:
+    """Work that takes long, and its owner; what is to be done twice is two jobs."""
 
     do: Callable[[], None]
     owner: str
@@ -51,15 +51,15 @@ class _Leisurely:
 
 
 class WorkQueue:
-    """What a run hands from the thread of its bus to the thread that reads its events: work and events, in order.
+    """What a run hands from the thread of its bus to the thread that reads its events: jobs and events, in order.
 
-    A work overtakes events that are not read for `HELD_UP` seconds.
+    A job overtakes events that are not read for `HELD_UP` seconds.
     """
 
     def __init__(self) -> None:
-        self._works: deque[_Work] = deque()
-        self._under_way: tuple[_Work, Callable[[], None]] | None = None
-        """The work that is being done, and what ends it."""
+        self._jobs: deque[_Job] = deque()
+        self._under_way: tuple[_Job, Callable[[], None]] | None = None
+        """The job that is being done, and what ends it."""
         self._until_more: Callable[[], None] | None = None
         """What ends that which is done only until there is something else."""
         self._leisurely: dict[str, _Leisurely] = {}
@@ -72,11 +72,11 @@ class WorkQueue:
         self._more = threading.Condition()
         self._woken = False
 
-    def work(self, work: Callable[[], None], owner: str = "") -> Callable[[], None]:
+    def add(self, work: Callable[[], None], owner: str = "") -> Callable[[], None]:
         """Have something done that takes long, for an owner where there are several; calling the result abandons it."""
         with self._more:
-            one = _Work(work, owner, self._read + len(self._events), time.monotonic())
-            self._works.append(one)
+            one = _Job(work, owner, self._read + len(self._events), time.monotonic())
+            self._jobs.append(one)
             self._notify()
         return partial(self._abandon, one)
 
@@ -93,19 +93,19 @@ class WorkQueue:
             self._disturbed = time.monotonic()
             self._notify()
 
-    def _abandon(self, one: _Work) -> None:
-        """End and forget one work, if it is not over."""
+    def _abandon(self, one: _Job) -> None:
+        """End and forget one job, if it is not over."""
         with self._more:
-            if one in self._works:
-                self._works.remove(one)
+            if one in self._jobs:
+                self._jobs.remove(one)
             elif self._under_way is not None and self._under_way[0] is one:
                 self._under_way[1]()
 
     def abandon(self, owner: str = "") -> None:
         """End and forget what is done for an owner, or for all if none is named; `next` returns soon."""
         with self._more:
-            for work in [work for work in self._works if owner in ("", work.owner)]:
-                self._works.remove(work)
+            for job in [job for job in self._jobs if owner in ("", job.owner)]:
+                self._jobs.remove(job)
             for one in [one for one in self._leisurely if owner in ("", one)]:
                 del self._leisurely[one]
             if self._under_way is not None and owner in ("", self._under_way[0].owner):
@@ -154,10 +154,10 @@ class WorkQueue:
 
     @property
     def _has_more(self) -> bool:
-        return bool(self._works or self._events or self._woken)
+        return bool(self._jobs or self._events or self._woken)
 
     def next(self, seconds: float) -> AnyRunEvent | None:
-        """Do the work that comes before the next event, and return that; None if none has come after that long."""
+        """Do the jobs that come before the next event, and return that; None if none has come after that long."""
         with self._more:
             if not self._has_more and seconds > 0:
                 self._more.wait(min(seconds, self._until_leisure))
@@ -165,7 +165,7 @@ class WorkQueue:
             if self._comes_later():
                 self._disturbed = time.monotonic()
                 return self._read_event()
-            waiting = len(self._works)
+            waiting = len(self._jobs)
         for _ in range(waiting):
             self._do_first()  # one at a time: where one breaks, the others wait for the next call
         if disturbed:
@@ -175,8 +175,8 @@ class WorkQueue:
             return self._read_event()
 
     def _comes_later(self) -> bool:
-        """Whether the first work that waits comes after an event that has not been read yet."""
-        first = next(iter(self._works), None)
+        """Whether the first job that waits comes after an event that has not been read yet."""
+        first = next(iter(self._jobs), None)
         return first is not None and self._read < first.after and time.monotonic() - first.since < HELD_UP
 
     def _read_event(self) -> AnyRunEvent | None:
@@ -231,7 +231,7 @@ class WorkQueue:
     def do(self, work: Callable[[], None]) -> bool:
         """Do something now; whether it has come to its own end, and was not abandoned."""
         with self._more:
-            self._works.appendleft(_Work(work, ""))
+            self._jobs.appendleft(_Job(work, ""))
         return self._do_first()
 
     def _do_first(self) -> bool:
@@ -239,11 +239,11 @@ class WorkQueue:
         try:
             with abandonable() as abandon:
                 with self._more:
-                    if not self._works:
+                    if not self._jobs:
                         return False
-                    work = self._works.popleft()
-                    self._under_way = work, abandon
-                work.do()
+                    job = self._jobs.popleft()
+                    self._under_way = job, abandon
+                job.do()
             return True
         except Abandoned:
             return False

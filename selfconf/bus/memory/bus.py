@@ -23,7 +23,7 @@ timer that is renewed until a time has come would never end."""
 class MemoryBus:
     """A node of the simulated network."""
 
-    def __init__(self, network: Network, number: int, clock: float = 0.0) -> None:
+    def __init__(self, network: Network, number: int, clock: float) -> None:
         self.network, self.number, self.open = network, number, True
         self.clock = clock
         """By how many seconds the clock of this node is ahead of the network's time."""

@@ -76,7 +76,7 @@ class HeldLives:
         """Note that what may be left of a component acts for no task any more."""
         self._gone.add(component)
 
-    def obeyed(self, component: IRI, life: str, late: bool = False) -> None:
+    def obeyed(self, component: IRI, life: str, late: bool) -> None:
         """Note that a life of a component has obeyed a call of this task.
 
         One that is heard of `late`, as the call was of an older epoch, is not held if it has ended since, nor in the

@@ -19,7 +19,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeGuard
 
-from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
+from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
@@ -73,7 +73,7 @@ class _PropertyParts:
 class ShapeCompiler:
     """Compiles one shape; `rest` is raised as soon as something is met that only pySHACL can judge."""
 
-    def __init__(self, document: Document, free: frozenset[IRI], hierarchy: Hierarchy = NOTHING_ABOVE) -> None:
+    def __init__(self, document: Document, free: frozenset[IRI], hierarchy: Hierarchy) -> None:
         self.document, self.free = document, free
         self._structure = STRUCTURE.union(*map(hierarchy.superproperties, STRUCTURE))
         """What leads to more than the statements that a profile keeps as properties."""

@@ -171,8 +171,8 @@ class CountingSearch(ReducedSearch):
         self,
         reduced: ReducedProblem,
         counted: Sequence[CountedNeeds],
-        distinct: bool = True,
-        matching: MaintainedMatching[IRI] | None = None,
+        distinct: bool,
+        matching: MaintainedMatching[IRI] | None,
     ) -> None:
         super().__init__(reduced, distinct, matching)
         self.spare = [some.spare for some in counted]

@@ -103,7 +103,7 @@ class Wiring:
     many of the first roles count: an input that a later role may feed is no need.
     """
 
-    def __init__(self, problem: Problem, roles: int | None = None) -> None:
+    def __init__(self, problem: Problem, roles: int | None) -> None:
         self.problem = problem
         self._roles = len(problem.roles) if roles is None else roles
         self.needs = Needs()

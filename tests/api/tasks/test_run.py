@@ -379,14 +379,14 @@ def test_what_has_led_to_a_search_is_read_before_that_begins(house: Home, monkey
 
 def test_work_that_makes_an_event_is_followed_by_it() -> None:
     queue, event = WorkQueue(), EcologyAsked()
-    queue.work(lambda: queue.report(event))
+    queue.add(lambda: queue.report(event))
     assert queue.next(0.0) is event
 
 
 @pytest.mark.parametrize("act", ["work", "report", "wake up"])
 def test_the_queue_wakes_the_thread_that_waits(act: str) -> None:
     queue = WorkQueue()
-    acts = {"work": lambda: queue.work(lambda: None), "report": lambda: queue.report(EcologyAsked())}
+    acts = {"work": lambda: queue.add(lambda: None), "report": lambda: queue.report(EcologyAsked())}
     began = time.monotonic()
     timer = threading.Timer(0.05, acts.get(act, queue.wake_up))
     timer.start()

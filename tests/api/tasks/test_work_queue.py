@@ -17,7 +17,7 @@ def test_a_reader_hears_what_has_led_to_a_work_before_that_is_done(monkeypatch: 
     queue, done = WorkQueue(), list[str]()
     before, after = EcologyAsked(), EcologyAsked()
     queue.report(before)
-    queue.work(lambda: done.append("searched"))
+    queue.add(lambda: done.append("searched"))
     queue.report(after)
     assert queue.next(0.0) is before
     assert done == []
@@ -32,7 +32,7 @@ def test_a_reader_that_takes_long_over_each_event_holds_up_no_work(monkeypatch: 
     events = [EcologyAsked(), EcologyAsked()]
     for event in events:
         queue.report(event)
-    queue.work(lambda: done.append("searched"))
+    queue.add(lambda: done.append("searched"))
     assert queue.next(0.0) is events[0]
     assert done == ["searched"]
     assert queue.next(0.0) is events[1]
@@ -52,8 +52,8 @@ def test_where_there_is_nothing_to_do_it_waits() -> None:
 
 def test_what_breaks_takes_nothing_with_it_that_waits() -> None:
     queue, done = WorkQueue(), list[str]()
-    queue.work(lambda: {}["nothing"])
-    queue.work(lambda: done.append("searched"))
+    queue.add(lambda: {}["nothing"])
+    queue.add(lambda: done.append("searched"))
     with pytest.raises(KeyError):
         queue.next(0.0)
     queue.next(0.0)
@@ -74,24 +74,24 @@ def test_what_is_abandoned_ends_while_it_is_done(owner: str) -> None:
         begun.wait()
         queue.abandon(owner)
 
-    queue.work(lambda: _forever(begun), "patrol")
-    queue.work(lambda: done.append("patrol"), "patrol")
-    queue.work(lambda: done.append("watch"), "watch")
+    queue.add(lambda: _forever(begun), "patrol")
+    queue.add(lambda: done.append("patrol"), "patrol")
+    queue.add(lambda: done.append("watch"), "watch")
     other = threading.Thread(target=give_up)
     other.start()
     assert queue.next(0.0) is None
     other.join()
     assert done == (["watch"] if owner else [])
-    queue.work(lambda: done.append("again"), "patrol")
+    queue.add(lambda: done.append("again"), "patrol")
     queue.next(0.0)
     assert done[-1] == "again"
 
 
 def test_one_work_is_abandoned_while_it_is_done_or_before_and_no_other_of_its_owner() -> None:
     queue, begun, done = WorkQueue(), threading.Event(), list[str]()
-    first = queue.work(lambda: _forever(begun), "patrol")
-    second = queue.work(lambda: done.append("searched"), "patrol")
-    queue.work(lambda: done.append("prepared"), "patrol")
+    first = queue.add(lambda: _forever(begun), "patrol")
+    second = queue.add(lambda: done.append("searched"), "patrol")
+    queue.add(lambda: done.append("prepared"), "patrol")
 
     def give_up() -> None:
         begun.wait()
@@ -105,7 +105,7 @@ def test_one_work_is_abandoned_while_it_is_done_or_before_and_no_other_of_its_ow
     assert done == ["prepared"]
     first()
     second()  # both are over
-    queue.work(lambda: done.append("again"), "patrol")
+    queue.add(lambda: done.append("again"), "patrol")
     queue.next(0.0)
     assert done == ["prepared", "again"]
 
@@ -117,7 +117,7 @@ def test_what_is_done_for_another_goes_on() -> None:
         queue.abandon("watch")
         done.append("patrol")
 
-    queue.work(work, "patrol")
+    queue.add(work, "patrol")
     queue.next(0.0)
     assert done == ["patrol"]
 
@@ -125,10 +125,10 @@ def test_what_is_done_for_another_goes_on() -> None:
 def test_to_abandon_what_is_over_or_not_begun_harms_nothing() -> None:
     queue, done = WorkQueue(), list[str]()
     queue.abandon()
-    queue.work(lambda: done.append("searched"))
+    queue.add(lambda: done.append("searched"))
     queue.next(0.0)
     queue.abandon()
-    queue.work(lambda: done.append("waits"))
+    queue.add(lambda: done.append("waits"))
     queue.abandon()
     assert queue.next(60.0) is None
     assert done == ["searched"]
@@ -137,7 +137,7 @@ def test_to_abandon_what_is_over_or_not_begun_harms_nothing() -> None:
 @pytest.mark.parametrize("how", ["work", "report", "wake_up", "abandon"])
 def test_what_is_done_until_there_is_more_ends_as_soon_as_there_is(how: str) -> None:
     queue, begun = WorkQueue(), threading.Event()
-    more = {"work": lambda: queue.work(lambda: None), "report": lambda: queue.report(EcologyAsked())}
+    more = {"work": lambda: queue.add(lambda: None), "report": lambda: queue.report(EcologyAsked())}
 
     def interrupt() -> None:
         begun.wait()
@@ -153,7 +153,7 @@ def test_what_is_done_until_there_is_more_ends_as_soon_as_there_is(how: str) -> 
 def test_what_is_done_until_there_is_more_comes_to_its_end_where_there_is_nothing() -> None:
     queue, done = WorkQueue(), list[str]()
     assert queue.until_more(lambda: done.append("explained"))
-    queue.work(lambda: done.append("searched"))
+    queue.add(lambda: done.append("searched"))
     assert not queue.until_more(lambda: done.append("explained again"))
     queue.next(0.0)
     assert done == ["explained", "searched"]
@@ -163,7 +163,7 @@ def test_what_is_done_until_there_is_more_may_wait_for_a_time_in_which_there_is_
     queue, done = WorkQueue(), list[str]()
     queue.abandon()
     assert queue.next(0.0) is None
-    threading.Timer(0.05, lambda: queue.work(lambda: done.append("searched"))).start()
+    threading.Timer(0.05, lambda: queue.add(lambda: done.append("searched"))).start()
     assert not queue.until_more(lambda: done.append("explained"), after=60.0)
     queue.next(0.0)
     assert done == ["searched"]
@@ -182,7 +182,7 @@ def test_what_is_done_at_leisure_is_done_anew_when_something_has_come_in_the_mid
 
     def interrupt() -> None:
         begun.wait()
-        queue.work(lambda: done.append("searched"))
+        queue.add(lambda: done.append("searched"))
 
     queue.at_leisure(explain, "patrol")
     other = threading.Thread(target=interrupt)
@@ -227,7 +227,7 @@ def test_what_was_interrupted_at_leisure_comes_after_what_waits_for_others(monke
             begun.wait()
             begun.clear()
             disturbed += 1
-            queue.work(lambda: done.append("searched"))
+            queue.add(lambda: done.append("searched"))
 
     queue.at_leisure(explain, "patrol")
     queue.at_leisure(lambda: done.append("tidied"), "tidy")
@@ -317,7 +317,7 @@ def test_what_could_not_be_ended_in_another_thread_is_not_begun() -> None:
 
 def test_what_is_done_now_comes_before_what_waits_and_may_be_abandoned() -> None:
     queue, done, begun = WorkQueue(), list[str](), threading.Event()
-    queue.work(lambda: done.append("waits"))
+    queue.add(lambda: done.append("waits"))
     assert queue.do(lambda: done.append("now"))
     assert done == ["now"]
     threading.Timer(0.05, queue.abandon).start()
