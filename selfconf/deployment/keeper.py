@@ -46,6 +46,9 @@ KEEPER_LOOK = 1.0
 KEEPER_AGAIN = 0.3
 """Seconds after which a task that has been left to another configurator is looked at again: that may be about to leave
 it to this site, and components let go of a task that no site runs after a second."""
+LINKED_AGAIN = 0.2
+"""Seconds after which a site that has lost its hub looks whether it has one again: the hub may have been that of the
+site which ran a task, and components let go of that after a second."""
 ADOPTED = 3.0
 """Seconds after a site has come or gone in which a task that none runs is about to be run by the next: what it held
 then counts as held, or another task, which has lost something, would take it just before."""
@@ -180,9 +183,9 @@ class Keeper:
             elif runner is not None:
                 self._leave_what_is_anothers(runner, record, keeper)
             mine = keeper == self.site and not record.ended and not self._requests.is_left_alone(task)
-            if mine and linked and task not in self.runners:
-                if unrest := self._view.unrest():
-                    self._assign_later(unrest)
+            if mine and task not in self.runners:
+                if wait := self._view.unrest() if linked else LINKED_AGAIN:
+                    self._assign_later(wait)
                 else:
                     self._run(record)
 

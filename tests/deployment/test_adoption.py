@@ -234,6 +234,26 @@ def test_the_next_site_does_without_what_had_failed_until_it_lives_anew(tmp_path
     assert failed.said.count(("started",)) == 1
 
 
+def test_the_next_site_goes_on_in_time_though_it_has_lost_its_hub_with_the_first(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keeper, lab = keepers.settled(), keepers.lab
+    said = {name: list(recorder.said) for name, recorder in lab.components.items()}
+    link, waits = MemoryBus.link, lab.network.time + 0.1
+    assert isinstance(link, property)
+    (first, second) = (bus for name, bus in keepers.buses.items() if name != keeper)
+
+    def linked(bus: MemoryBus) -> str:
+        cut_off = bus in (first, second) and lab.network.time < waits
+        return "" if cut_off else str(link.__get__(bus))
+
+    monkeypatch.setattr(MemoryBus, "link", property(linked))
+    keepers.end(keeper)
+    assert lab.until(lambda: bool(keepers.running()), 0.5)
+    lab.let_pass(5.0)
+    assert {name: list(recorder.said) for name, recorder in lab.components.items()} == said
+
+
 PACKING = {
     "camera": ":camera a sc:Component, :Camera ; sc:shareable false ;"
     ' sc:hasOutput [ sc:name "parcels" ; sc:signalType :Parcels ] .',
