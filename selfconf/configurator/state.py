@@ -206,7 +206,7 @@ class State:
 
     @property
     def unchanged(self) -> State:
-        """The same, but for a change for the better, which is given up."""
+        """This state, but without a change for the better: that is given up."""
         return replace(self, target=self.wanted, fallback=None)
 
     @property
