@@ -10,11 +10,12 @@ USUAL = {"sc": SC, "rob": ROB, "rdf": RDF, "rdfs": RDFS, "owl": OWL, "sh": SH, "
 """The usual prefixes, with what they stand for."""
 _UNDECLARED = re.compile(r"The prefix (?P<prefix>[^:\s]*): has not been declared")
 _ADVICE = (
-    ("A dot is expected", "Perhaps a semicolon is missing before this."),
+    ("A dot is expected", "Perhaps a semicolon is missing before this, or a dot behind @prefix."),
     ("is not a valid predicate", "A predicate is an IRI or a; perhaps the dot before this should be a semicolon."),
     ("property lists should end", "Perhaps a semicolon or the closing ] is missing before this."),
     ("Invalid IRI code point ' '", "In an IRI a blank is written %20."),
     ("Line jumps are not allowed", "Perhaps the closing quotation mark is missing."),
+    (r"^\{ is not a valid", "Brackets are square: [ ... ]."),
     ("^, is not a valid RDF object", "The members of a list stand side by side, without commas."),
     (r"^[].;] is not a valid RDF object", "Perhaps an object or the closing ) is missing before this."),
     (r"^\. is not a valid subject", "Perhaps a dot is too many; behind PREFIX, unlike @prefix, there is none."),
@@ -30,6 +31,8 @@ _ADVICE = (
     ("'[\u2010-\u2015\u2212]' is not allowed", "A minus is written -."),
     (r"'[\s\u200b]' is not allowed", "This is a special blank, such as the no-break space; write a plain one."),
     ("'/' is not allowed", r"A comment begins with #; in a name behind a prefix / is written \/."),
+    ("Unexpected escape character", r"A backslash in a string is written \\."),
+    ("declaration should be followed by a prefix and its value", "An IRI stands in angle brackets: <https:...>."),
     ("Unexpected end of file", "Perhaps a closing quotation mark or a > is missing."),
     ("Unexpected end", "Perhaps the dot after the last statement is missing."),
 )

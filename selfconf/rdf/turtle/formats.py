@@ -205,4 +205,15 @@ def _head(octets: bytes) -> bytes:
 
 def _by_content(octets: bytes) -> RdfFormat:
     head = _head(octets)
-    return next((found for pattern, found in _LOOKS if pattern.match(head)), _TURTLE)
+    found = next((found for pattern, found in _LOOKS if pattern.match(head)), _TURTLE)
+    return _TURTLE if found is TRIG and not _is_trig(octets) else found
+
+
+def _is_trig(octets: bytes) -> bool:
+    """Whether a text is TriG; one that looks like it may be Turtle with a brace for a bracket."""
+    try:
+        for _ in ox.parse(octets, format=ox.RdfFormat.TRIG, base_iri="urn:selfconf:base"):
+            pass
+    except (SyntaxError, MemoryError):
+        return False
+    return True

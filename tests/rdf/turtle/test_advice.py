@@ -11,7 +11,11 @@ from selfconf.rdf.validation.checking import SourceText, validate_texts
 SLIPS = [
     ("<urn:a> a <urn:my home> .", "In an IRI a blank is written %20."),
     ("<urn:a> a rob:Tuner .", "Write @prefix rob: <https://w3id.org/selfconf/robotics#> . at the head of the file."),
-    ("<urn:a> <urn:p> 'x' <urn:q> 'y' .", "Perhaps a semicolon is missing before this."),
+    ("<urn:a> <urn:p> 'x' <urn:q> 'y' .", "Perhaps a semicolon is missing before this, or a dot behind @prefix."),
+    ("@prefix : <urn:x>\n<urn:a> a :b .", "Perhaps a semicolon is missing before this, or a dot behind @prefix."),
+    ("@prefix : <urn:x> .\n<urn:a>\n:p { :q 1 } .", "Brackets are square: [ ... ]."),
+    ("@prefix : urn:x .", "An IRI stands in angle brackets: <https:...>."),
+    (r"<urn:a> <urn:p> 'C:\prog' .", r"A backslash in a string is written \\."),
     ("<urn:a> a <urn:b>", "Perhaps the dot after the last statement is missing."),
     ("<urn:a> <urn:p> 'x .", "Perhaps a closing quotation mark or a > is missing."),
     ("<urn:a> <urn:p> True .", "Truth values are written true and false."),
