@@ -134,10 +134,10 @@ def test_to_abandon_what_is_over_or_not_begun_harms_nothing() -> None:
     assert done == ["searched"]
 
 
-@pytest.mark.parametrize("how", ["work", "report", "wake_up", "abandon"])
+@pytest.mark.parametrize("how", ["add", "report", "wake_up", "abandon"])
 def test_what_is_done_until_there_is_more_ends_as_soon_as_there_is(how: str) -> None:
     queue, begun = WorkQueue(), threading.Event()
-    more = {"work": lambda: queue.add(lambda: None), "report": lambda: queue.report(EcologyAsked())}
+    more = {"add": lambda: queue.add(lambda: None), "report": lambda: queue.report(EcologyAsked())}
 
     def interrupt() -> None:
         begun.wait()
