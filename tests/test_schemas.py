@@ -383,8 +383,8 @@ def test_a_refusal_names_the_sites_that_did_not_answer(outcomes: dict[str, Any])
 def test_a_status_keeps_to_the_schema_whatever_has_been_lost() -> None:
     task, lost = IRI("https://example.org/my-home#tell-the-time"), {"https://example.org/my-home#clock": "crash"}
     body = [
-        status._body(Status("c1", "waiting", task, 3, 1.5)),
-        status._body(Status("c2", "x", task, 3, 1.5, lost=lost)),
+        status._body(Status("c1", "waiting", task, 3, 1.5), {}),
+        status._body(Status("c2", "x", task, 3, 1.5, lost=lost), {}),
     ]
     validator("status").validate(json.loads(json.dumps(body)))
 

@@ -52,7 +52,7 @@ def imported(form: str, texts: dict[str, bytes]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         for name, text in texts.items():
             Path(folder, name).write_bytes(text)
-        report = import_descriptions(form, [folder], Path(folder, "out"))
+        report = import_descriptions(form, [folder], Path(folder, "out"), None)
         for file in report.files:
             assert parse(file.path.read_bytes(), file.path.name).statements
         for each in (*report.left_out, *report.renamed, *report.unreadable):
