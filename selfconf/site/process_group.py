@@ -33,6 +33,8 @@ Those before are of the groups around it: what a component starts may be a site,
 """
 _PROCESSES = Path("/proc")
 """Where Linux shows the processes."""
+_BEGINNING = 0.05
+"""For how many seconds at most a process may be on its way into a program (execve), where it shows no environment."""
 _FIRST_LOOK = 0.02
 """Seconds after which it is looked again whether what a program has left behind has ended; then twice as many."""
 
@@ -148,7 +150,7 @@ class ProcessGroup:
 
     def _is_outside(self, process: int) -> bool:
         with suppress(OSError):  # it has ended, or it is another user's
-            for line in (_PROCESSES / str(process) / "environ").read_bytes().split(b"\0"):
+            for line in _environment(process).split(b"\0"):
                 name, _, words = line.partition(b"=")
                 if name == GROUP_VARIABLE.encode() and self._mark.encode() in words.split():
                     return os.getpgid(process) != self.number
@@ -176,6 +178,21 @@ def _shown() -> list[int]:
         return [int(one.name) for one in _PROCESSES.iterdir() if one.name.isdecimal()]
     except OSError:
         return []
+
+
+def _environment(process: int) -> bytes:
+    """The environment of a process, apart by zeros. Raises OSError if it has ended, or is the kernel's.
+
+    One that is just on its way into a program has neither an environment nor a command line: that is waited for.
+    """
+    shown = _PROCESSES / str(process)
+    until = time.monotonic() + _BEGINNING
+    while not (environment := (shown / "environ").read_bytes()) and time.monotonic() < until:
+        if (shown / "cmdline").read_bytes():
+            return (shown / "environ").read_bytes()
+        (shown / "exe").readlink()  # what has ended and what is the kernel's has none
+        time.sleep(0.001)  # nothing tells when the program has begun
+    return environment
 
 
 def _reached(send: Callable[[int, int], None], receiver: int, number: int) -> bool:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.site import process_group
 from selfconf.site.process_group import ProcessGroup
 from selfconf.termination import alive
 from tests.site.served import until
@@ -101,6 +102,36 @@ def test_what_has_left_the_session_is_ended_too(groups: list[ProcessGroup], tmp_
     assert group.wait(10)
     assert until(lambda: not alive(child))
     assert until(group.gone)
+
+
+def test_what_is_on_its_way_into_a_program_is_waited_for(
+    groups: list[ProcessGroup], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    group = started(groups, tmp_path, "pass")
+    assert group.wait(10)
+    shown = tmp_path / "proc" / str(os.getpid())  # for a process outside of the group
+    shown.mkdir(parents=True)
+    for name in ("environ", "cmdline"):
+        (shown / name).write_bytes(b"")
+    (shown / "exe").symlink_to(sys.executable)
+    looks = []
+
+    def begin(seconds: float) -> None:
+        looks.append(seconds)
+        if len(looks) == 2:
+            (shown / "environ").write_bytes(f"{process_group.GROUP_VARIABLE}={group._mark}\0".encode())
+
+    monkeypatch.setattr(process_group, "_PROCESSES", tmp_path / "proc")
+    monkeypatch.setattr(process_group.time, "sleep", begin)
+    assert not group.gone()
+    assert len(looks) == 2
+    (shown / "environ").write_bytes(b"")
+    (shown / "cmdline").write_bytes(b"env\0-i\0")
+    assert group.gone()
+    (shown / "cmdline").write_bytes(b"")
+    (shown / "exe").unlink()  # a zombie, or one of the kernel
+    assert group.gone()
+    assert len(looks) == 2
 
 
 def test_the_number_of_a_group_is_not_signalled_once_it_may_be_another_programs(
