@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.zenoh import client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
@@ -146,6 +146,32 @@ def find(ecology: str | None, connect: Sequence[str], credentials: Credentials |
     usual = usual_endpoints(names[0], secure=credentials is not None)
     from_here = [site.from_here for site in found if site.from_here]
     return names[0], list(dict.fromkeys([*from_here, *(site.endpoint for site in found), *usual]))
+
+
+def member_bus(
+    ecology: str,
+    endpoints: Sequence[str],
+    credentials: Credentials | None,
+    shared_memory: bool = False,
+    distrusted: Callable[[], None] = lambda: None,
+) -> ZenohBus:
+    """A bus that is connected to a hub of an ecology which lets this program in. Raises NetworkError.
+
+    `shared_memory` is for what issues large signals. `distrusted` is called on the thread of the bus, each second, once
+    the certificate of this program was revoked.
+    """
+    with suspended_sites_named(endpoints):
+        bus = client(endpoints, shared_memory=shared_memory, credentials=credentials)
+    if credentials is not None:
+        from selfconf.access import CertificateWatch, introduce  # what it needs is an extra
+
+        try:
+            introduce(bus, ecology, credentials)
+            CertificateWatch(bus, ecology, credentials, distrusted=distrusted)
+        except BaseException:
+            bus.close()
+            raise
+    return bus
 
 
 @contextmanager

@@ -10,8 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from selfconf import rendezvous, this_machine
+from selfconf import access, rendezvous, this_machine
 from selfconf.access import Authority, Principal
+from selfconf.bus import zenoh
+from selfconf.bus.credentials import Credentials
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 from selfconf.model.term import IRI
 from selfconf.rendezvous import usual_endpoints
@@ -147,3 +150,27 @@ def test_a_process_of_components_has_keys_that_speak_for_each_of_them(tmp_path: 
         rendezvous.component_credentials(tmp_path / "lamp", [lamp, bell])
     with pytest.raises(ProgrammerError, match="has to say which components it is"):
         rendezvous.component_credentials(authority.path, [])
+
+
+def test_a_hub_that_lets_nothing_in_leaves_no_connection(monkeypatch: pytest.MonkeyPatch) -> None:
+    closed: list[ZenohBus] = []
+
+    def client(endpoints: list[str], **how: object) -> ZenohBus:
+        bus = zenoh.client(endpoints)
+        close = bus.close
+        monkeypatch.setattr(bus, "close", lambda: (closed.append(bus), close()))
+        return bus
+
+    def introduce(*who: object) -> None:
+        raise NetworkError("let in nowhere")
+
+    monkeypatch.setattr(rendezvous, "client", client)
+    monkeypatch.setattr(access, "introduce", introduce)
+    shown = Credentials("conf.alice", Path("c"), Path("k"), Path("a"), Path("f"))
+    hub = zenoh.router()
+    try:
+        with pytest.raises(NetworkError, match="let in nowhere"):
+            rendezvous.member_bus("home", [hub.endpoint], shown)
+        assert len(closed) == 1
+    finally:
+        hub.close()

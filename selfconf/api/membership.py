@@ -6,11 +6,11 @@ import secrets
 from collections.abc import Callable
 
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.zenoh import ZenohBus, client
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.discovery import Beliefs
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
-from selfconf.rendezvous import suspended_sites_named
+from selfconf.rendezvous import member_bus
 
 MEMBERS = ("conf", "read", "site")
 """The kinds of certificates that a program of a person may show: what it does is more or less, and the sites judge."""
@@ -30,18 +30,7 @@ class Membership:
 
         `distrusted` is called on its thread, each second, once the certificate of this program was revoked.
         """
-        with suspended_sites_named(self.endpoints):
-            bus = client(list(self.endpoints), credentials=self.credentials)
-        if self.credentials is not None:
-            from selfconf.access import CertificateWatch, introduce  # what it needs is an extra
-
-            try:
-                introduce(bus, self.ecology, self.credentials)
-                CertificateWatch(bus, self.ecology, self.credentials, distrusted=distrusted)
-            except BaseException:
-                bus.close()
-                raise
-        return bus
+        return member_bus(self.ecology, self.endpoints, self.credentials, distrusted=distrusted)
 
     def beliefs(self) -> Beliefs | None:
         """What says whose a disputed component is, by the folder of keys of this program; None without keys."""

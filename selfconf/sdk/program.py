@@ -12,7 +12,6 @@ from typing import NoReturn
 
 from selfconf import rendezvous
 from selfconf.aside_writer import AsideHandler, AsideWriter, write_line
-from selfconf.bus.zenoh import client
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.setting_names import options_named
 from selfconf.model.wording import plain
@@ -92,14 +91,7 @@ def open_host(
     components = [] if rendezvous.keys_folder(keys) is None else [profile_of(kind).component for kind in kinds]
     shown = rendezvous.component_credentials(keys, components)
     name, endpoints = rendezvous.find(ecology, connect, shown)
-    with rendezvous.suspended_sites_named(endpoints):
-        bus = client(endpoints, shared_memory=True, credentials=shown)
-    if shown is not None:
-        from selfconf.access import CertificateWatch, introduce  # what it needs is an extra
-
-        introduce(bus, name, shown)
-        CertificateWatch(bus, name, shown)
-
+    bus = rendezvous.member_bus(name, endpoints, shown, shared_memory=True)
     said = AsideWriter(write_line, str)
 
     def hung(what: str) -> None:

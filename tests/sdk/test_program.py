@@ -30,8 +30,7 @@ class Lamp(Component):
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """No endpoint is waited for."""
-    for module in ("selfconf.sdk.program", "selfconf.rendezvous"):
-        monkeypatch.setattr(f"{module}.client", partial(client, seconds=0.1))
+    monkeypatch.setattr("selfconf.rendezvous.client", partial(client, seconds=0.1))
 
 
 @pytest.mark.parametrize(
