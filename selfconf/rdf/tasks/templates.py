@@ -19,9 +19,10 @@ from selfconf.model.setting_names import setting
 from selfconf.model.template import MOST_PRIORITY, Task, Template
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.permitted_fields import SAID_BY
-from selfconf.rdf.tasks.interactions_and_ports import interactions_of, template_ports
+from selfconf.rdf.tasks.interactions import interactions_of
 from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
 from selfconf.rdf.tasks.parameters import parameters_of
+from selfconf.rdf.tasks.ports import template_ports
 from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.turtle import Document, ListFault, Node
 from selfconf.rdf.vocabulary import FIRST, LABEL, SC, TYPE, XSD
