@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 
+from selfconf.bus.own_answers import own_answers
 from selfconf.bus.port import Bus, Replies
-from selfconf.errors import PeerError
 from selfconf.model.configuration import Wants
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Status
 
@@ -58,12 +57,9 @@ def holders_in(replies: Replies, keys: Keys) -> Mapping[IRI, Holder]:
 
 def _holdings(replies: Replies, keys: Keys, own: str = "") -> list[Holding]:
     found: list[Holding] = []
-    for sample in replies.samples:
-        try:
-            status = decode(sample.payload, Status)
-        except PeerError:
-            continue
-        if status.configurator == own or sample.key != keys.configurator_call(status.configurator, "status"):
+    statuses, _ = own_answers(replies.samples, Status, lambda one: keys.configurator_call(one.configurator, "status"))
+    for status in statuses:
+        if status.configurator == own:
             continue
         holder = Holder(status.task, status.priority, status.beginning, status.configurator)
         found.append(Holding(holder, {one: status.wants.get(one, Wants()) for one in status.components}))

@@ -8,11 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from selfconf.bus.own_answers import own_answers
 from selfconf.bus.port import Replies
 from selfconf.discovery import Discovery
-from selfconf.errors import PeerError
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys, task_name
 from selfconf.protocol.messages import CallAnswer
 from selfconf.rdf.vocabulary import SC
@@ -70,13 +69,8 @@ class ComponentState(NamedTuple):
 def told_lives(keys: Keys, replies: Replies) -> Mapping[IRI, Sequence[CallAnswer]]:
     """What the lives of each component say of themselves, the least first: that is the one which stays."""
     answers: dict[IRI, dict[str, CallAnswer]] = {}
-    for sample in replies.samples:
-        try:
-            answer = decode(sample.payload, CallAnswer)
-        except PeerError:
-            continue
-        if sample.key == keys.call(answer.component, "state"):
-            answers.setdefault(answer.component, {})[answer.life] = answer
+    for answer in own_answers(replies.samples, CallAnswer, lambda one: keys.call(one.component, "state"))[0]:
+        answers.setdefault(answer.component, {})[answer.life] = answer
     return {component: [lives[life] for life in sorted(lives)] for component, lives in answers.items()}
 
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from selfconf.api.living.deployed import connected, deployed_body
 from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.bus.own_answers import own_answers
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys, configurator_of, task_name
 from selfconf.protocol.messages import Notice
 from selfconf.rdf import turtle
@@ -57,15 +57,10 @@ class Configurators:
     def why(self, term: str, at: float | None) -> list[str]:
         """Why components play the roles that a term means, in sentences; at a moment, or now."""
         told: dict[str, list[Notice]] = {}
-        rejected: list[str] = []
-        for sample in self._bus.ask(self._keys.notices()).samples:
-            try:
-                notice = decode(sample.payload, Notice)
-            except PeerError as error:
-                rejected.append(f"left out an answer: {error}")
-                continue
-            if sample.key == self._keys.notices(notice.configurator):
-                told.setdefault(notice.configurator, []).append(notice)
+        samples = self._bus.ask(self._keys.notices()).samples
+        answers, rejected = own_answers(samples, Notice, lambda one: self._keys.notices(one.configurator))
+        for notice in answers:
+            told.setdefault(notice.configurator, []).append(notice)
         passed_over: dict[str, dict[str, list[str]]] = {}
         if at is None:
             passed_over = self._passed_over()

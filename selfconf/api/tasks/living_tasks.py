@@ -9,6 +9,7 @@ from itertools import chain, count
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.api.tasks.living_task import LivingTask, SilentHolder
 from selfconf.api.tasks.released_components import ReleasedComponents
+from selfconf.bus.own_answers import own_answers
 from selfconf.bus.port import Replies
 from selfconf.discovery import namesakes
 from selfconf.errors import NetworkError, PeerError
@@ -246,19 +247,7 @@ def _taken(name: str) -> NetworkError:
 
 def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
     """What configurators have answered, each on its own key, and what is wrong with the answers that are left out."""
-    found: list[Status] = []
-    rejected: list[str] = []
-    for sample in replies.samples:
-        try:
-            status = decode(sample.payload, Status)
-        except PeerError as error:
-            rejected.append(f"left out an answer: {error}")
-            continue
-        if sample.key == keys.configurator_call(status.configurator, "status"):
-            found.append(status)
-        else:
-            rejected.append(f"left out an answer on {sample.key}: it speaks of another configurator")
-    return found, rejected
+    return own_answers(replies.samples, Status, lambda one: keys.configurator_call(one.configurator, "status"))
 
 
 def _meant(name: str | None, running: Sequence[Status], others: Sequence[object]) -> list[Status]:

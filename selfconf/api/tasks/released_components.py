@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 
 from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.bus.own_answers import own_answers
 from selfconf.bus.port import Replies
-from selfconf.errors import PeerError
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import CallAnswer, StateOf
 
@@ -68,10 +67,4 @@ class ReleasedComponents:
 
 def _states(replies: Replies, keys: Keys) -> list[CallAnswer]:
     """What the lives of components have answered, each on its own key."""
-    found = []
-    for sample in replies.samples:
-        with suppress(PeerError):
-            answer = decode(sample.payload, CallAnswer)
-            if sample.key == keys.call(answer.component, "state"):
-                found.append(answer)
-    return found
+    return own_answers(replies.samples, CallAnswer, lambda one: keys.call(one.component, "state"))[0]

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 
 from selfconf.api.living.deployed import deployed_body
+from selfconf.bus.own_answers import own_answers
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import Literal
@@ -228,13 +229,10 @@ class TaskWatcher:
         self.bus.ask(key, b"", PATIENCE_WITH_PEERS, done)
 
     def _take_statuses(self, replies: Replies) -> None:
-        for sample in replies.samples:
-            try:
-                status = decode(sample.payload, Status)
-            except PeerError:
-                continue
+        call = self.keys.configurator_call
+        for status in own_answers(replies.samples, Status, lambda one: call(one.configurator, "status"))[0]:
             task = self._tasks.get(status.configurator)
-            if task is not None and sample.key == self.keys.configurator_call(status.configurator, "status"):
+            if task is not None:
                 task.take_status(status)
         self._changed()
 
