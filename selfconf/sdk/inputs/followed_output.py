@@ -43,7 +43,7 @@ class FollowedOutput:
         """Whether it can issue nothing any more, as far as is known."""
         self.heard_at = -JUST_COME
         """When the newest signal came, in seconds of the bus's clock."""
-        self._understood_at = self.heard_at
+        self.understood_at = self.heard_at
         """When the newest signal was read that could be: what cannot be read is no sign that the output issues."""
         self._complained = False
 
@@ -123,14 +123,14 @@ class FollowedOutput:
     def not_understood(self) -> bool:
         """Take note that a signal could not be read; whether the one before could be."""
         first = not self._complained
-        self._complained, self.heard_at = True, self._understood_at
+        self._complained, self.heard_at = True, self.understood_at
         return first
 
     def understood(self) -> None:
         """Take note that a signal could be read."""
         if self._complained:
             self._complained, self.heard_at = False, self._now()
-        self._understood_at = self.heard_at
+        self.understood_at = self.heard_at
 
     def _has_come(self, stamp: Stamp) -> bool:
         """Whether a signal, or one that was issued after it, is the newest that waits."""

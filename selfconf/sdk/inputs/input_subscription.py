@@ -93,6 +93,14 @@ class InputSubscription:
         """Whether the output has issued a signal at that moment, in seconds of the bus's clock, or later."""
         return self._output.heard_at >= moment
 
+    def delivers_since(self, moment: float) -> bool:
+        """Whether the output has issued a signal since a moment, and is not lost."""
+        return self.heard_since(moment) and not self.lost
+
+    def has_delivered_since(self, moment: float) -> bool:
+        """Whether a signal that has come since a moment was read as well, and the output is not lost."""
+        return self._output.understood_at >= moment and not self.lost
+
     def unmute(self) -> None:
         """Deliver what is received, from the newest signal on if that has only just come, else from the last one on."""
         if not self.muted:

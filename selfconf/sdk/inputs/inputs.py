@@ -9,10 +9,11 @@ or a slow component would take it for news. So is what an output that stands by 
 acts for no more.
 
 *Handing over.* Where a call asks for it (`gently`), an input goes on following the old output until the new one has
-issued a signal, also where it follows others before and afterwards. A new output that issues nothing in time while the
-old one does is reported as silent, and again as long as both is so; what becomes of that is for the configurator to
-say. An output that has nothing to issue, such as a doorbell, looks like one that never will: where the old one has
-issued nothing in that time either, and both live, the new one takes its place, and the input has lost nothing.
+issued a signal, also where it follows others before and afterwards. One that is lost right after its first has taken no
+place yet. A new output that issues nothing in time while the old one does is reported as silent, and again as long as
+both is so; what becomes of that is for the configurator to say. An output that has nothing to issue, such as a
+doorbell, looks like one that never will: where the old one has issued nothing in that time either, and both live, the
+new one takes its place, and the input has lost nothing.
 
 *Opening.* Where such a call starts the component, an input has followed nothing before. Then it waits for the first
 signal of an output that promises a rate, as what the component takes the place of goes on until then.
@@ -147,8 +148,6 @@ class Inputs:
         """Which outputs each input is to follow, and which stand by."""
         self._handovers: dict[str, Handover] = {}
         """The inputs that follow what they followed before as well, until a new output has issued a signal."""
-        self._taken_over: dict[str, Handover] = {}
-        """The latest handover of each input in which a new output has delivered one."""
         self._dropped = 0
         """How many signals were dropped of subscriptions that have ended."""
 
@@ -269,7 +268,7 @@ class Inputs:
         old = [self._subscriptions[port, wire] for wire in handover.old]
         new = [self._subscriptions[port, wire] for wire in handover.new]
         now, began = self._bus.now(), handover.began
-        delivers = any(subscription.heard_since(began) for subscription in new)
+        delivers = any(one.delivers_since(began) for one in new)
         if not delivers and now < handover.due:
             return
         quiet = old and not any(one.heard_since(began) for one in old) and not all(one.lost for one in new)
@@ -334,11 +333,9 @@ class Inputs:
         Called on the thread of the component's code.
         """
         handover = self._handovers.get(port)
-        if handover is not None and wire in handover.new:
-            self._taken_over[port] = handover
-        elif handover is not None and wire in handover.old:
-            taken_over = self._taken_over.get(port)
-            if taken_over is not None and taken_over.began == handover.began:
+        if handover is not None and wire in handover.old:
+            new = (self._subscriptions.get((port, one)) for one in handover.new)  # none once the inputs have ended
+            if any(one is not None and one.has_delivered_since(handover.began) for one in new):
                 return
         self._events.deliver(port, signal)
 

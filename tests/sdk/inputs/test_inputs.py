@@ -534,6 +534,23 @@ def test_an_input_has_lost_nothing_when_the_next_output_has_just_delivered_as_wh
     assert change.told == {TRACKER.short, "the last"}
 
 
+def test_an_input_goes_on_following_what_fed_it_when_the_next_output_has_just_delivered_and_is_lost() -> None:
+    change = Change()
+    change.let_pass(0.4, change.tracker)
+    change.odometry.component.emit("pose", "the last")
+    assert change.stage.network.run(lambda: ("position", "the last") in change.stage.recorder.said, HANDOVER_CHECK)
+    change.odometry.component.fail("blind")
+    change.stage.let_pass(0.2)
+    change.tracker.component.emit("pose", "goes on")
+    change.let_pass(HANDOVER + 0.4, change.tracker)
+    assert ("position", "goes on") in change.stage.recorder.said
+    assert "unfed" not in change.told
+    assert silence(change.stage) == [(ODOMETRY, "")]
+    change.tracker.component.fail("blind as well")
+    change.stage.let_pass(0.4)
+    assert change.stage.recorder.said[-1] == ("unfed", "position")
+
+
 def test_an_output_that_promises_to_issue_seldom_has_time_for_what_it_promises() -> None:
     change = Change({"position": (Wire(ODOMETRY, "pose", HANDOVER),)})
     change.let_pass(PATIENCE * HANDOVER - 0.4, change.tracker)
