@@ -35,12 +35,12 @@ class LogReader:
         sources: Iterable[LogSource],
         component: str = "",
         pause: float = FOLLOW_PAUSE,
-        look_up: Callable[[str], object] = lambda component: None,
+        look_up: Callable[[str], object] | None = None,
     ) -> None:
         """`component` is an IRI, a CURIE or a local name: only the lines of its processes are read; empty: all.
 
         `pause` is for how many seconds one who follows the logs is to wait between two looks. `look_up` raises
-        AuthorError for a component that is not there, as far as the ecology lives and can be asked.
+        AuthorError for a component that is not there; None where the ecology cannot be asked.
         """
         self._named, self.pause, self._look_up = component, pause, look_up
         self._component = iri_or_local_name(component)
@@ -55,7 +55,8 @@ class LogReader:
         """Say that no line is kept. Raises AuthorError where it is known that there is no such component."""
         if not self._named:
             return "nothing that a component has printed is kept in the log"
-        self._look_up(self._named)
+        if self._look_up is not None:
+            self._look_up(self._named)
         return f"nothing that {one_line(self._component)} has printed is kept in the log"
 
     def added(self) -> list[LogLine]:
@@ -94,26 +95,52 @@ def log_reader(
     several ecologies have logs and none is named.
     """
     ecology, endpoints = asked_for(ecology, connect)
-    paths: list[Path] = []
-    trouble: NetworkError | None = None
-    try:
-        paths = site_logs(ecology, folder)
-        ecology = ecology or names_of_log(paths[0])[0]
-    except NetworkError as error:
-        trouble = error
     with ExitStack() as stack:
-        living: LivingEcology | None = None
-        others: list[LogSource] = []
-        if connect or (folder is None and (endpoints or local_sites(ecology))):
-            try:
-                living = stack.enter_context(join(ecology, connect=endpoints, keys=keys))
-                others = living.other_logs([names_of_log(path)[1] for path in paths], complain)
-            except NetworkError as error:
-                if trouble is not None:
-                    raise
-                complain(f"only the logs of this machine are shown: {error}")
-        if trouble is not None and not others:
-            raise trouble
-        look_up: Callable[[str], object] = (lambda component: None) if living is None else living.component
-        sources = [*map(local_log, paths), *others]
-        yield LogReader(sources, component, ASK_AGAIN if others else FOLLOW_PAUSE, look_up)
+        living: LivingEcology | NetworkError | None = None
+        if connect or (endpoints and folder is None):
+            living = _joined(ecology, endpoints, keys, stack)
+        if isinstance(living, LivingEcology):
+            ecology = living.name  # and not that of logs which happen to be here
+        paths = _logs_here(ecology, folder)
+        if isinstance(paths, list):
+            ecology = ecology or names_of_log(paths[0])[0]
+        if living is None and folder is None and local_sites(ecology):
+            living = _joined(ecology, endpoints, keys, stack)
+        sources, asked = _sources(paths, living, complain)
+        look_up = living.component if isinstance(living, LivingEcology) else None
+        yield LogReader(sources, component, ASK_AGAIN if asked else FOLLOW_PAUSE, look_up)
+
+
+def _sources(
+    paths: list[Path] | NetworkError, living: LivingEcology | NetworkError | None, complain: Callable[[str], None]
+) -> tuple[list[LogSource], bool]:
+    """The logs that can be read, and whether sites are asked for some. Raises NetworkError where there are none."""
+    here = [] if isinstance(paths, NetworkError) else paths
+    others: list[LogSource] = []
+    if isinstance(living, LivingEcology):
+        others = living.other_logs([names_of_log(path)[1] for path in here], complain)
+    elif living is not None:
+        if not here:
+            raise living
+        complain(f"only the logs of this machine are shown: {living}")
+    if isinstance(paths, NetworkError) and not others:
+        raise paths
+    return [*map(local_log, here), *others], bool(others)
+
+
+def _joined(
+    ecology: str | None, endpoints: Sequence[str], keys: Path | None, stack: ExitStack
+) -> LivingEcology | NetworkError:
+    """The ecology, left when the stack is closed, or why it cannot be joined."""
+    try:
+        return stack.enter_context(join(ecology, connect=endpoints, keys=keys))
+    except NetworkError as error:
+        return error
+
+
+def _logs_here(ecology: str | None, folder: Path | None) -> list[Path] | NetworkError:
+    """The logs of `site_logs`, or why there are none."""
+    try:
+        return site_logs(ecology, folder)
+    except NetworkError as error:
+        return error

@@ -103,3 +103,22 @@ def test_the_site_of_another_machine_is_asked_and_a_silent_one_named(
     with log_reader(far.ecology, [where], keys, None, "", complaints.append) as lines:
         assert [line.text for line in lines.latest(9)] == ["near"]
     assert complaints[-1].startswith("only the logs of this machine are shown: ")
+
+
+@pytest.mark.process
+def test_the_ecology_is_that_of_the_endpoint_where_logs_of_others_are_kept_here(
+    far: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = far.folder / "kept" / f"{far.ecology}@far.log"
+    kept.parent.mkdir()
+    kept.write_text(said(1, "far away"))
+    far.site("far", "ads", options=("--log", "kept"))
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "here"))
+    keys = None if far.authority is None else far.authority.path
+    (tmp_path / "here" / "log").mkdir(parents=True)
+    complaints: list[str] = []
+    for other in ("of-yesterday", "of-the-day-before"):
+        (tmp_path / "here" / "log" / f"{other}@near.log").write_text(said(1, "near"))
+        with log_reader(None, [far.endpoint()], keys, None, "", complaints.append) as lines:
+            assert [line.text for line in lines.latest(9)] == ["far away"]
+    assert complaints == []
