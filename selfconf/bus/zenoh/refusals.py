@@ -7,9 +7,9 @@ prints goes where it went before. Two kinds of lines count:
   of a certificate has tried what its name does not allow. What is kept from reaching a client (egress) is no attempt,
   nor is an error reply, which has the key of what was asked: so a site of another host says to all that it does not
   know a component of this one.
-* a warning of the TLS link: a client without a trusted certificate has knocked. An error of the system is no such
-  warning: that a connection broke off before its certificate was looked at, as one of two is given up where two sites
-  connect to each other at once, or that none could be taken.
+* a warning of the TLS link: a client without a trusted certificate has knocked. No such warning is that a connection
+  broke off, or was closed, before its certificate was looked at, as one of two is given up where two sites connect to
+  each other at once, nor that none could be taken.
 
 Messages that pass cost Zenoh a line each, as they come in and as they go out, for these lines have the target and the
 level (trace) of those that say no, and no field but their text: no filter separates them. (The line "Msg
@@ -65,8 +65,8 @@ _DENIED = re.compile(
 _NAME = re.compile(r"CertCommonName\(([^)]*)\)")
 _DETAIL = re.compile(r"\. Hint: .*|: verification time .*", re.DOTALL)
 """What is left out of a warning of the TLS link: an advice, and seconds by which each would be another attempt."""
-_OF_SYSTEM = re.compile(r"\(os error \d+\)$")
-"""How a warning of the TLS link about an error of the system ends, without what is left out."""
+_NO_VERDICT = re.compile(r"tls handshake eof|.*\(os error \d+\)", re.DOTALL)
+"""A warning of the TLS link, without what is left out, that says nothing about a certificate."""
 _TLS = "zenoh_link_tls::unicast"
 _REFUSING = b" is unauthorized to ", b"Msg intercepted!", _TLS.encode()
 """What stands in every line that counts; the line that says no names the peer, the first time with its certificate."""
@@ -108,7 +108,7 @@ class RefusalLog:
         denied = _DENIED.fullmatch(text)
         if target == _TLS:
             warning = _DETAIL.sub("", text)
-            if _OF_SYSTEM.search(warning) is None:
+            if _NO_VERDICT.fullmatch(warning) is None:
                 self._count("", warning[:LONGEST_KEY], "", line)
         elif denied is not None:
             self._denied[thread] = self._note(*denied.groups())
