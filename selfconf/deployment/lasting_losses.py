@@ -21,8 +21,13 @@ LASTS_LONG = 1.0
 class LastingLosses:
     """Looks, after what one task has lost, whether that lasts, and feeds its machine with `LossLasts`."""
 
-    def __init__(self, task: TaskContext) -> None:
-        self._bus, self._ecology, self._state, self._step = task.ecology.bus, task.ecology, task.state, task.step
+    def __init__(self, context: TaskContext) -> None:
+        self._bus, self._ecology, self._state, self._step = (
+            context.ecology.bus,
+            context.ecology,
+            context.state,
+            context.step,
+        )
         self._incomplete: Undo | None = None
         """Undoes the look at what runs that comes when it has lacked a component for long; None if it lacks none."""
         self._is_planned, self._lost_since_planned = False, False

@@ -16,9 +16,9 @@ class Readiness:
     """That of one task."""
 
     def __init__(
-        self, task: TaskContext, request: RunRequest, calls: Calls, liveness: Liveness, reachability: Reachability
+        self, context: TaskContext, request: RunRequest, calls: Calls, liveness: Liveness, reachability: Reachability
     ) -> None:
-        self._bus, self._state, self._request = task.ecology.bus, task.state, request
+        self._bus, self._state, self._request = context.ecology.bus, context.state, request
         self._calls, self._liveness, self._reachability = calls, liveness, reachability
         self._is_due = False
         """Whether the time is set to be ready with what has appeared."""

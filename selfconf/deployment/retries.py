@@ -33,13 +33,13 @@ class Retries:
 
     def __init__(
         self,
-        task: TaskContext,
+        context: TaskContext,
         lives: HeldLives,
         upgrade: float | None,
     ) -> None:
         """`upgrade`: after how many seconds what has appeared may be rather had; None: what runs is kept."""
-        self._bus, self._ecology, self._lives = task.ecology.bus, task.ecology, lives
-        self._state, self._step, self._upgrade = task.state, task.step, upgrade
+        self._bus, self._ecology, self._lives = context.ecology.bus, context.ecology, lives
+        self._state, self._step, self._upgrade = context.state, context.step, upgrade
         self._look_again: Undo = lambda: None
         self._pause = TRY_AGAIN
         self._chance_at: float | None = None

@@ -22,15 +22,15 @@ class TaskDiscovery:
 
     def __init__(
         self,
-        task: TaskContext,
+        context: TaskContext,
         name: str,
         liveness: Liveness,
         without_configurator: WithoutConfigurator,
     ) -> None:
         """`name` is that of the configurator; `without_configurator` that of the `RunRequest`."""
-        self._bus, self._ecology, self._name, self._liveness = task.ecology.bus, task.ecology, name, liveness
+        self._bus, self._ecology, self._name, self._liveness = context.ecology.bus, context.ecology, name, liveness
         self._without_configurator = without_configurator
-        self._state, self._step, self._report = task.state, task.step, task.report
+        self._state, self._step, self._report = context.state, context.step, context.report
         self._asked = 0
         """How often the ecology was asked."""
         self._told: tuple[AnyRunEvent, ...] = ()

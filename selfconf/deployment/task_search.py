@@ -40,15 +40,20 @@ class TaskSearch:
 
     def __init__(
         self,
-        task: TaskContext,
+        context: TaskContext,
         request: RunRequest,
         liveness: Liveness,
         give_up: Callable[[SelfconfError], None],
     ) -> None:
         """`give_up` ends the task where it cannot be searched for."""
-        self._bus, self._ecology, self._request, self._liveness = task.ecology.bus, task.ecology, request, liveness
-        self._state, self._step, self._report, self._give_up = task.state, task.step, task.report, give_up
-        self._contingencies = Contingencies(task.ecology.bus, request, self._advertised, lambda: self._runs)
+        self._bus, self._ecology, self._request, self._liveness = (
+            context.ecology.bus,
+            context.ecology,
+            request,
+            liveness,
+        )
+        self._state, self._step, self._report, self._give_up = context.state, context.step, context.report, give_up
+        self._contingencies = Contingencies(context.ecology.bus, request, self._advertised, lambda: self._runs)
         self._better: _Better | None = None
         """What was answered last when the task ran and looked for something better."""
         self._left_out: set[IRI] = set()

@@ -22,9 +22,9 @@ SILENT_AUDITS = 3
 class Audits:
     """Those of one task."""
 
-    def __init__(self, task: TaskContext, calls: Calls, reachability: Reachability) -> None:
-        self._bus, self._calls, self._reachability = task.ecology.bus, calls, reachability
-        self._state, self._step = task.state, task.step
+    def __init__(self, context: TaskContext, calls: Calls, reachability: Reachability) -> None:
+        self._bus, self._calls, self._reachability = context.ecology.bus, calls, reachability
+        self._state, self._step = context.state, context.step
         self._audited = 0
         self._silences: dict[IRI, tuple[str, int]] = {}
         """How often in a row each component has not answered an audit, and in which life."""

@@ -65,16 +65,16 @@ class Calling:
 
     def __init__(
         self,
-        task: TaskContext,
+        context: TaskContext,
         identity: TaskIdentity,
         supervisor: str,
         lives: HeldLives,
         acts: Callable[[IRI, CallAnswer], None],
     ) -> None:
         """`acts` is called when a component has answered that it acts as it was applied to."""
-        self.bus, self.ecology, self.keys = task.ecology.bus, task.ecology, task.ecology.keys
+        self.bus, self.ecology, self.keys = context.ecology.bus, context.ecology, context.ecology.keys
         self.identity, self.supervisor = identity, supervisor
-        self.state, self.step, self._report = task.state, task.step, task.report
+        self.state, self.step, self._report = context.state, context.step, context.report
         self.lives, self._acts = lives, acts
         self._latest: dict[IRI, Reserve | Apply | Release] = {}
         """The last call that was made to each component."""

@@ -55,19 +55,19 @@ class Calls:
 
     def __init__(
         self,
-        task: TaskContext,
+        context: TaskContext,
         identity: TaskIdentity,
         supervisor: str,
         lives: HeldLives,
         waking: Waking,
         ends: PortEnds,
     ) -> None:
-        self.bus, self.ecology, self.keys = task.ecology.bus, task.ecology, task.ecology.keys
+        self.bus, self.ecology, self.keys = context.ecology.bus, context.ecology, context.ecology.keys
         self.supervisor = supervisor
-        self._state, self._step, self._report = task.state, task.step, task.report
+        self._state, self._step, self._report = context.state, context.step, context.report
         self._lives, self._ends = lives, ends
-        self._calling = Calling(task, identity, supervisor, lives, self._acts)
-        self._releases = Releases(task, lives, waking, self._calling)
+        self._calling = Calling(context, identity, supervisor, lives, self._acts)
+        self._releases = Releases(context, lives, waking, self._calling)
         self.look = self._calling.look
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
         """The connections that each component was given, in which life, so that only new ones are reported."""

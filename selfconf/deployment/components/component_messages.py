@@ -28,18 +28,18 @@ class ComponentMessages:
 
     def __init__(
         self,
-        task: TaskContext,
-        identity: str,
+        context: TaskContext,
+        task: str,
         lives: HeldLives,
         ends: PortEnds,
         heed: Callable[[Failed], None],
     ) -> None:
-        """`identity` is that of the task; `heed` receives each failure that is about it."""
-        self._keys, self._task = task.ecology.keys, identity
-        self._lives, self._ends, self._state, self._step = lives, ends, task.state, task.step
+        """`task` is the identity of the task; `heed` receives each failure that is about it."""
+        self._keys, self._task = context.ecology.keys, task
+        self._lives, self._ends, self._state, self._step = lives, ends, context.state, context.step
         self._heed = heed
         self._watched: set[IRI] = set()
-        bus = task.ecology.bus
+        bus = context.ecology.bus
         # One subscription for the FAIL of all components: one for each that joins would delay its activation.
         self._subscriptions = [
             bus.subscribe(self._keys.any_fail(), partial(self._received, Fail, self._failed), Urgency.EVENT),

@@ -34,11 +34,11 @@ class Liveness:
     """Follows the lives of an ecology for one configurator, and feeds its machine with what they mean."""
 
     def __init__(
-        self, task: TaskContext, calls: Calls, waking: Waking, sites: LivingSites, reachability: Reachability
+        self, context: TaskContext, calls: Calls, waking: Waking, sites: LivingSites, reachability: Reachability
     ) -> None:
-        self.bus, self.ecology, self._calls, self._waking = task.ecology.bus, task.ecology, calls, waking
+        self.bus, self.ecology, self._calls, self._waking = context.ecology.bus, context.ecology, calls, waking
         self._sites, self._reachability = sites, reachability
-        self._state, self._step = task.state, task.step
+        self._state, self._step = context.state, context.step
         self._news: dict[str, str] = {}
         """A life of each component that is not followed and has begun to live, by its chunk, until it is fed."""
         self._unseen: set[tuple[str, str]] = set()

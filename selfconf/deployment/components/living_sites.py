@@ -20,8 +20,8 @@ ASK_SITE_AGAIN = 5.0
 class LivingSites:
     """Those of one ecology; what it learns of them it tells the machine of one task as news."""
 
-    def __init__(self, task: TaskContext, waking: Waking) -> None:
-        self._bus, self._step, self._waking = task.ecology.bus, task.step, waking
+    def __init__(self, context: TaskContext, waking: Waking) -> None:
+        self._bus, self._step, self._waking = context.ecology.bus, context.step, waking
         self._sites: set[str] = set()
         """The liveliness keys of the sites that answered last, or are news: one that was started again has another."""
         self._shown: set[str] = set()

@@ -38,9 +38,9 @@ off or has seen its supervisor again.
 class Reachability:
     """That of one ecology for the configurator of one task."""
 
-    def __init__(self, task: TaskContext, calls: Calls, sites: LivingSites) -> None:
-        self._bus, self._ecology, self._calls, self._sites = task.ecology.bus, task.ecology, calls, sites
-        self._state, self._step, self._report = task.state, task.step, task.report
+    def __init__(self, context: TaskContext, calls: Calls, sites: LivingSites) -> None:
+        self._bus, self._ecology, self._calls, self._sites = context.ecology.bus, context.ecology, calls, sites
+        self._state, self._step, self._report = context.state, context.step, context.report
         self._link = self._bus.link
         self.cut_off = False
         """Whether this node was found to be cut off, and has not been connected again for long enough since."""

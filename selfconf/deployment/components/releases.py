@@ -36,9 +36,9 @@ RELEASE_AGAIN = 2.5
 class Releases:
     """Those of one task."""
 
-    def __init__(self, task: TaskContext, lives: HeldLives, waking: Waking, calling: Calling) -> None:
-        self._bus, self._ecology = task.ecology.bus, task.ecology
-        self._state, self._step, self._report = task.state, task.step, task.report
+    def __init__(self, context: TaskContext, lives: HeldLives, waking: Waking, calling: Calling) -> None:
+        self._bus, self._ecology = context.ecology.bus, context.ecology
+        self._state, self._step, self._report = context.state, context.step, context.report
         self._lives, self._waking, self._calling = lives, waking, calling
         self._ending: set[IRI] = set()
         """The components whose sites were asked to end their processes, and have not answered yet."""

@@ -41,11 +41,11 @@ class Waking:
 
     def __init__(
         self,
-        task: TaskContext,
+        context: TaskContext,
         lives: HeldLives,
     ) -> None:
-        self._bus, self._ecology, self._lives = task.ecology.bus, task.ecology, lives
-        self._step, self._report = task.step, task.report
+        self._bus, self._ecology, self._lives = context.ecology.bus, context.ecology, lives
+        self._step, self._report = context.step, context.report
         self._waiting: dict[IRI, _Start] = {}
         """Those that are being started."""
 
