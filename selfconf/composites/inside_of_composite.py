@@ -35,7 +35,7 @@ from selfconf.model.run_event import ComponentLost, ComponentReleased, RunEvent,
 from selfconf.model.term import IRI, Term
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Moved, Wire
+from selfconf.protocol.messages import Apply, Moved, Wires
 from selfconf.sdk import Component, ComponentRuntime, Refused, Signal
 
 log = logging.getLogger(__name__)
@@ -81,7 +81,7 @@ class InsideOfComposite:
         """
         self._rested = rested
         self._bus, self._ecology, self.profile, self._request_with = bus, ecology, profile, request_with
-        self._wires: Mapping[str, tuple[Wire, ...]] = {}
+        self._wires: Wires = {}
         """By which outputs each input of the composite is fed."""
         self._values: Mapping[str, Term] = {}
         """The values of its operational parameters."""
@@ -97,7 +97,7 @@ class InsideOfComposite:
         """The call with which the inside is to begin anew once it has come to rest."""
         self._waiting: list[Callable[[], None]] = []
         """What waits for the inside to run."""
-        self.issued: Mapping[str, tuple[Wire, ...]] = {}
+        self.issued: Wires = {}
         self.callers: Mapping[str, tuple[IRI, ...]] = {}
         self._standing: Mapping[IRI, frozenset[str]] = {}
         """The components inside on which outputs of the composite depend, with these outputs."""

@@ -36,12 +36,12 @@ from selfconf.configurator.effects import (
     Watch,
 )
 from selfconf.configurator.events import Answered, Call
-from selfconf.configurator.starting_order import InputWires, Plan, plan_of, resting_waves
+from selfconf.configurator.starting_order import Plan, plan_of, resting_waves
 from selfconf.configurator.state import Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Verdict
+from selfconf.protocol.messages import Verdict, Wires
 
 Reaction = tuple[State, tuple[Effect, ...]]
 """The next state, and what is to be done."""
@@ -266,7 +266,7 @@ def end_deployment(state: State) -> Reaction:
     return then(effects, release_next(running))
 
 
-def acting_wires(state: State) -> dict[IRI, InputWires]:
+def acting_wires(state: State) -> dict[IRI, Wires]:
     """What each component that may act follows."""
     return {component: held.inputs for component, held in state.held.items() if held.active}
 

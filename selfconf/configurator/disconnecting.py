@@ -14,11 +14,11 @@ from selfconf.configurator import deploying
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.effects import ApplyTo
 from selfconf.configurator.events import Call
-from selfconf.configurator.starting_order import InputWires
 from selfconf.configurator.state import Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
+from selfconf.protocol.messages import Wires
 
 
 def disconnect(state: State, components: frozenset[IRI]) -> Reaction:
@@ -31,7 +31,7 @@ def disconnect(state: State, components: frozenset[IRI]) -> Reaction:
     return _follow_fewer(state, fewer)
 
 
-def _follow_fewer(state: State, fewer: Mapping[IRI, InputWires]) -> Reaction:
+def _follow_fewer(state: State, fewer: Mapping[IRI, Wires]) -> Reaction:
     """Let components follow less than before, in an epoch that is newer than that of any call which says otherwise.
 
     The call to one that is to rest says so once more, or it would act again.

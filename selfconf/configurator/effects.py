@@ -11,7 +11,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.partition import Barred
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI, Term
-from selfconf.protocol.messages import Wire
+from selfconf.protocol.messages import Wires
 
 
 @immutable
@@ -56,7 +56,7 @@ class ReserveOf:
 
     component: IRI
     epoch: int
-    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    inputs: Wires = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
 
 
@@ -82,7 +82,7 @@ class ApplyTo:
 
     component: IRI
     epoch: int
-    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    inputs: Wires = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
     callers: Callers = field(default_factory=dict)
     """Which components may call its operations."""

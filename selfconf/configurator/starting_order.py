@@ -14,10 +14,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI, Term
-from selfconf.protocol.messages import Wire
-
-InputWires = Mapping[str, tuple[Wire, ...]]
-"""Which outputs each input of a component follows."""
+from selfconf.protocol.messages import Wire, Wires
 
 
 class Caller(NamedTuple):
@@ -78,7 +75,7 @@ class Plan:
     """What a deployment needs to know of its configuration, as each of its many steps asks for a part of it."""
 
     configuration: Configuration
-    inputs: Mapping[IRI, InputWires]
+    inputs: Mapping[IRI, Wires]
     values: Mapping[IRI, Mapping[str, Term]]
     callers: Mapping[IRI, Callers]
     order: StartingOrder
@@ -147,7 +144,7 @@ def _placed(
         yield together
 
 
-def resting_next(wires: Mapping[IRI, InputWires], left: Iterable[IRI]) -> tuple[IRI, ...]:
+def resting_next(wires: Mapping[IRI, Wires], left: Iterable[IRI]) -> tuple[IRI, ...]:
     """Of the components that still act, those that feed none of the others; where there is none, a loop at the end.
 
     The loop is given backwards.
@@ -183,7 +180,7 @@ def _reached(component: IRI, graph: Mapping[IRI, Iterable[IRI]]) -> set[IRI]:
     return reached
 
 
-def resting_waves(wires: Mapping[IRI, InputWires], components: Iterable[IRI]) -> tuple[tuple[IRI, ...], ...]:
+def resting_waves(wires: Mapping[IRI, Wires], components: Iterable[IRI]) -> tuple[tuple[IRI, ...], ...]:
     """Components in the order in which they come to rest: those of a wave at once, when those before it are at rest."""
     waves: list[tuple[IRI, ...]] = []
     left = tuple(components)

@@ -7,14 +7,14 @@ from dataclasses import field
 from enum import Enum
 
 from selfconf.configurator.events import Call
-from selfconf.configurator.starting_order import Callers, InputWires, Plan
+from selfconf.configurator.starting_order import Callers, Plan
 from selfconf.model.configuration import Configuration
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.sharing import Avoided, contested_by
 from selfconf.model.term import IRI, Term
-from selfconf.protocol.messages import Cause
+from selfconf.protocol.messages import Cause, Wires
 
 MOST_PUT_OFF = 10
 """How many searches in a row may find nothing and not count, for what has appeared meanwhile or may come back."""
@@ -45,7 +45,7 @@ class Policy(str, Enum):
 class Held:
     """A component that was called for this task: what it is to do, and how far that has come."""
 
-    inputs: InputWires
+    inputs: Wires
     values: Mapping[str, Term] = field(default_factory=dict)
     callers: Callers = field(default_factory=dict)
     life: str = ""

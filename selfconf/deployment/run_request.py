@@ -23,7 +23,7 @@ from selfconf.model.run_event import AnyRunEvent
 from selfconf.model.template import Task
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import task_name
-from selfconf.protocol.messages import TaskRecord, Wire
+from selfconf.protocol.messages import TaskRecord, Wires
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.tasks import TaskDocument
 
@@ -43,7 +43,7 @@ def at_once(work: Callable[[], None]) -> Undo:
 EventListener = Callable[[AnyRunEvent], None]
 """Receives an event of a run."""
 
-Standby = Mapping[IRI, Mapping[str, tuple[Wire, ...]]]
+Standby = Mapping[IRI, Wires]
 """For each component and input, the outputs that might be connected to it next."""
 
 
@@ -80,7 +80,7 @@ class Outside:
     """What is outside of a task that is the inside of a composite."""
 
     composite: IRI
-    received: Callable[[], Mapping[str, tuple[Wire, ...]]] = dict
+    received: Callable[[], Wires] = dict
     """By which outputs outside each input of the composite is fed now, and each operation that it needs answered."""
     calling: Callable[[str], tuple[IRI, ...]] = lambda operation: ()
     """Which components outside may call an operation of the composite now, by the name of its output."""

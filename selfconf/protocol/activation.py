@@ -26,11 +26,11 @@ lasts, but blocks no other task, and another configurator of the same task goes 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from enum import Enum
 
 from selfconf.model.immutable import immutable, replace
-from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict, Wire
+from selfconf.protocol.messages import Apply, Claim, Release, Reserve, Verdict, Wires
 from selfconf.protocol.task_queue import TaskQueue, rank
 
 MOST_HOLDING = 64
@@ -254,9 +254,7 @@ def _reserve(activation: Activation, own: Hold | None, call: Reserve) -> Activat
     return replace(activation, holds=(*others, held), ended=_ended(activation, call))
 
 
-def _in_common(
-    inputs: Mapping[str, tuple[Wire, ...]], others: Mapping[str, tuple[Wire, ...]]
-) -> Mapping[str, tuple[Wire, ...]]:
+def _in_common(inputs: Wires, others: Wires) -> Wires:
     """Inputs with those of their wires that others have as well."""
     return {port: tuple(wire for wire in wires if wire in others.get(port, ())) for port, wires in inputs.items()}
 

@@ -169,7 +169,7 @@ _READERS: dict[str, Callable[[object], object]] = {
     "Mapping[str, int]": read_numbers,
     "Mapping[str, Any]": read_sayable,
     "Mapping[str, Term]": read_values,
-    "Mapping[str, tuple[Wire, ...]]": read_inputs,
+    "Wires": read_inputs,
     "Mapping[str, tuple[IRI, ...]]": read_callers,
     "Mapping[IRI, Wants]": read_all_wants,
 }

@@ -55,6 +55,10 @@ class Wire:
     period: float | None = None
 
 
+Wires = Mapping[str, tuple[Wire, ...]]
+"""Some outputs for each port, by its name: those that an input follows, or that stand behind an output."""
+
+
 @immutable
 class Claim:
     """What every call says of the task that makes it, and of the component that it means."""
@@ -78,7 +82,7 @@ class Reserve(Claim):
     A task that cannot begin now only waits: it is remembered, and told when the component is free.
     """
 
-    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    inputs: Wires = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
     waits: bool = False
 
@@ -91,8 +95,8 @@ class Apply(Claim):
     inputs: then no time is lost with connecting. A component that is free is reserved by the same call.
     """
 
-    inputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
-    standby: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    inputs: Wires = field(default_factory=dict)
+    standby: Wires = field(default_factory=dict)
     values: Mapping[str, Term] = field(default_factory=dict)
     callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
     """For each operation of the component, by the name of its output, the components that may call it."""
@@ -156,7 +160,7 @@ class CallAnswer:
     """The resident memory of its process in bytes; zero where the system does not say."""
     issued: Mapping[str, int] = field(default_factory=dict)
     """How many signals each output has issued since the component lives."""
-    outputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    outputs: Wires = field(default_factory=dict)
     """Of a composite that acts: by which outputs inside of it each of its own is issued."""
     callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
     """Of a composite that acts: which components inside of it call by each operation that it needs."""
@@ -175,7 +179,7 @@ class Moved:
 
     component: IRI
     life: Label
-    outputs: Mapping[str, tuple[Wire, ...]] = field(default_factory=dict)
+    outputs: Wires = field(default_factory=dict)
     callers: Mapping[str, tuple[IRI, ...]] = field(default_factory=dict)
 
 

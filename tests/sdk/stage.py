@@ -21,6 +21,7 @@ from selfconf.protocol.messages import (
     Reserve,
     StateOf,
     Wire,
+    Wires,
 )
 from selfconf.sdk.component import Component
 from selfconf.sdk.runtime import ComponentRuntime
@@ -103,7 +104,7 @@ class Stage:
 def apply(
     epoch: int = 1,
     supervisor: str = US,
-    inputs: Mapping[str, tuple[Wire, ...]] | None = None,
+    inputs: Wires | None = None,
     values: Mapping[str, Term] | None = None,
     **claim: Any,
 ) -> Apply:

@@ -11,7 +11,7 @@ from selfconf.discovery import EcologyView
 from selfconf.model.configuration import Configuration
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Wire
+from selfconf.protocol.messages import Wire, Wires
 
 
 class PortEnds:
@@ -20,16 +20,14 @@ class PortEnds:
     def __init__(self, ecology: EcologyView, outside: Outside | None) -> None:
         """`outside` is what is outside of the task, if it is the inside of a composite."""
         self._ecology, self._outside = ecology, outside
-        self._issuing: dict[IRI, Mapping[str, tuple[Wire, ...]]] = {}
+        self._issuing: dict[IRI, Wires] = {}
         """For each composite that acts for the task, what stands behind its outputs."""
         self._calling: dict[IRI, Mapping[str, tuple[IRI, ...]]] = {}
         """For each composite that acts for the task, which components inside of it call what it needs."""
         self._guessed: set[IRI] = set()
         """The composites that were taken for the ends themselves, as they have not said yet what stands behind them."""
 
-    def moved(
-        self, component: IRI, outputs: Mapping[str, tuple[Wire, ...]], calling: Mapping[str, tuple[IRI, ...]]
-    ) -> bool:
+    def moved(self, component: IRI, outputs: Wires, calling: Mapping[str, tuple[IRI, ...]]) -> bool:
         """Note what stands behind a component now; returns whether others were connected otherwise before."""
         issues_otherwise = self._issuing.get(component, {} if component in self._guessed else outputs) != outputs
         calls_otherwise = self._calling.get(component, {}) != calling
@@ -37,7 +35,7 @@ class PortEnds:
         self._guessed.discard(component)
         return issues_otherwise or calls_otherwise
 
-    def unknown(self, connected: Mapping[str, tuple[Wire, ...]], calling: Callers) -> set[IRI]:
+    def unknown(self, connected: Wires, calling: Callers) -> set[IRI]:
         """The composites among those that feed inputs, or call, which have not said yet what stands behind them."""
         others = {wire.component for some in connected.values() for wire in some}
         others |= {caller.component for some in calling.values() for caller in some}
@@ -48,7 +46,7 @@ class PortEnds:
         found = self._ecology.discovery.found.get(component)
         return found is not None and found.advertisement.profile.inside is not None
 
-    def wires(self, connected: Mapping[str, tuple[Wire, ...]]) -> dict[str, tuple[Wire, ...]]:
+    def wires(self, connected: Wires) -> dict[str, tuple[Wire, ...]]:
         """The outputs behind those that feed each input, each with the longest pause that it promises.
 
         None for an input that follows nothing for now, and will be fed again: a composite is not to do without it, as

@@ -31,7 +31,7 @@ from selfconf.model.immutable import immutable, replace
 from selfconf.model.profile import CALL_MARK, Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Wire
+from selfconf.protocol.messages import Apply, Wire, Wires
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
 from selfconf.sdk.inputs.input_subscription import InputEvents, InputSubscription
@@ -64,7 +64,7 @@ class InputFollower(Protocol):
         ...
 
     @property
-    def issued(self) -> Mapping[str, tuple[Wire, ...]]:
+    def issued(self) -> Wires:
         """Which outputs stand behind those of the component, if they are others."""
         ...
 
@@ -188,7 +188,7 @@ class Inputs:
             self._events.unfed(port)
         return None
 
-    def _tell_unfed(self, known: Set[str], inputs: Mapping[str, tuple[Wire, ...]]) -> None:
+    def _tell_unfed(self, known: Set[str], inputs: Wires) -> None:
         """Tell of the required inputs that nothing feeds: behind a composite may stand nothing just now."""
         for port in self._required - known:
             if not inputs.get(port):
@@ -306,7 +306,7 @@ class Inputs:
         return self._dropped + sum(subscription.dropped for subscription in self._subscriptions.values())
 
     @property
-    def issued(self) -> Mapping[str, tuple[Wire, ...]]:
+    def issued(self) -> Wires:
         """Nothing: the component issues its own outputs."""
         return {}
 
@@ -357,6 +357,6 @@ class Inputs:
                 self._bus.later(0.0, self._let_go)
 
 
-def _signals(inputs: Mapping[str, tuple[Wire, ...]]) -> Iterator[tuple[str, Wire]]:
+def _signals(inputs: Wires) -> Iterator[tuple[str, Wire]]:
     """Yield which inputs are to follow which outputs, operations left out."""
     return ((port, wire) for port, wires in inputs.items() if not port.endswith(CALL_MARK) for wire in wires)

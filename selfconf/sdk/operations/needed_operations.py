@@ -12,7 +12,7 @@ from selfconf.model.profile import CALL_MARK, Profile
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import Apply, Wire
+from selfconf.protocol.messages import Apply, Wires
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import CallStatus, Response
 from selfconf.sdk.component_code import ComponentCode
@@ -46,7 +46,7 @@ class NeededOperations:
         self._bus, self._keys, self._thread, self._profile, self._code = bus, keys, thread, profile, code
         self._signals, self._malformed = signals, malformed
         self._needed = operation_fields(profile.needed_operations, fields)
-        self._wires: Mapping[str, tuple[Wire, ...]] = {}
+        self._wires: Wires = {}
         self._calls = 0
         """How many calls wait for their answers."""
 

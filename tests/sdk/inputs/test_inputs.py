@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -11,7 +11,7 @@ from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.bus.port import Replies, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Wire
+from selfconf.protocol.messages import Wire, Wires
 from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.component import Component
 from selfconf.sdk.inputs.followed_output import JUST_COME
@@ -406,7 +406,7 @@ TO_ODOMETRY = {"position": (Wire(ODOMETRY, "pose"),)}
 class Change:
     """A component that follows the tracker, and is to follow odometry instead, gently."""
 
-    def __init__(self, inputs: Mapping[str, tuple[Wire, ...]] = TO_ODOMETRY) -> None:
+    def __init__(self, inputs: Wires = TO_ODOMETRY) -> None:
         self.stage = Stage(Watchful())
         self.tracker = self.stage.neighbour()
         self.odometry = other_source(self.stage)
