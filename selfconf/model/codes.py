@@ -778,8 +778,9 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
-        "SC-L28", "The class of a role is one of components.",
-        "Signals have classes too, but no component is a signal, so no component can play such a role.",
+        "SC-L28", "A component has classes of components, and a signal type is a class of signals.",
+        "A component has ports, a port has a signal type, and that is a class of signals. What names one for another "
+        "matches nothing: no component can play such a role.",
         f"{_TEMPLATE}\n{_SOURCE}\n:sink a sc:Role ; sh:class rob:Audio .", _PAIR,
         severity=Severity.WARNING,
     ),

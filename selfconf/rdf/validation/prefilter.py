@@ -112,6 +112,10 @@ class Prefiltered:
     """The terms of vocabularies that the file uses: predicates, classes, signal types, datatypes."""
     signals: set[str] = field(default_factory=set)
     """The signal types of ports."""
+    component_types: set[str] = field(default_factory=set)
+    """The types of components."""
+    port_types: set[str] = field(default_factory=set)
+    """The signal types of ports, and what operations take and answer."""
     literals: set[tuple[str, str, str]] = field(default_factory=set)
     """The literals by predicate, datatype and text; of strings, which are many and all of one kind, without text."""
     subjects: set[str] = field(default_factory=set)
@@ -223,11 +227,14 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
             found.ranges.update((subject, kind) for kind in properties.get(RDFS.range, ()) if isinstance(kind, str))
     if SC.Component in types:
         found.components.append(subject)
+        found.component_types.update(kind for kind in types if isinstance(kind, str))
     if SC.Template in types:
         found.templates[subject] = Counter()
     found.answers = found.answers or SC.Configuration in types
     for predicate in _REFERRING:
         found.referred.update(value for value in properties.get(predicate, ()) if isinstance(value, str))
+    for predicate in (SC.signalType, SC.request, SC.response):
+        found.port_types.update(value for value in properties.get(predicate, ()) if isinstance(value, str))
     signals = properties.get(SC.signalType, ())
     found.signals.update(value for value in signals if isinstance(value, str) and value[:2] != "_:")
     found.relevant = found.relevant or any(_validated(term) for term in (*properties, *types))

@@ -14,7 +14,7 @@ from itertools import chain
 from selfconf.model.literal_values import of_range
 from selfconf.model.strong_components import strong_components
 from selfconf.rdf.validation.prefilter import Prefiltered
-from selfconf.rdf.vocabulary import OWL, RDF, RDFS, SC, SH, XSD
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, XSD
 
 _USUAL = frozenset(
     (
@@ -76,6 +76,7 @@ class TermIndex:
     """The strongly connected components of `above` and of `equal`."""
     _strange: dict[str, bool] = field(default_factory=dict)
     _confused: dict[str, str | None] = field(default_factory=dict)
+    _above: dict[str, set[str]] = field(default_factory=dict)
 
     def learn(self, seen: Prefiltered) -> None:
         """Take up what a file declares; of one that declares classes or properties, everything that it speaks of.
@@ -96,6 +97,7 @@ class TermIndex:
         self._strange.clear()
         self._confused.clear()
         self._upper.clear()
+        self._above.clear()
 
     def strange(self, iri: str) -> bool:
         """Whether an IRI lies in a covered or standard namespace, but is not known there at first sight."""
@@ -123,6 +125,20 @@ class TermIndex:
     def serves(self, offered: str, wanted: str) -> bool:
         """Whether a class is another or lies below it, by what the loaded ontologies say."""
         return wanted in self.at_or_above(offered)
+
+    def classes_signals(self, kind: str) -> bool:
+        """Whether a class is one of signals, and not of components as well."""
+        return self._is_of(kind, ROB.Signal, SC.Component)
+
+    def classes_components(self, kind: str) -> bool:
+        """Whether a class is one of components, and not of signals as well."""
+        return self._is_of(kind, SC.Component, ROB.Signal)
+
+    def _is_of(self, kind: str, one: str, other: str) -> bool:
+        above = self._above.get(kind)
+        if above is None:
+            above = self._above[kind] = self.at_or_above(kind)
+        return one in above and other not in above
 
     def at_or_above(self, offered: str) -> set[str]:
         """A class or property with all that the loaded ontologies put above it."""
@@ -181,6 +197,8 @@ class TermIndex:
             or any(self.confused(iri) for _, iri in seen.prefixes)
             or any(self.confused(home) for home in set(map(namespace, seen.used)))
             or any(component.startswith("file:") for component in seen.components)
+            or any(map(self.classes_signals, seen.component_types))
+            or any(map(self.classes_components, seen.port_types))
         )
 
 

@@ -11,6 +11,11 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
 from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies
+from selfconf.rdf.validation.lints.signal_classes import (
+    components_as_signals,
+    misplaced_classes_in_shapes,
+    signals_among_types,
+)
 from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
 from selfconf.rdf.validation.lints.templates import (
     borrowed_parameters,
@@ -62,6 +67,8 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unfit_literals,
     local_components,
     misnamed_units,
+    signals_among_types,
+    components_as_signals,
     circular_hierarchies,
     mixed_hierarchies,
 )
@@ -71,6 +78,7 @@ TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     typed_roles,
     unselective_roles,
     signals_for_components,
+    misplaced_classes_in_shapes,
     unused_parameters,
     unlisted_parameters,
     borrowed_parameters,

@@ -17,7 +17,7 @@ from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.contradictions import ShapeContradiction, contradictions, entails
 from selfconf.rdf.validation.lints.normal_form import NormalForm
 from selfconf.rdf.validation.term_index import OWN, STANDARD, namespace
-from selfconf.rdf.vocabulary import ROB, SC
+from selfconf.rdf.vocabulary import SC
 
 _NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
 """An IRI in a query, or a prefix and what follows it."""
@@ -125,7 +125,7 @@ def signals_for_components(file: LintedFile) -> Iterator[Diagnostic]:
             kind = str(statement[2])
             if statement[1] != SH["class"] or statement not in file.positions.triples:
                 continue
-            if file.index.serves(kind, ROB.Signal) and not file.index.serves(kind, SC.Component):
+            if file.index.classes_signals(kind):
                 short = file.short(kind)
                 message = f"{short} is a kind of signals, so no component is one, and none can play this role."
                 path = f"sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue {short} ]"
