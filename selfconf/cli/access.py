@@ -7,6 +7,7 @@ from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, joined
+from selfconf.cli.tasks import code_of_tasks
 from selfconf.cli.terminal import complain, display_json
 from selfconf.errors import AuthorError
 from selfconf.model.wording import client_text, utc_text
@@ -34,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """0; 1 if a task is asked for that no configurator runs."""
+    """0; 1 if a task is asked for that no configurator runs, and 2 where one that does not answer may run it."""
     if given.believe is not None:
         return _believe(given, *given.believe)
     with joined(given) as ecology:
@@ -68,11 +69,12 @@ def _believe(given: argparse.Namespace, site: str, component: str) -> int:
 
 def _task(given: argparse.Namespace, ecology: LivingEcology) -> int:
     links = ecology.links_of(given.task)
-    if links is None:
-        complain(f"no configurator runs a task {given.task!r}")
-        return 1
     for one in ecology.complaints:
         complain(one)
+    if links is None:
+        code = code_of_tasks(ecology)
+        complain(f"no configurator{' that answers' * bool(code)} runs a task {given.task!r}")
+        return code or 1
     if given.format == "json":
         display_json({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]})
         return 0

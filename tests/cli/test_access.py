@@ -11,6 +11,7 @@ from selfconf.access import Principal, PrincipalKind, believed
 from tests.cli.command import run
 from tests.cli.processes import Home, component_of, dormant
 from tests.harness.effort import of_keys
+from tests.suspended_run import suspended_run
 
 pytestmark = pytest.mark.process
 
@@ -65,6 +66,17 @@ def test_a_task_says_whom_each_component_hears(running: Home, capsys: pytest.Cap
     assert "hears" in run(capsys, "access", *running.arguments(), "--task", "walk").out
     nobody = run(capsys, "access", *running.arguments(), "--task", "sleep")
     assert (nobody.code, nobody.out) == (1, "")
+
+
+def test_a_task_of_a_run_that_is_suspended_is_not_taken_for_none(
+    running: Home, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(running.runtime))
+    with suspended_run(running.ecology, "sleep", running.endpoint()) as program:
+        found = run(capsys, "access", *running.arguments(), "--task", "sleep")
+    suspended, none = found.err.splitlines()
+    assert (found.code, found.out, none) == (2, "", "no configurator that answers runs a task 'sleep'")
+    assert suspended.startswith(f"process {program.pid} of this machine, which runs the task 'sleep', is suspended;")
 
 
 def test_a_reader_looks_on_and_is_told_that_it_may_do_no_more(

@@ -283,8 +283,8 @@ class LivingEcology(Ecology):
         return logs_of_other_sites(self._synchronous, self._view.keys, known, complain, hint)
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
-        """The sources of each component of a deployed task, as a configurator says; None if none runs it."""
-        running = self._tasks.running()
+        """The sources of each component of a deployed task, as its configurator says; None if none answers for it."""
+        running = self._complaining(self._tasks, self._tasks.running())
         names = {status.configurator for status in running if status.name == task}
         if not names:
             return None
