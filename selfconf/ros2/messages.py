@@ -332,10 +332,13 @@ def _numbers(datatype: str, given: Any) -> Any:
     if isinstance(given, list | tuple):
         given = [0 if one is None else one for one in given]
     numbers = numpy.frombuffer(given, "uint8") if isinstance(given, bytes | bytearray) else numpy.asarray(given)
+    wanted = numpy.dtype(_DTYPES.get(datatype, datatype))
     if numbers.ndim == 1 and numbers.dtype.kind in "biuf":
+        if numbers.dtype.kind == "f" and wanted.kind in "iu":  # so NumPy has 2**63 beside 1, to the next double
+            numbers = numpy.asarray(given, object)
         with numpy.errstate(all="ignore"):
-            made = numbers.astype(_DTYPES.get(datatype, datatype))
-        if numpy.array_equal(*((made, numbers) if made.dtype.kind != "f" else map(numpy.isfinite, (made, numbers)))):
+            made = numbers.astype(wanted)
+        if numpy.array_equal(*((made, numbers) if wanted.kind != "f" else map(numpy.isfinite, (made, numbers)))):
             return made
     raise MessageError(f"has a value that is no {datatype}[]")
 

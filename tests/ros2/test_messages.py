@@ -96,6 +96,13 @@ def test_an_array_of_numbers_may_be_written_in_several_ways() -> None:
         assert messages.message({"data": given}, numbers) == wanted
 
 
+def test_whole_numbers_are_written_exactly_though_a_double_has_not_all_of_them() -> None:
+    for name, given in {"UInt64": [1, None, (1 << 63) + 1], "Int64": [(1 << 53) + 1, 1.0, -(1 << 63)]}.items():
+        kind = usual(f"std_msgs/msg/{name}MultiArray")
+        read = messages.message_fields(messages.message({"data": given}, kind), kind)["data"]
+        assert read.tolist() == [one or 0 for one in given]
+
+
 def test_a_byte_has_no_sign() -> None:
     one, several = usual("std_msgs/msg/Byte"), usual("std_msgs/msg/ByteMultiArray")
     assert messages.message_fields(messages.message({"data": 200}, one), one) == {"data": 200}
