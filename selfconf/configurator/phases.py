@@ -127,8 +127,12 @@ def queue(state: State) -> Reaction:
 
 
 def stand_down(state: State) -> Reaction:
-    """Another configurator goes on with this task: leave everything as it is to that one."""
-    effects: list[Effect] = [Unwatch(component) for component in sorted(state.watched)]
+    """Another configurator goes on with this task: leave everything as it is to that one.
+
+    But for what is not needed any more, of which that one does not know.
+    """
+    state, releases = release_rest(state) if state.phase is Phase.RUNNING else (state, ())
+    effects: list[Effect] = [*releases, *(Unwatch(component) for component in sorted(state.watched))]
     left = replace(
         state,
         phase=Phase.STOPPED,

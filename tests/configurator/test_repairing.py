@@ -18,8 +18,10 @@ from selfconf.configurator.events import (
     Call,
     Discovered,
     Failed,
+    HandedOver,
     Improvable,
     Rewired,
+    Stopped,
 )
 from selfconf.configurator.state import Phase, Policy
 from selfconf.model.configuration import Assignment, Configuration, Connection
@@ -330,6 +332,22 @@ def test_what_has_not_come_to_rest_as_another_configuration_is_looked_for_is_rel
     else:
         assert released(history.hear(Failed(ODOMETRY, "1", Cause.CRASH))) == [ODOMETRY, CONTROL]
     assert history.state.unreleased == ()
+
+
+def test_what_has_not_come_to_rest_as_the_task_is_handed_over_is_released_at_once() -> None:
+    """The configurator that goes on with the task knows of no component that has been let go of."""
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    history.composed(Configuration(navigation().template, (Assignment(IRI("urn:r:position"), (ODOMETRY,)),)))
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    assert released(history.answer(ODOMETRY, Call.APPLY)) == [DRIVE]
+    assert released(history.hear(HandedOver())) == [CONTROL]
+
+
+def test_what_comes_to_rest_as_the_task_is_handed_over_is_left_to_the_other_configurator() -> None:
+    history = History(TASK).running()
+    assert released(history.hear(Stopped())) == [DRIVE]
+    assert released(history.hear(HandedOver())) == []
 
 
 def test_an_actuator_that_has_not_said_that_it_acts_is_not_started_before_the_rest_acts() -> None:
