@@ -7,8 +7,9 @@ from fractions import Fraction
 from math import lcm
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import cost
+from selfconf.model.cost import cost, unknown
 from selfconf.model.partition import Candidate
+from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 
@@ -51,6 +52,11 @@ class CostTable:
         self._number = [
             {c.profile.component: number for number, c in enumerate(candidates)} for candidates in problem.candidates
         ]
+
+    @property
+    def order(self) -> dict[int, list[int]]:
+        """For each role that has slots its candidates by number, the cheapest first, else as they come."""
+        return {role: sorted(range(len(row)), key=row.__getitem__) for role, row in enumerate(self.of) if row}
 
     def _whole(self, level: int, amount: Fraction) -> int:
         """Return an amount of a level as a whole number of its units."""
@@ -110,6 +116,18 @@ def _exact_costs(problem: Problem, running: Configuration | None) -> list[list[t
         [row(role.iri, candidate) for candidate in candidates] if role.minimum else []
         for role, candidates in zip(problem.roles, problem.candidates, strict=True)
     ]
+
+
+def missing_of(
+    problem: Problem, playing: Sequence[Sequence[Candidate]], recruits: Iterable[Profile] = ()
+) -> tuple[tuple[IRI, IRI], ...]:
+    """Return the components of a solution, each with a property that a term of the cost asks of it in vain."""
+    players = [(role.iri, c.profile) for role, some in zip(problem.roles, playing, strict=True) for c in some]
+    return tuple(
+        (profile.component, wanted)
+        for role, profile in (*players, *((NO_ROLE, profile) for profile in recruits))
+        for wanted in unknown(problem.task.template.cost, role, profile, problem.hierarchy)
+    )
 
 
 def recruit_cost(problem: Problem, number: int, running: Configuration | None) -> tuple[Fraction, ...]:

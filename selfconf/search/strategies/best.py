@@ -24,19 +24,18 @@ from __future__ import annotations
 from itertools import accumulate
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import unknown
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.search import explain
 from selfconf.search.budget import Budget
-from selfconf.search.cost_table import LEADING_LEVELS, CostTable
+from selfconf.search.cost_table import LEADING_LEVELS, CostTable, missing_of
 from selfconf.search.engines import ClauseSolver, ReducedSearch, least_of_clauses, minimise, solver_available
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import refusal_of_recruits
 from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, assigned, in_order, pruned, reduced
-from selfconf.search.strategies.best_recruited import best_with_recruits, with_priced_recruits
+from selfconf.search.strategies.best_recruited import best_with_recruits, slot_weights, with_priced_recruits
 from selfconf.search.strategies.first import solution
 
 BRANCHING_STEPS = 20_000
@@ -75,28 +74,21 @@ def _best_players(given: LazyReduction, steps: int, running: Configuration | Non
     if playing is None:
         return explain.refusal(given)
     costs = CostTable(problem, running)
-    order = {
-        role: sorted(range(len(problem.candidates[role])), key=costs.of[role].__getitem__)
-        for role, asked in enumerate(problem.roles)
-        if asked.minimum
-    }
-    part = pruned(reduced(problem, order=order))
+    part = pruned(reduced(problem, order=costs.order))
     playing, bound, first = _cheapest(problem, part, costs, playing, steps)
     spent = costs.levels(playing)
     least = spent if first else costs.levels_of(bound, len(part.slots))
-    missing = [
-        (candidate.profile.component, wanted)
-        for role, some in zip(problem.roles, playing, strict=True)
-        for candidate in some
-        for wanted in unknown(problem.task.template.cost, role.iri, candidate.profile, problem.hierarchy)
-    ]
     # Where a leading level could be less, the bounds of the stated levels hold no more: all that is left to say of
     # these is what the cheapest candidates cost.
     tight = least[:LEADING_LEVELS] == spent[:LEADING_LEVELS]
     bounds = least if tight else costs.levels_of(0, len(part.slots))
-    configuration = solved(problem, playing, running)
     return Optimum(
-        configuration, spent[LEADING_LEVELS:], bounds[LEADING_LEVELS:], tuple(missing), spent == least, first
+        solved(problem, playing, running),
+        spent[LEADING_LEVELS:],
+        bounds[LEADING_LEVELS:],
+        missing_of(problem, playing),
+        proved=spent == least,
+        first=first,
     )
 
 
@@ -175,13 +167,7 @@ def _by_cores(part: ReducedProblem, costs: CostTable, budget: Budget) -> tuple[l
     """
     ordered = in_order(part)
     with ClauseSolver(ordered) as clauses:
-        weights: dict[int, int] = {}
-        unavoidable = 0
-        for role in dict.fromkeys(ordered.slots):
-            of_role = [costs.of[role][option.number] for option in ordered.options[role]]
-            unavoidable += min(of_role) * ordered.slots.count(role)
-            for literal, amount in zip(clauses.plays[role], of_role, strict=True):
-                weights[literal] = amount - min(of_role)
+        weights, unavoidable = slot_weights(clauses, ordered, costs)
         more, proved, lightest = minimise(clauses, weights, budget)
         found = least_of_clauses(clauses, budget) if proved else None
         if isinstance(found, list):

@@ -16,21 +16,19 @@ nothing is proved.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, partial
 
 from selfconf.model.configuration import Configuration
-from selfconf.model.cost import cost, unknown
+from selfconf.model.cost import cost
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.optimum import Optimum
 from selfconf.model.partition import Candidate
-from selfconf.model.profile import Profile
 from selfconf.model.refusal import Undecided
-from selfconf.model.term import IRI
 from selfconf.search.budget import Budget
-from selfconf.search.cost_table import LEADING_LEVELS, NO_ROLE, CostTable, recruit_cost
-from selfconf.search.engines import FoundedSolver, least_of_clauses, minimise
+from selfconf.search.cost_table import LEADING_LEVELS, NO_ROLE, CostTable, missing_of, recruit_cost
+from selfconf.search.engines import ClauseSolver, FoundedSolver, least_of_clauses, minimise
 from selfconf.search.extension import solved, with_further_players
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import (
@@ -59,11 +57,6 @@ def best_with_recruits(
     if problem.valueless:
         return None
     candidates = CostTable(problem, running)
-    order = {
-        role: sorted(range(len(problem.candidates[role])), key=candidates.of[role].__getitem__)
-        for role, asked in enumerate(problem.roles)
-        if asked.minimum
-    }
     kept = frozenset(() if running is None else running.recruits)
 
     def preference(number: int) -> tuple[bool, int]:
@@ -72,7 +65,7 @@ def best_with_recruits(
     def rank(number: int) -> tuple[Fraction, ...]:
         return *recruit_cost(problem, number, running), *map(Fraction, preference(number))
 
-    part = in_order(pruned(with_recruits(problem, (), order, rank)))
+    part = in_order(pruned(with_recruits(problem, (), candidates.order, rank)))
     numbers = [option.number for option in part.options[-1]]
     costs = CostTable(problem, running, numbers)
     rewarded = any(amount < 0 for amount in costs.of_recruit.values())
@@ -92,7 +85,7 @@ def best_with_recruits(
         with_further_players(problem, choice.configuration(brought), running),
         spent[LEADING_LEVELS:],
         bounds[LEADING_LEVELS:],
-        tuple(_missing(problem, found.players, [problem.supply.recruits[n].profile for n in brought])),
+        missing_of(problem, found.players, [problem.supply.recruits[number].profile for number in brought]),
         proved=spent == least,
         first=search.first,
     )
@@ -103,14 +96,16 @@ def _lowest(costs: CostTable) -> int:
     return sum(reward * base for reward, base in zip(costs.rewards, costs.base, strict=True))
 
 
-def _missing(
-    problem: Problem, players: Sequence[Sequence[Candidate]], recruits: Iterable[Profile]
-) -> Iterable[tuple[IRI, IRI]]:
-    """Yield the components and the properties that terms ask of them in vain."""
-    counted = [(role.iri, c.profile) for role, some in zip(problem.roles, players, strict=True) for c in some]
-    for role, profile in (*counted, *((NO_ROLE, profile) for profile in recruits)):
-        for wanted in unknown(problem.task.template.cost, role, profile, problem.hierarchy):
-            yield profile.component, wanted
+def slot_weights(clauses: ClauseSolver, part: ReducedProblem, costs: CostTable) -> tuple[dict[int, int], int]:
+    """Return by literal by how much a candidate costs more than the cheapest of its role, and what these cost."""
+    weights: dict[int, int] = {}
+    unavoidable = 0
+    for role in dict.fromkeys(part.slots):
+        of_role = [costs.of[role][option.number] for option in part.options[role]]
+        unavoidable += min(of_role) * part.slots.count(role)
+        for literal, amount in zip(clauses.plays[role], of_role, strict=True):
+            weights[literal] = amount - min(of_role)
+    return weights, unavoidable
 
 
 class _CheapestSearch:
@@ -146,13 +141,7 @@ class _CheapestSearch:
     def _weights(self) -> tuple[Mapping[int, int], int]:
         """Return the weights of literals, none below zero, and what every solution costs beside them."""
         clauses, costs = self.clauses, self.costs
-        weights: dict[int, int] = {}
-        unavoidable = 0
-        for role in dict.fromkeys(self.part.slots):
-            of_role = [costs.of[role][option.number] for option in self.part.options[role]]
-            unavoidable += min(of_role) * self.part.slots.count(role)
-            for literal, amount in zip(clauses.plays[role], of_role, strict=True):
-                weights[literal] = amount - min(of_role)
+        weights, unavoidable = slot_weights(clauses, self.part, costs)
         for number, literal in clauses.recruits.items():
             amount = costs.of_recruit[number]
             weights[literal if amount > 0 else -literal] = abs(amount)
@@ -218,7 +207,7 @@ def _priced(problem: Problem, optimum: Optimum, configuration: Configuration, ru
         configuration=configuration,
         bound=_with_cheapest(problem, optimum.bound if tight else lowest[LEADING_LEVELS:]),
         cost=spent[LEADING_LEVELS:],
-        missing=tuple(_missing(problem, players, [profiles[number] for number in chosen])),
+        missing=missing_of(problem, players, [profiles[number] for number in chosen]),
         proved=optimum.proved and not configuration.recruits and not cheaper,
     )
 
