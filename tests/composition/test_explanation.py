@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import pytest
+
 from selfconf.composition import Composer, TimeLimit, explained
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.refusal import Refusal
@@ -86,6 +88,20 @@ def test_to_take_a_near_miss_would_do_if_what_it_sends_along_lies_below_what_is_
     above = Hierarchy([(iri("Special"), iri("CeilingCamera"))])
     assert accepted_near_misses(SHOWN % ("", OLD), ads % "Special", above) == [iri("s")]
     assert accepted_near_misses(SHOWN % ("", OLD), ads % "Camera", above) == []
+
+
+@pytest.mark.parametrize("others", ["", ":f a sc:Component, :Camera ; :age 1 ; :at :hall ."], ids=["alone", "one more"])
+def test_to_take_a_near_miss_would_do_if_it_states_what_a_role_is_set_to(others: str) -> None:
+    """Beside a camera without an output the near miss states a further value, alone it states the only one."""
+    where = " ; sh:property [ sh:path :at ; sh:in ( :room ) ]"
+    set_ = " ; sc:sets [ sc:parameterType :Place ; sc:value :room ]"
+    room = SHOWN.replace("sc:roles", "sc:parameter :room ; sc:roles") + '\n:room a sc:Parameter ; sc:name "room" .'
+    ads = (
+        seeing("fast", 5).replace(":age 3", ":age 3 ; :at :kitchen")
+        + others
+        + SCREEN.replace(":age 3", ":age 3 ; sc:hasParameter [ sc:name 'place' ; sc:parameterType :Place ]")
+    )
+    assert accepted_near_misses(room % (OLD + where, set_), ads) == [iri("fast")]
 
 
 def test_that_a_hierarchy_would_do_is_a_hint_where_none_was_seen() -> None:

@@ -10,7 +10,7 @@ component states a value of has to be a variable as well, and so have all values
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from selfconf.model.immutable import replace
 from selfconf.model.partition import ANY_VALUE, Candidate, Mention, Variable
@@ -66,8 +66,23 @@ def with_mentioned_variables(problem: Problem) -> Problem:
     for mention in itertools.chain(*problem.partition.mentions):
         if mention.parameter not in fixed:
             listed.setdefault(mention.parameter, set()).update(mention.only or ())
-    variables = [_wider(one, listed.pop(one.parameter, set())) for one in problem.variables]
-    more = [Variable(parameter, tuple(sorted(listed[parameter], key=sort_key))) for parameter in sorted(listed)]
+    return _with_values_in_domains(problem, listed)
+
+
+def with_stated_values(problem: Problem, stated: Mapping[IRI, Set[Term]]) -> Problem:
+    """Return a problem in which roles may be set to what a further component states for their free parameters.
+
+    The same one where it states no value for them that no other component does.
+    """
+    listed = {variable.parameter for variable in problem.variables if variable.listed}
+    is_set = {parameter.iri for parameter in problem.task.template.parameters if parameter.is_set} - listed
+    return _with_values_in_domains(problem, {one: {*stated[one]} for one in is_set & stated.keys() if stated[one]})
+
+
+def _with_values_in_domains(problem: Problem, values: dict[IRI, set[Term]]) -> Problem:
+    """Return a problem in which parameters are variables that may have some values besides; the same one if they do."""
+    variables = [_wider(one, values.pop(one.parameter, set())) for one in problem.variables]
+    more = [Variable(parameter, tuple(sorted(values[parameter], key=sort_key))) for parameter in sorted(values)]
     if not more and tuple(variables) == problem.variables:
         return problem
     any_ = (ANY_VALUE,) * len(more)
