@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from selfconf.errors import PeerError
@@ -122,7 +123,8 @@ def told_why(
 def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequence[str]]) -> list[str]:
     """Why the roles of a task are played as they are, and its recruits, of those that a term means; else none.
 
-    The term is a role, a component, a value that the task is bound to, or its name; an IRI or its local name.
+    The term is a role, a component, a value that the task is bound to, or its name; an IRI or its local name, without
+    brackets and prefix.
     `passed_over` are by role the candidates that go before the chosen ones, as far as that is known.
     """
     if found.refusal is not None:
@@ -147,10 +149,10 @@ def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Seque
         for component, event in lost.items()
         if component not in playing
     ]
-    for role, others in passed_over.items():
-        if not lost and any(_means(term, one) for one in others):
-            chosen = ", ".join(map(_name, _components(found.configuration, role)))
-            sentences.append(f"{_name(term)} goes before {chosen} for the role {_name(role)}, and was passed over")
+    for role, others in passed_over.items() if not lost else ():
+        chosen = ", ".join(map(_name, _components(found.configuration, role)))
+        for one in filter(partial(_means, term), others):
+            sentences.append(f"{_name(one)} goes before {chosen} for the role {_name(role)}, and was passed over")
     return sentences
 
 
@@ -278,9 +280,8 @@ def _bindings(found: TaskStory) -> list[object]:
 
 
 def _means(term: str, thing: str) -> bool:
-    """Whether a term names a thing: by its IRI, or by its local name with or without a prefix."""
-    _, colon, local = term.partition(":")  # the IRI `urn:dev:lamp:1` is no prefix with the name `1`
-    return term.strip("<>") == thing or (local if colon else term) == _name(thing)
+    """Whether a term is the IRI or the local name of a thing."""
+    return term in (thing, _name(thing))
 
 
 def _name(thing: object) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import Any
 
+from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.deployed import connected, deployed_body
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.own_answers import own_answers
@@ -56,6 +57,7 @@ class Configurators:
 
     def why(self, term: str, at: float | None) -> list[str]:
         """Why components play the roles that a term means, in sentences; at a moment, or now."""
+        meant = iri_or_local_name(term)
         told: dict[str, list[Notice]] = {}
         samples = self._bus.ask(self._keys.notices()).samples
         answers, rejected = own_answers(samples, Notice, lambda one: self._keys.notices(one.configurator))
@@ -69,7 +71,7 @@ class Configurators:
         for configurator, notices in sorted(told.items()):
             events = [notice.event for notice in sorted(notices, key=lambda notice: notice.sequence)]
             try:
-                sentences += told_why(task_name(notices[0].task), events, term, at, passed_over.get(configurator, {}))
+                sentences += told_why(task_name(notices[0].task), events, meant, at, passed_over.get(configurator, {}))
             except PeerError as error:
                 rejected.append(f"left out an answer: {error}")
         self.complaints = tuple(rejected)

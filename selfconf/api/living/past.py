@@ -16,6 +16,7 @@ from typing import Any
 
 import pyoxigraph as ox
 
+from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.deployed import deployed_body
 from selfconf.errors import AuthorError
 from selfconf.model.immutable import immutable
@@ -105,7 +106,7 @@ def past_why(folder: Path, term: str, at: float | None) -> list[str]:
     for (task, _), several in sorted(by_task.items(), key=lambda item: item[1][0].generated):
         meant = [one for one in several if at is None or one.generated <= at]
         if meant:
-            sentences += told_why(task, _events(several), term, at, meant[-1].passed_over)
+            sentences += told_why(task, _events(several), iri_or_local_name(term), at, meant[-1].passed_over)
     return sentences
 
 

@@ -20,6 +20,7 @@ ROBOT = "https://w3id.org/selfconf/peis-home#astrid-drive"
         ("g:fühler", "fühler"),
         ("urn:dev:mac:0024", "urn:dev:mac:0024"),
         ("<urn:clock>", "urn:clock"),
+        ("urn:clock", "urn:clock"),
         ("", ""),
     ],
 )

@@ -137,6 +137,17 @@ def test_a_task_goes_by_the_name_that_it_ran_by(tmp_path: Path) -> None:
     assert past_why(tmp_path, "patrol", None)
 
 
+@pytest.mark.parametrize("named", ["tracker", "x:tracker", iri("tracker"), f"<{iri('tracker')}>"])
+def test_what_was_passed_over_is_told_by_its_name_however_it_was_typed(tmp_path: Path, named: str) -> None:
+    history = History(tmp_path, Clock())
+    never_lost = told(1, "odometry", "tracker", Clock.now).replace(b"wasInfluencedBy", b"wasDerivedFrom")
+    history.note({GRAPH: never_lost})
+    history.close()
+    sentence = "tracker goes before odometry for the role position, and was passed over"
+    assert past_why(tmp_path, named, None) == [sentence]
+    assert past_why(tmp_path, "home:tracker", None) == []  # another namespace than that of the test
+
+
 def test_a_folder_in_it_is_passed_over(kept: Path) -> None:
     known = past_graphs(kept)
     (kept / "lost+found").mkdir()
