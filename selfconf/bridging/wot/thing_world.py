@@ -307,8 +307,9 @@ def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[Describ
     ledger = ImportLedger(NAMESPACE, unreadable.append)
     documents = fetched or gather([source], DESCRIPTIONS, unreadable.append)
     found = list(described_things(documents, ledger))
-    # An import calls the second of two of one name otherwise, as each gets a file; here they are one thing.
-    was = {one.component: one.was for one in ledger.names.renamed}
+    # An import calls the second of two of one name otherwise, as each gets a file; here they are one thing, if they
+    # say that name themselves: two files may be called alike but for letters that no name has.
+    was = {one.component: one.was for one in ledger.names.renamed if not one.was.startswith(NAMESPACE)}
     names = [was.get(thing.component.iri, thing.component.iri) for thing in found]
     return [
         replace(thing, component=replace(thing.component, iri=name)) for thing, name in zip(found, names, strict=True)

@@ -68,6 +68,20 @@ def test_a_thing_that_a_source_describes_twice_is_one_component(
         assert [path.name for path in found.folder.glob("*.ttl")] == ["urn-thing-lamp-1.ttl"]
 
 
+def test_things_that_have_no_identifier_are_not_one_as_their_files_have_like_names(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server, folder = thing_server(), tmp_path / "things"
+    server.values["/on"] = True
+    folder.mkdir()
+    for name in ("Lampe Küche", "Lampe Kuche", "Lampe-K-che"):
+        description = {member: said for member, said in server.describe(title=name).items() if member != "id"}
+        (folder / f"{name}.json").write_text(json.dumps(description))
+    with bridging(living, tmp_path / "ads", str(folder)) as found:
+        assert until(lambda: len(list(found.folder.glob("*.ttl"))) == 3)
+        assert not found.complained("is described twice")
+
+
 def test_a_thing_that_is_described_with_more_is_advertised_anew_once_no_task_holds_it(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:
