@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from rdflib import RDF, SH, BNode, Literal, URIRef
 from rdflib.term import Node
@@ -26,7 +26,9 @@ _READ_IN_SHAPES = PERMITTED_IN_SHAPES.union(
     for name in ("sparql", "prefixes", "declare", "targetNode", "targetClass", "targetSubjectsOf", "targetObjectsOf")
 )
 _INSTEAD_OF_WORDS: Mapping[str, str] = {
-    vocabulary.SH.value: "Did you mean sh:hasValue?",
+    **dict.fromkeys((vocabulary.SH.value, SC.value), "Did you mean sh:hasValue?"),
+    SC.signalType: "Write [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue ... ].",
+    SC.name: "Write [ sh:path ( sc:hasOutput sc:name ) ; sh:hasValue ... ].",
     vocabulary.SH.resultMessage: "Did you mean sh:message?",
     vocabulary.SH.resultSeverity: "Did you mean sh:severity?",
     **dict.fromkeys((vocabulary.SH.select, vocabulary.SH.ask), "Write sh:sparql [ sh:select ... ]."),
@@ -188,18 +190,26 @@ def properties_of_roles(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def idle_words(file: LintedFile) -> Iterator[Diagnostic]:
-    """Words of SHACL in the shape of a role that are read of other things alone, as `sh:value` is of results."""
+    """Words in the shape of a role that are read of other things alone, as `sh:value` is of results.
+
+    In shapes that are no roles this goes for all words of selfconf as well.
+    """
     roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
     said = {one for role in roles for one in _said_for(file, role)}
-    leading = {(str(predicate), value) for _, predicate, value in said}
-    shapes = roles | {value for predicate, value in leading if predicate in (SC.recruits, *SHAPE_VALUED)}
-    shapes |= {shape for predicate, head in leading if predicate in LISTS_OF_SHAPES for shape in file.items(head)}
+    shapes = roles | _shapes_named(file, said)
     for shape, predicate, value in said:
         word = str(predicate)
-        idle = isinstance(predicate, URIRef) and predicate in SH and word not in _READ_IN_SHAPES
+        idle = (word in vocabulary.SH and word not in _READ_IN_SHAPES) or (word in SC and shape not in roles)
         if shape in shapes and idle and (offsets := file.positions.triples.get((shape, predicate, value))):
             message = f"{file.short(word)} says nothing in a shape, so this is passed over."
             yield at(file.positions, offsets.predicate, "SC-L25", message, hint=_INSTEAD_OF_WORDS.get(word))
+
+
+def _shapes_named(file: LintedFile, said: Iterable[tuple[Node, Node, Node]]) -> set[Node]:
+    """The shapes that some statements name or hold."""
+    leading = {(str(predicate), value) for _, predicate, value in said}
+    named = {value for predicate, value in leading if predicate in (SC.recruits, *SHAPE_VALUED)}
+    return named | {shape for predicate, head in leading if predicate in LISTS_OF_SHAPES for shape in file.items(head)}
 
 
 def unused_parameters(file: LintedFile) -> Iterator[Diagnostic]:

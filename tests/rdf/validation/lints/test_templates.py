@@ -54,6 +54,11 @@ def test_a_parameter_of_another_template_is_noticed_where_a_role_mentions_it(sai
     ("shape", "hint"),
     [
         ("sh:property [ sh:path rob:place ; sh:value :hall ]", "Did you mean sh:hasValue?"),
+        ("sh:property [ sh:path rob:place ; sc:value :hall ]", "Did you mean sh:hasValue?"),
+        (
+            "sh:property [ sh:path sc:hasOutput ; sc:name 'image' ]",
+            "Write [ sh:path ( sc:hasOutput sc:name ) ; sh:hasValue ... ].",
+        ),
         ("sh:node [ sh:property [ sh:path :p ; sh:minCount 1 ; sh:resultMessage 'so' ] ]", "Did you mean sh:message?"),
         ("sh:or ( [ sh:class :A ] [ sh:value :a ] )", "Did you mean sh:hasValue?"),
         ("sh:select 'SELECT $this WHERE { $this ?p 1 }'", "Write sh:sparql [ sh:select ... ]."),

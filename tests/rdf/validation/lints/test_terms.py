@@ -331,3 +331,34 @@ def test_what_a_shape_asks_of_a_longer_path_is_left_alone() -> None:
 def test_a_list_of_thousands_may_be_asked_for() -> None:
     many = " ".join(f":p{number}" for number in range(3000))
     assert only(f"{TEMPLATE}:r sh:property [ sh:path rob:place ; sh:in ( {many} 'kitchen' ) ] .").code == "SC-L07"
+
+
+COSTED = TEMPLATE + ":t sc:cost ( [ sc:term [ sc:property rob:latency ; {} ] ] ) ."
+INSIDE = TEMPLATE + ":a a sc:Component, rob:Lamp ; sc:grounding {} ."
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        (COSTED.format("sc:role :r"), COSTED.format("sc:ofRole :r")),
+        (COSTED.format("sc:of :r"), COSTED.format("sc:ofRole :r")),
+        (INSIDE.format(":t"), INSIDE.format("[ sc:template :t ]")),
+        (INSIDE.format("[ sc:task :t ]"), INSIDE.format("[ sc:template :t ]")),
+        (
+            TEMPLATE + ":r sc:signalType rob:Image .",
+            TEMPLATE + ":r sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue rob:Image ] .",
+        ),
+        (
+            TEMPLATE + ":r sc:parameterType :Goal .",
+            TEMPLATE + ":r sh:property [ sh:path ( sc:hasParameter sc:parameterType ) ; sh:hasValue :Goal ] .",
+        ),
+        (
+            TEMPLATE + ":r sc:feeds :r . [] a sc:Interaction ; sc:from :r ; sc:to :r ; sc:signalType rob:Image .",
+            TEMPLATE + ":r sc:feeds :r . [] a sc:Interaction ; sc:from :r ; sc:to :r ; sc:output 'image' .",
+        ),
+    ],
+)
+def test_a_term_at_the_wrong_part_of_a_template_is_noticed_with_what_to_write(wrong: str, right: str) -> None:
+    found = only(wrong)
+    assert (found.code, found.hint is not None) == ("SC-L25", True)
+    assert not lints(right)
