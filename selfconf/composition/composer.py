@@ -35,6 +35,8 @@ from selfconf.search.relaxations import NEAR, with_relaxations
 from selfconf.search.strategies import possible
 from selfconf.search.what_if import consequences
 
+HINT_STEPS = 100_000
+"""Steps at most for each search of the question whether other reasoning would do: what is refused need not be easy."""
 STANDBY = 2
 """How many candidates per role an input hears of in advance."""
 
@@ -202,16 +204,19 @@ class Composer:
         return Problem(self._task, partition, self.hierarchy)
 
     def possible_under(self, ecology: Mapping[IRI, Advertisement], hierarchy: Hierarchy) -> bool:
-        """Whether there would be a configuration where there is none now, if the roles saw another hierarchy."""
+        """Whether a configuration is found, where there is none now, if the roles see another hierarchy."""
         here = self.partition(ecology)
         there = self.partitioner.under(hierarchy).partition(self.gathered(ecology))
         if here == there and not _matches_more(here, hierarchy):
             return False
         problem = Problem(self.task.task, there, hierarchy)
-        if not possible(with_optional_slots(problem), Budget(self.steps)):
+        steps = HINT_STEPS if self.steps is None else min(self.steps, HINT_STEPS)
+        if not possible(with_optional_slots(problem), Budget(steps)):
             return False
+        if not any(role.recruits for role in problem.roles):
+            return True
         # That took it that whatever can be recruited is there at once, also what plays a role.
-        *_, answer = Searches(Strategy.FIRST, self.steps).answers(problem)
+        *_, answer = Searches(Strategy.FIRST, steps).answers(problem)
         return isinstance(answer, Configuration)
 
     def with_relaxations(self, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:

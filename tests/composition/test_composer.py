@@ -94,6 +94,16 @@ def test_subclasses_that_match_but_do_not_suffice_are_no_hint() -> None:
     assert not composer.possible_under(given, Hierarchy([(iri("PlanarPose"), iri("Pose"))]))
 
 
+@pytest.mark.parametrize(("steps", "found"), [(1_000, True), (1, False)])
+def test_that_subclasses_would_do_is_found_within_steps(
+    monkeypatch: pytest.MonkeyPatch, steps: int, found: bool
+) -> None:
+    monkeypatch.setattr("selfconf.composition.composer.HINT_STEPS", steps)
+    above = Hierarchy([(iri("PlanarPose"), iri("Pose"))])
+    composer, given = Composer(task(PLAIN)), ecology(locator("gps", "PlanarPose"), controller("cap"))
+    assert composer.possible_under(given, above) == found
+
+
 def test_subclasses_that_need_an_optional_role_are_a_hint() -> None:
     document = task(
         ":navigate a sc:Template ; sc:roles ( :position :control ) . :control a sc:Role ; sh:class :Steering ."
