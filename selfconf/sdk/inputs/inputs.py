@@ -148,6 +148,9 @@ class Inputs:
         """Which outputs each input is to follow, and which stand by."""
         self._handovers: dict[str, Handover] = {}
         """The inputs that follow what they followed before as well, until a new output has issued a signal."""
+        self._when_settled: list[Callable[[], None]] = []
+        """What is to be done once no input is handed over any more; while there is any, it is looked whether it is so.
+        """
         self._dropped = 0
         """How many signals were dropped of subscriptions that have ended."""
 
@@ -248,12 +251,16 @@ class Inputs:
 
     def when_settled(self, action: Callable[[], None]) -> None:
         """Do something once no input follows an output any more that it is to let go of."""
-        self._look_whether_settled(action, self._bus.now())
+        self._when_settled.append(action)
+        if len(self._when_settled) == 1:
+            self._look_whether_settled(self._bus.now())
 
-    def _look_whether_settled(self, action: Callable[[], None], due: float) -> None:
+    def _look_whether_settled(self, due: float) -> None:
         """Look again and again; by as much as a look comes late this process stood still, and no signal could come."""
         if not self._handovers:
-            action()
+            waiting, self._when_settled = self._when_settled, []
+            for action in waiting:
+                action()
             return
         late = max(0.0, self._bus.now() - due)
         for port, handover in list(self._handovers.items()):
@@ -261,7 +268,7 @@ class Inputs:
             self._hand_over(port, later)
         self._let_go()
         pause = HANDOVER_CHECK if self._handovers else 0.0
-        self._bus.later(pause, partial(self._look_whether_settled, action, self._bus.now() + pause))
+        self._bus.later(pause, partial(self._look_whether_settled, self._bus.now() + pause))
 
     def _hand_over(self, port: str, handover: Handover) -> None:
         """End a handover if the new outputs deliver, or are as quiet as the old; report them as silent if they are."""

@@ -481,6 +481,20 @@ def test_time_in_which_the_machine_stalls_is_none_in_which_the_next_output_issue
     assert not silence(change.stage)
 
 
+def test_time_in_which_the_machine_stalls_counts_once_however_many_calls_wait_for_the_next_output() -> None:
+    change = Change()
+    for _ in range(3):
+        change.ask()
+    change.let_pass(0.4, change.tracker)
+    go_on = change.stage.network.stall()
+    change.stage.let_pass(HANDOVER)
+    go_on()
+    change.let_pass(HANDOVER, change.tracker)
+    assert silence(change.stage) == [(ODOMETRY, "")]
+    change.let_pass(0.4, change.tracker, change.odometry)
+    assert len(change.answers) == 4
+
+
 @pytest.mark.parametrize("gently", [True, False], ids=["repeated", "made for another task that shares the component"])
 def test_a_gentle_call_that_is_repeated_goes_on_with_the_same_handover(gently: bool) -> None:
     change = Change()
