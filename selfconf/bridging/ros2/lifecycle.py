@@ -97,16 +97,21 @@ class NodeLifecycle:
             self._activated = self._active = False
             self._change(DEACTIVATE, lambda: None, self._domain.tell)
 
-    def _look(self) -> None:
-        self._ask(self._endpoints.state, {}, self._in_state, self._fail)
+    def _look(self, before: int | None = None) -> None:
+        """Ask for the state, and go on from there; `before` is that before a transition which is said to be made."""
+        self._ask(self._endpoints.state, {}, partial(self._in_state, before), self._fail)
 
-    def _in_state(self, answer: Mapping[str, Any]) -> None:
+    def _in_state(self, before: int | None, answer: Mapping[str, Any]) -> None:
         state, label = answer["current_state"]["id"], answer["current_state"]["label"]
         if state == ACTIVE:
             self._active = True
         elif state in PASSING and self._domain.bus.now() < self._waits_until:
             turn = self._turn
-            self._domain.bus.later(STATE_AGAIN, lambda: self._look() if turn == self._turn else None)
+            self._domain.bus.later(STATE_AGAIN, lambda: self._look(before) if turn == self._turn else None)
+        elif state in STEPS and state == before:
+            self._activated = False
+            made = f"the transition {STEPS[state][1]!r} of the lifecycle node {self._name} is said to be made"
+            self._fail(f"{made}, and it is {label or state} still")
         elif state in STEPS:
             late = self._activated_late if state == INACTIVE else lambda: None
             self._change(STEPS[state], partial(self._changed, state), self._fail, late)
@@ -118,7 +123,7 @@ class NodeLifecycle:
     def _changed(self, before: int) -> None:
         self._activated = before == INACTIVE
         self._waits_until = self._domain.bus.now() + TRANSITION_SECONDS
-        self._look()
+        self._look(before)
 
     def _activated_late(self) -> None:
         """The node is active, or may be, by a transition that was asked for in an activation that has ended since."""
