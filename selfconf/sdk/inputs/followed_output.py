@@ -72,10 +72,15 @@ class FollowedOutput:
         stamp = self._stamp_of(waiting) if waiting is not None else None
         return self.order.newest.life if stamp is None else stamp.life
 
-    def unmute(self) -> None:
-        """Let what comes wait to be delivered, and before it the newest signal if that has only just come."""
-        self._queue.keep(1 if self.just_issued else 0)
+    def unmute(self) -> bool:
+        """Keep what comes from now on, and the newest signal if that has only just come; whether it has."""
+        just_issued = self.just_issued
+        self._queue.keep(1 if just_issued else 0)
         self.muted = False
+        return just_issued
+
+    def deliver(self) -> None:
+        """Have what waits already delivered, after `unmute`."""
         if self._queue:
             self._waits()
 

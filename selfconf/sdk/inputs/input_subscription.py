@@ -105,11 +105,12 @@ class InputSubscription:
         """Deliver what is received, from the newest signal on if that has only just come, else from the last one on."""
         if not self.muted:
             return
-        if self._last_signal.asked and not self.just_issued:
+        just_issued = self._output.unmute()
+        if self._last_signal.asked and not just_issued:
             self._last_signal.request_if_quiet()
         self._source.expect_life()
         self._silence.expect(first=self._output.order.newest is NONE)
-        self._output.unmute()
+        self._output.deliver()
 
     def say_again(self) -> None:
         """Deliver the last signal once more: the component's code has been started again."""

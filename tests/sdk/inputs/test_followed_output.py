@@ -130,7 +130,8 @@ def test_of_what_comes_while_it_is_muted_the_newest_is_delivered_if_it_has_only_
         heard.receive(2)
         assert (heard.output.pop(), heard.waits) == (None, 0)
         heard.now += passed
-        heard.output.unmute()
+        assert heard.output.unmute() == (delivered is not None)
+        heard.output.deliver()
         sample = heard.output.pop()
         assert (sample.payload if sample is not None else None) == delivered
         assert heard.waits == (delivered is not None)

@@ -8,7 +8,8 @@ import pytest
 
 from selfconf.bus.port import Urgency
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Stamp
+from selfconf.protocol.messages import Stamp, Wire
+from selfconf.sdk.inputs.followed_output import FollowedOutput
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,
@@ -16,6 +17,7 @@ from tests.sdk.stage import (
     TRACKER,
     US,
     Stage,
+    apply,
     follow,
     release,
 )
@@ -40,6 +42,22 @@ def test_what_is_no_signal_of_the_source_is_passed_over(payload: bytes, attachme
     stage.let_pass(0.1)
     assert stage.recorder.said == [("started",)]
     assert stage.component.active
+
+
+def test_whether_a_signal_has_just_come_is_judged_once_as_an_output_that_stood_by_is_followed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else it may neither count nor be asked for, as time passes between."""
+    stage = Stage()
+    position = {"position": (Wire(TRACKER, "pose"),)}
+    stage.call(apply(1, US, standby=position))
+    stage.others.publisher(KEYS.output(TRACKER, "pose"), Urgency.EVENT).put(b"7", encode(Stamp(TRACKER, "l", 1, 0.0)))
+    stage.let_pass(0.1)
+    judged = iter((True, False))
+    monkeypatch.setattr(FollowedOutput, "just_issued", property(lambda _: next(judged)))
+    stage.call(apply(2, US, position))
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("started",), ("position", 7)]
 
 
 def test_signals_that_come_late_or_twice_are_passed_over_and_a_new_life_counts_from_one_again() -> None:
