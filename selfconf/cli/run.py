@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--name",
         metavar="NAME",
         type=_name,
-        help="the name of the task (default: that of its template, with a number where a task has it already)",
+        help="the name of the task (default: that of its template, without --detach with a number where a task has it)",
     )
     parser.add_argument(
         "--priority",
