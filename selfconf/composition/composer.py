@@ -124,6 +124,7 @@ class Composer:
         of roles that no reason speaks of leaves each of the reasons as it is.
         """
         roles: dict[IRI, tuple[IRI, ...]] = {}
+        components -= {self.outside}  # that plays for its inside, whichever task holds it
         lacking = self._lacking(refusal)
         for role, candidates in zip(self._task.template.roles, self._partition.candidates, strict=True):
             for candidate in candidates if role.iri in lacking else ():

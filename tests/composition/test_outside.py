@@ -97,3 +97,11 @@ def test_what_is_outside_is_not_avoided_without_end_where_another_task_wants_ano
     found, taken = agreed(search, {tracker.component: holder})
     assert isinstance(found, Refusal)
     assert taken == {tracker.component: holder}
+
+
+def test_a_composite_that_a_task_holds_is_not_what_its_own_inside_lacks() -> None:
+    composer = Composer(tasks.InsideReader(parse(TEXT, "t.ttl")).read(WHOLE), outside=WHOLE)
+    found, _ = read_advertisements((PREFIXES + TRACKER.replace("Pose", "Hint")).encode(), "ads.ttl")
+    refusal = composer.compose({one.component: one for one in found}, frozenset((WHOLE,)), None)
+    assert isinstance(refusal, Refusal)
+    assert composer.usable({WHOLE, iri("t")}, refusal) == {iri("t"): (TRACKER_ROLE,)}
