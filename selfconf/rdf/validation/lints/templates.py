@@ -9,8 +9,16 @@ from rdflib import RDF, SH, BNode, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.term import IRI
 from selfconf.rdf import vocabulary
-from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, OF_COMPONENT, PERMITTED_IN_SHAPES, SHAPE_VALUED
+from selfconf.rdf.permitted_fields import (
+    LINKED,
+    LISTS_OF_SHAPES,
+    OF_COMPONENT,
+    OF_PARTS,
+    PERMITTED_IN_SHAPES,
+    SHAPE_VALUED,
+)
 from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
@@ -25,6 +33,13 @@ _READ_IN_SHAPES = PERMITTED_IN_SHAPES.union(
     vocabulary.SH[name]
     for name in ("sparql", "prefixes", "declare", "targetNode", "targetClass", "targetSubjectsOf", "targetObjectsOf")
 )
+_OF_PARTS_ALONE: Mapping[IRI, IRI] = {
+    said: link
+    for said in (*OF_PARTS, SC.signalType, SC.parameterType)
+    for link in (SC.grounding, SC.hasOperation, SC.hasParameter, SC.hasInput, SC.hasOutput)
+    if said in LINKED[link].predicates and LINKED[link][said].most != 0
+}
+"""What ports, parameters and the like say, and no component, each with what leads to such a part."""
 _INSTEAD_OF_WORDS: Mapping[str, str] = {
     **dict.fromkeys((vocabulary.SH.value, SC.value), "Did you mean sh:hasValue?"),
     SC.signalType: "Write [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue ... ].",
@@ -74,12 +89,54 @@ def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
             continue
         name = file.short(kind)
         message = (
-            f"This says that the role is a component of the type {name}; it asks for none."
+            f"This says that the {_kind(file, role)} is a component of the type {name}; it asks for none."
             if said == RDF.type
             else f"A target asks nothing of a component, so one that is no {name} may play this role."
         )
         offset = file.positions.triples[role, said, kind].object
         yield at(file.positions, offset, "SC-L14", message, hint=f"Write sh:class {name}.")
+
+
+def _kind(file: LintedFile, shape: Node) -> str:
+    return "role" if (shape, RDF.type, URIRef(SC.Role)) in file.graph else "shape"
+
+
+def undescribed_shapes(file: LintedFile) -> Iterator[Diagnostic]:
+    """Classes, and what is not described at all, where roles name a shape: everything meets what asks for nothing."""
+    roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
+    for statement in {one for role in roles for one in _said_for(file, role)}:
+        for shape in _shapes_named(file, [statement]):
+            if str(statement[1]) == SC.recruits or not isinstance(shape, URIRef) or _is_shape(file, shape):
+                continue
+            short = file.short(str(shape))
+            message = f"{short} is no shape that is described in this file, so everything meets it."
+            hint = f"For the instances of a class write [ sh:class {short} ] in its place."
+            if statement in file.positions.triples:
+                yield at(file.positions, file.positions.triples[statement].object, "SC-L14", message, hint=hint)
+
+
+def _is_shape(file: LintedFile, shape: Node) -> bool:
+    """Whether anything is said of a shape as such."""
+    types = set(file.graph.objects(shape, RDF.type))
+    return not types.isdisjoint((SH.NodeShape, SH.PropertyShape, URIRef(SC.Role))) or any(
+        str(predicate) in vocabulary.SH for predicate in file.graph.predicates(shape)
+    )
+
+
+def paths_from_components(file: LintedFile) -> Iterator[Diagnostic]:
+    """Paths from a component that begin with what only its ports and parameters say."""
+    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
+        for path, values in NormalForm(file.source, (role,)).values.items():
+            step = IRI.unchecked(str(next((one for one in path if one != RDF.first), "")))
+            for shape in values.shapes if step in _OF_PARTS_ALONE else ():
+                for said in file.graph.objects(shape, SH.path):
+                    short = file.short(step)
+                    message = f"{short} is said of a part of a component, so no component has one."
+                    hint = (
+                        f"Begin the path with what leads to the part: ( {file.short(_OF_PARTS_ALONE[step])} {short} )."
+                    )
+                    offset = file.positions.triples[shape, SH.path, said].object
+                    yield at(file.positions, offset, "SC-L25", message, hint=hint)
 
 
 def _roles_and_components(file: LintedFile) -> set[Node]:
@@ -91,9 +148,11 @@ def _roles_and_components(file: LintedFile) -> set[Node]:
 
 
 def _told_otherwise(file: LintedFile) -> Iterator[tuple[Node, URIRef, URIRef]]:
-    """Each role with a class of components that it names otherwise than by `sh:class`, and by what."""
-    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
-        asked = (role, SH["class"], None) in file.graph
+    """Each role, or shape in one, with a class of components that it names but for `sh:class`, and by what."""
+    roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
+    said_of_roles = [one for role in roles for one in _said_for(file, role)]
+    for role in roles | _shapes_named(file, said_of_roles):
+        asked = role not in roles or (role, SH["class"], None) in file.graph
         for said, ignored in ((RDF.type, False), (SH.targetClass, asked)):
             for kind in () if ignored else file.graph.objects(role, said):
                 if isinstance(kind, URIRef) and (said == SH.targetClass or file.index.serves(str(kind), SC.Component)):
@@ -121,15 +180,18 @@ def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def signals_for_components(file: LintedFile) -> Iterator[Diagnostic]:
-    """Classes of signals where a role asks for the class of its component."""
-    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
-        for statement in NormalForm(file.source, (role,)).own:
+    """Classes of signals where a role asks for the class of its component, or of what it recruits."""
+    roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
+    recruited = {shape for role in roles for shape in file.graph.objects(role, URIRef(SC.recruits))}
+    for shape in roles | recruited:
+        for statement in NormalForm(file.source, (shape,)).own:
             kind = str(statement[2])
             if statement[1] != SH["class"] or statement not in file.positions.triples:
                 continue
             if file.index.classes_signals(kind):
                 short = file.short(kind)
-                message = f"{short} is a kind of signals, so no component is one, and none can play this role."
+                message = f"{short} is a kind of signals, so no component is one, and none can "
+                message += "play this role." if shape in roles else "be recruited."
                 path = f"sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue {short} ]"
                 hint = f"Name a class of components; for one that issues such signals, write {path}."
                 yield at(file.positions, file.positions.triples[statement].object, "SC-L28", message, hint=hint)
@@ -199,7 +261,10 @@ def idle_words(file: LintedFile) -> Iterator[Diagnostic]:
     shapes = roles | _shapes_named(file, said)
     for shape, predicate, value in said:
         word = str(predicate)
-        idle = (word in vocabulary.SH and word not in _READ_IN_SHAPES) or (word in SC and shape not in roles)
+        if isinstance(predicate, URIRef) and predicate in SH:
+            idle = word not in _READ_IN_SHAPES
+        else:
+            idle = word in SC and word in file.index.terms and shape not in roles
         if shape in shapes and idle and (offsets := file.positions.triples.get((shape, predicate, value))):
             message = f"{file.short(word)} says nothing in a shape, so this is passed over."
             yield at(file.positions, offsets.predicate, "SC-L25", message, hint=_INSTEAD_OF_WORDS.get(word))

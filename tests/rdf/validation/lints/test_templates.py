@@ -216,3 +216,39 @@ def test_a_role_for_a_kind_of_signals_is_noticed() -> None:
 def test_a_contradiction_in_a_shape_that_is_no_role_is_not_reported() -> None:
     shape = ":s a sh:NodeShape ; sh:property [ sh:path rob:place ; sh:minCount 2 ; sh:maxCount 1 ] ."
     assert not lints(TEMPLATE + shape)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right", "code"),
+    [
+        ("sh:node rob:Tuner", "sh:node [ sh:class rob:Tuner ]", "SC-L14"),
+        ("sh:not rob:Tuner", "sh:not [ sh:class rob:Tuner ]", "SC-L14"),
+        ("sh:or ( [ a rob:Tuner ] [ sh:class :A ] )", "sh:or ( [ sh:class rob:Tuner ] [ sh:class :A ] )", "SC-L14"),
+        ("sc:recruits [ a rob:Tuner ]", "sc:recruits [ sh:class rob:Tuner ]", "SC-L14"),
+        ("sc:recruits [ sh:class rob:Audio ]", "sc:recruits [ sh:class rob:Tuner ]", "SC-L28"),
+        (
+            "sh:property [ sh:path sc:signalType ; sh:hasValue rob:Audio ]",
+            "sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue rob:Audio ]",
+            "SC-L25",
+        ),
+        (
+            "sh:property [ sh:path ( sc:rate sc:value ) ; sh:minInclusive 5 ]",
+            "sh:property [ sh:path ( sc:hasOutput sc:rate sc:value ) ; sh:minInclusive 5 ]",
+            "SC-L25",
+        ),
+    ],
+)
+def test_what_a_role_asks_for_in_vain_is_noticed_with_what_to_write(wrong: str, right: str, code: str) -> None:
+    found = only(f"{TEMPLATE}:r {wrong} .")
+    assert (found.code, found.hint is not None) == (code, True)
+    assert not lints(f"{TEMPLATE}:r {right} .")
+
+
+def test_a_shape_with_a_name_that_says_what_it_asks_for_is_left_alone() -> None:
+    assert not lints(TEMPLATE + ":r sh:node :There . :There sh:property [ sh:path rob:place ; sh:minCount 1 ] .")
+    assert not lints(TEMPLATE + ":r sh:node :Any . :Any a sh:NodeShape .")
+
+
+@pytest.mark.parametrize("word", ["sh:minCnt", "sc:vlue"])
+def test_a_misspelt_word_in_a_shape_is_one_problem(word: str) -> None:
+    assert only(f"{TEMPLATE}:r sh:property [ sh:path rob:place ; {word} 1 ] .").code == "SC-L01"
