@@ -82,7 +82,8 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     shapes = _with_samples(graph)
     for role in roles:
         shapes.add((URIRef(role), RDF.type, SH.NodeShape))
-    faults = [fault for look in (_with_own_path, _faults, _literals) for fault in look(shapes, positions)]
+    faults = [fault for look in (_with_own_path, _literals) for fault in look(shapes, positions)]
+    faults += _faults(shapes, graph, positions)
     faults += [fault for look in (_alone, _patterns, _queries) for fault in look(graph, positions)]
     faults += _too_deep(shapes, roles, positions)
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
@@ -131,7 +132,8 @@ def read_shape_of_shapes() -> ReadShapes:
     return ReadShapes(shape_of_shapes())
 
 
-def _faults(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
+def _faults(shapes: Graph, graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """What the shape of shapes finds in a graph with samples for parameters, told of the graph that has these."""
     try:
         results = list(read_shape_of_shapes().results(shapes))
     except ValidationFailure:
@@ -141,9 +143,21 @@ def _faults(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
         offsets = positions.triples.get((focus, path, value)) if path is not None and value is not None else None
         if offsets is not None and isinstance(path, URIRef):
             yield at(positions, offsets.object, "SC-T13", unfit(IRI.unchecked(path)))
+        elif (parameter := _sampled(graph, focus, path)) is not None and isinstance(path, URIRef):
+            message = f"{unfit(IRI.unchecked(path)).rstrip('.')}, and this parameter stands for another value."
+            place = positions.triples[focus, path, parameter].object
+            yield at(
+                positions, place, "SC-T13", message, hint="See the sh:datatype and the sh:nodeKind of the parameter."
+            )
         else:
             offset, message = _malformed(shapes, positions, focus)
             yield at(positions, offset, "SC-T13", message)
+
+
+def _sampled(graph: Graph, shape: Node, predicate: Node | None) -> Node | None:
+    """The parameter that is a value of a shape."""
+    values = graph.objects(shape, predicate) if predicate is not None else ()
+    return next((value for value in values if (value, RDF.type, URIRef(SC.Parameter)) in graph), None)
 
 
 def _with_own_path(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:

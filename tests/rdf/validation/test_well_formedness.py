@@ -159,3 +159,10 @@ def test_the_shape_of_shapes_is_that_of_shacl_and_is_read_once() -> None:
     assert isinstance(shape_of_shapes(), Graph)
     assert (None, SH.path, SH.minCount) in shape_of_shapes()
     assert shape_of_shapes() is shape_of_shapes()
+
+
+def test_a_parameter_that_cannot_stand_where_it_does_is_told_there() -> None:
+    (found,) = malformed(PARAMETER.format("sh:datatype xsd:string") + ":r a sc:Role ; sh:class :robot .")
+    assert (found.line - HEAD, found.column) == (2, 25)
+    assert found.message == "The value of sh:class has to be an IRI, and this parameter stands for another value."
+    assert not malformed(PARAMETER.format("sh:nodeKind sh:IRI") + ":r a sc:Role ; sh:class :robot .")

@@ -353,7 +353,13 @@ def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
         elif value in file.source.parameters and (value, SH.datatype, None) in file.graph:
             short = file.short(str(value))
             message = f"The value of {file.short(predicate)} is a thing with an IRI, and {short} stands for a literal."
-            yield at(file.positions, offset, "SC-L07", message, hint=f"Say sh:nodeKind sh:IRI of {short}.")
+            yield at(
+                file.positions,
+                offset,
+                "SC-L07",
+                message,
+                hint=f"Say sh:nodeKind sh:IRI of {short} in place of its sh:datatype.",
+            )
 
 
 def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:

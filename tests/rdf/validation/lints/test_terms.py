@@ -192,7 +192,7 @@ def test_a_literal_where_a_thing_is_wanted_is_noticed_in_every_known_ontology() 
 def test_a_parameter_that_stands_for_a_literal_where_a_thing_is_wanted_is_noticed(asked: str) -> None:
     text = TEMPLATE + f":t sc:parameter :p . :r sh:property [ sh:path rob:place ; {asked} ] . :p a sc:Parameter ; "
     found = only(text + "sc:name 'p' ; sh:datatype xsd:string .")
-    assert (found.code, found.hint) == ("SC-L07", "Say sh:nodeKind sh:IRI of :p.")
+    assert (found.code, found.hint) == ("SC-L07", "Say sh:nodeKind sh:IRI of :p in place of its sh:datatype.")
     assert not lints(text + "sc:name 'p' .")
     assert not lints(text.replace("rob:place", ":floor") + "sc:name 'p' ; sh:datatype xsd:integer .")
 
