@@ -196,8 +196,8 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
     from selfconf import rendezvous
     from selfconf.api.membership import MEMBERS, Membership
     from selfconf.api.sites.local_site import SiteProcess
-    from selfconf.api.tasks.detached import TaskOptions
     from selfconf.api.tasks.run import Run
+    from selfconf.api.tasks.task_options import TaskOptions
 
     method = method_of(given, task)
     options = TaskOptions.of(given.policy, given.name or "", given.priority, _upgrade(given))

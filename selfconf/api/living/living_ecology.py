@@ -358,8 +358,8 @@ class LivingEcology(Ecology):
         to; without it, none is.
         """
         from selfconf.api.method import Method
-        from selfconf.api.tasks.detached import TaskOptions
         from selfconf.api.tasks.run import Run
+        from selfconf.api.tasks.task_options import TaskOptions
 
         self._synchronous.check()
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
@@ -387,7 +387,8 @@ class LivingEcology(Ecology):
         """
         from selfconf.api.method import Method
         from selfconf.api.task import completed
-        from selfconf.api.tasks.detached import TaskOptions, task_record
+        from selfconf.api.tasks.detached import task_record
+        from selfconf.api.tasks.task_options import TaskOptions
 
         self._membership.check_may_run()
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)

@@ -7,17 +7,18 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from selfconf.api.arguments import checked_priority, checked_text, checked_upgrade, option
+from selfconf.api.arguments import checked_priority, checked_upgrade, option
 from selfconf.api.configuring import refusal_with_places
 from selfconf.api.method import Method
 from selfconf.api.task import TaskSpecification
 from selfconf.api.tasks.run_outcomes import composing, searched_ecology
+from selfconf.api.tasks.task_options import AS_USUAL, TaskOptions
 from selfconf.composition import Composer
 from selfconf.configurator import Policy
 from selfconf.deployment import Aside, RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.errors import PeerError
-from selfconf.model.immutable import immutable, replace
+from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.seconds import DELAY_IN_WORDS, is_delay
 from selfconf.model.term import IRI
@@ -25,31 +26,6 @@ from selfconf.model.wording import sayable
 from selfconf.protocol.keys import checked_name, safe_name, task_identity
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import tasks, turtle
-
-
-@immutable
-class TaskOptions:
-    """How a task is to run: what is done about a loss and for the better, and its name and rank among others."""
-
-    policy: Policy = Policy.REPAIR
-    name: str = ""
-    """Empty for that of its template."""
-    priority: int | None = None
-    """None for that of its template."""
-    upgrade: float | None = None
-    """The seconds before a change for the better; None for no such change."""
-
-    @classmethod
-    def of(cls, policy: str, name: str, priority: int | None, upgrade: float | None) -> TaskOptions:
-        """The options that a caller of the library has named. Raises ProgrammerError for a policy or text that is none.
-
-        The priority and the seconds are checked by `task_record`.
-        """
-        return cls(option(Policy, "policy", policy), checked_text(name, "the name of a task"), priority, upgrade)
-
-
-AS_USUAL = TaskOptions()
-"""How a task runs of which nothing else is said."""
 
 
 def task_record(task: TaskSpecification, method: Method, how: TaskOptions = AS_USUAL) -> TaskRecord:

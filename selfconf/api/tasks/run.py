@@ -16,9 +16,10 @@ from selfconf.api.method import Method
 from selfconf.api.places import Places
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
-from selfconf.api.tasks.detached import AS_USUAL, TaskOptions, task_record
+from selfconf.api.tasks.detached import task_record
 from selfconf.api.tasks.living_tasks import LivingTasks
 from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
+from selfconf.api.tasks.task_options import AS_USUAL, TaskOptions
 from selfconf.api.tasks.work_queue import UNDISTURBED, WorkQueue
 from selfconf.bus.port import Undo
 from selfconf.bus.zenoh import ZenohBus

@@ -14,9 +14,10 @@ import pytest
 
 import selfconf as sc
 from selfconf.api.method import Method
-from selfconf.api.tasks.detached import TaskOptions, request_of, task_record
+from selfconf.api.tasks.detached import request_of, task_record
 from selfconf.api.tasks.explaining import explained_refusal
 from selfconf.api.tasks.role_fits import role_fits
+from selfconf.api.tasks.task_options import TaskOptions
 from selfconf.errors import AuthorError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import decode, encode

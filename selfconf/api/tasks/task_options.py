@@ -1,0 +1,32 @@
+"""How a task is to run, as programs and commands that begin one say it, be it here or in the sites of the ecology."""
+
+from __future__ import annotations
+
+from selfconf.api.arguments import checked_text, option
+from selfconf.configurator import Policy
+from selfconf.model.immutable import immutable
+
+
+@immutable
+class TaskOptions:
+    """How a task is to run: what is done about a loss and for the better, and its name and rank among others."""
+
+    policy: Policy = Policy.REPAIR
+    name: str = ""
+    """Empty for that of its template."""
+    priority: int | None = None
+    """None for that of its template."""
+    upgrade: float | None = None
+    """The seconds before a change for the better; None for no such change."""
+
+    @classmethod
+    def of(cls, policy: str, name: str, priority: int | None, upgrade: float | None) -> TaskOptions:
+        """The options that a caller of the library has named. Raises ProgrammerError for a policy or text that is none.
+
+        The priority and the seconds are checked by `task_record`.
+        """
+        return cls(option(Policy, "policy", policy), checked_text(name, "the name of a task"), priority, upgrade)
+
+
+AS_USUAL = TaskOptions()
+"""How a task runs of which nothing else is said."""
