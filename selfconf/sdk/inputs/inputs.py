@@ -168,7 +168,7 @@ class Inputs:
         fed, opening = self._fed(), dict(self._opening(message, now))
         before, self._handovers = self._handovers, opening
         for port, wires in fed.items():
-            handover = self._change(port, wires, message, before.get(port))
+            handover = self._change(port, wires, message, before.get(port)) if port not in opening else None
             if handover is not None:
                 self._handovers[port] = handover
         self._tell_unfed(fed.keys(), message.inputs)
@@ -200,24 +200,20 @@ class Inputs:
     def _fed(self) -> dict[str, frozenset[Wire]]:
         """The inputs that may be fed, with what they follow: an output that is lost, or not theirs yet, feeds none."""
         fed: dict[str, set[Wire]] = {}
-        for port, wire in self._followed_before():
-            if not self._subscriptions[port, wire].lost:
+        for port, wire in self.followed:
+            if self._may_be_fed_by(port, wire) and not self._subscriptions[port, wire].lost:
                 fed.setdefault(port, set()).add(wire)
         return {port: frozenset(wires) for port, wires in sorted(fed.items())}
 
     def _opening(self, message: Apply, now: float) -> Iterator[tuple[str, Handover]]:
         """Yield the inputs that have followed nothing, and are to wait for the first signal of an output."""
-        known = {port for port, _ in self._followed_before()}
+        known = {port for port, wire in self.followed if self._is_own(port, wire)}
         for port, new in message.inputs.items():
             last = self._handovers.get(port)
             if last is not None and not last.old and last.new == new:  # a call that was repeated
                 yield port, last
             elif message.gently and port not in known and self._promised(port, new):
                 yield port, Handover.beginning(now, frozenset(), new)
-
-    def _followed_before(self) -> Iterator[tuple[str, Wire]]:
-        """Yield which output each input follows, but for those to which it is only being handed over."""
-        return (key for key in self.followed if self._is_own(*key))
 
     def _is_own(self, port: str, wire: Wire) -> bool:
         """Whether an input is not only being handed over to an output: that may have delivered before it is looked."""
@@ -226,11 +222,18 @@ class Inputs:
             handover is None or wire not in handover.new or self._subscriptions[port, wire].heard_since(handover.began)
         )
 
+    def _may_be_fed_by(self, port: str, wire: Wire) -> bool:
+        """Whether an input may be fed by an output: its own, or one of those that it opens with, if none has yet."""
+        handover = self._handovers.get(port)
+        return (handover is not None and not handover.old) or self._is_own(port, wire)
+
     def _promised(self, port: str, new: tuple[Wire, ...]) -> bool:
-        """Whether one of the outputs promises to issue a signal soon, and none has just done so."""
-        periods = (wire.period for wire in new if not port.endswith(CALL_MARK))
-        soon = any(period is not None and PATIENCE * period <= BEGINNING for period in periods)
-        return soon and not any(self._subscriptions[port, wire].just_issued for wire in new)
+        """Whether an output that is not lost promises to issue a signal soon, and none has just done so."""
+        if port.endswith(CALL_MARK):
+            return False
+        there = [wire for wire in new if not self._subscriptions[port, wire].lost]
+        soon = any(wire.period is not None and PATIENCE * wire.period <= BEGINNING for wire in there)
+        return soon and not any(self._subscriptions[port, wire].just_issued for wire in there)
 
     @property
     def patience(self) -> float:
@@ -351,12 +354,10 @@ class Inputs:
 
         An output to which it is only being handed over has not fed it yet: there is nothing to hand over any more.
         """
-        handover = self._handovers.get(port)
-        opens = handover is not None and not handover.old
         following = [
             subscription
             for (one, wire), subscription in self._subscriptions.items()
-            if one == port and not subscription.muted and (opens or self._is_own(port, wire))
+            if one == port and not subscription.muted and self._may_be_fed_by(port, wire)
         ]
         if all(subscription.lost for subscription in following):
             self._events.unfed(port)

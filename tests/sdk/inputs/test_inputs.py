@@ -597,11 +597,11 @@ def test_an_input_of_several_outputs_goes_on_following_each_until_what_takes_its
 class Opening(Change):
     """A component that is started gently, as a part of what is to take the place of something else."""
 
-    def __init__(self, period: float | None) -> None:
+    def __init__(self, period: float | None, beside: tuple[Wire, ...] = ()) -> None:
         self.stage = Stage(Watchful())
-        self.odometry = other_source(self.stage)
+        self.tracker, self.odometry = self.stage.neighbour(), other_source(self.stage)
         self.stage.call(reserve(1, US))
-        self.message = apply(2, US, {"position": (Wire(ODOMETRY, "pose", period),)}, gently=True)
+        self.message = apply(2, US, {"position": (Wire(ODOMETRY, "pose", period), *beside)}, gently=True)
         self.answers: list[Replies] = []
         self.ask()
 
@@ -653,6 +653,21 @@ def test_what_is_started_gently_answers_when_its_source_is_lost() -> None:
     change.let_pass(0.4)
     assert change.answers
     assert change.told == {"unfed"}
+
+
+@pytest.mark.parametrize("gently", [False, True])
+def test_what_is_started_gently_is_unfed_when_it_is_left_with_a_source_that_is_lost(gently: bool) -> None:
+    change = Opening(0.2, (Wire(TRACKER, "pose", 0.2),))
+    change.stage.let_pass(0.1)
+    change.odometry.component.fail("blind")
+    change.stage.let_pass(0.2)
+    assert change.told == set()
+    change.message = apply(3, US, {"position": (Wire(ODOMETRY, "pose", 0.2),)}, gently=gently)
+    change.ask()
+    change.stage.let_pass(0.1)
+    change.tracker.component.fail("blind as well")
+    change.stage.let_pass(0.2)
+    assert change.stage.recorder.said == [("started",), ("unfed", "position")]
 
 
 def test_an_output_that_stood_by_is_asked_for_what_it_issued_before() -> None:
