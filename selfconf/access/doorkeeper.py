@@ -26,6 +26,7 @@ from selfconf.access.other_sites import SITES_ANSWER, OtherSites
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.refusal_reports import RefusalReports
 from selfconf.access.rules import AccessRules, rules_of
+from selfconf.bus.answering import answering
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
@@ -361,10 +362,8 @@ class Doorkeeper:
 
     def _tell(self, request: Request) -> None:
         """Who may do what, and what was refused: a reply for each."""
-        try:
+        with answering(request):
             for access in self.rules.accesses:
                 request.reply(self._keys.access(self._name), encode(access))
             for refused in self._hub.refusals.refused:
                 request.reply(self._keys.access(self._name), encode(refused))
-        finally:
-            request.finish()

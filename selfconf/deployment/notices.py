@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from selfconf.bus.answering import answering
 from selfconf.bus.port import Bus, Request, Urgency
 from selfconf.model.run_event import RunEvent, TaskRefused, TaskStopped
 from selfconf.protocol.codec import LARGEST, encode
@@ -63,11 +64,9 @@ class RunNotices:
         self._heard = heard
 
     def _answer(self, request: Request) -> None:
-        try:
+        with answering(request):
             for sequence, event in self._latest:
                 request.reply(self._keys.notices(self._name), self._notice(sequence, event))
-        finally:
-            request.finish()
 
     def _notice(self, sequence: int, event: RunEvent) -> bytes:
         body = event_body(event)

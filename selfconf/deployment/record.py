@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from selfconf.bus.answering import answering
 from selfconf.bus.port import Bus, Request, Urgency
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.model.configuration import Configuration
@@ -81,11 +82,9 @@ class DeploymentRecord:
             self._publisher.put(self.turtle().encode())
 
     def _serve_configuration(self, request: Request) -> None:
-        try:
+        with answering(request):
             if self._deployed is not None:
                 request.reply(self._keys.configuration(self._name), self.turtle().encode())
-        finally:
-            request.finish()
 
     def turtle(self) -> str:
         """What is deployed, as Turtle with its provenance."""
@@ -116,7 +115,7 @@ class DeploymentRecord:
             request.refuse("this configurator does not tell which task it runs")
 
     def _serve_call(self, request: Request) -> None:
-        try:
+        with answering(request):
             call = call_of(request.key)
             if call == "stop":
                 request.reply(self._keys.configurator_call(self._name, "stop"), encode(self._status()))
@@ -127,5 +126,3 @@ class DeploymentRecord:
                 self._tell_task(request)
             else:
                 request.refuse(f"there is no call {call!r}")
-        finally:
-            request.finish()

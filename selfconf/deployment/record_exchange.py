@@ -12,6 +12,7 @@ from collections.abc import Collection
 from functools import partial
 from typing import Protocol
 
+from selfconf.bus.answering import answering
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
 from selfconf.deployment.task_folder import TaskFolder
 from selfconf.errors import PeerError, reason
@@ -116,30 +117,27 @@ class RecordExchange:
 
     def _keep(self, request: Request) -> None:
         """A task is handed over, or its end is asked for."""
-        try:
-            record = decode(request.payload, TaskRecord)
-            self._folder.learn(record)
-            kept = self._folder.records[record.task]
-            request.reply(self._keys.keep(self._site), encode(kept))
-            self._keeper.learnt(kept)
-        except PeerError as error:
-            request.refuse(f"site {self._site} cannot keep the task: {error}")
-        except OSError as error:
-            why = f"site {self._site} cannot keep the task on its disk: {error.strerror}"
-            request.refuse(f"{why}; mend that, or give the site another folder for its tasks")
-            # Others may have room for it, and count on this one to run it; where none has, it is not to be run.
-            self.ask_later(self._keeper.others())
-        finally:
-            request.finish()
+        with answering(request):
+            try:
+                record = decode(request.payload, TaskRecord)
+                self._folder.learn(record)
+                kept = self._folder.records[record.task]
+                request.reply(self._keys.keep(self._site), encode(kept))
+                self._keeper.learnt(kept)
+            except PeerError as error:
+                raise PeerError(f"site {self._site} cannot keep the task: {error}") from None
+            except OSError as error:
+                # Others may have room for it, and count on this one to run it; where none has, it is not to be run.
+                self.ask_later(self._keeper.others())
+                why = f"site {self._site} cannot keep the task on its disk: {error.strerror}"
+                raise PeerError(f"{why}; mend that, or give the site another folder for its tasks") from None
 
     def _answer(self, request: Request) -> None:
-        try:
+        with answering(request):
             for task, record in self._folder.records.items():
                 runs = self._keeper.runs(task)
                 payload = encode(replace(record, keeper=self._site)) if runs else self._folder.encoded(task)
                 request.reply(self._keys.kept_task(self._site, task), payload)
-        finally:
-            request.finish()
 
     def _all_answered(self, replies: Replies) -> None:
         self._take_all(replies)

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from selfconf.bus.answering import answering
 from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Profile
@@ -142,15 +143,13 @@ class Outputs:
 
     def _answer(self, request: Request) -> None:
         """Answer the question for an output with its last signal of this activation, or say that there is none yet."""
-        try:
+        with answering(request):
             name = self._names.get(request.key, "")
             last = self._last.get(name)
             if self._active() and last is not None:
                 request.reply(request.key, *last)
             elif self._active() and name:
                 request.refuse(NOTHING_YET)
-        finally:
-            request.finish()
 
     def _matched(self, port: str) -> Callable[[bool], None]:
         """Issue the last signal again when an output begins to be followed."""

@@ -11,6 +11,7 @@ import secrets
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
+from selfconf.bus.answering import answering
 from selfconf.bus.port import Bus, Request, Urgency
 from selfconf.errors import PeerError
 from selfconf.model.immutable import replace
@@ -163,7 +164,7 @@ class Site:
 
     def _answer(self, request: Request) -> None:
         """Reply the advertisements, each with its page: the asker counts them, n of n."""
-        try:
+        with answering(request):
             total = len(self._served)
             if total == 0 or self._is_known(request.payload):
                 page = Page(0, total, self._revision, life=self.life, insecure=self._insecure)
@@ -182,8 +183,6 @@ class Site:
                     self._unable.get(one.component, ""),
                 )
                 request.reply(one.key, one.payload, encode(page))
-        finally:
-            request.finish()
 
     def _is_known(self, payload: bytes) -> bool:
         """Whether the asker knows the present advertisements; one of before says nothing about it."""
@@ -208,26 +207,18 @@ class Site:
 
     def _tell_log(self, request: Request) -> None:
         """Reply a part of what the components of this site have printed."""
-        try:
+        with answering(request):
             question = decode(request.payload, LogQuestion)
             if self._log_path is None:
                 raise PeerError(f"the site {self.name} keeps no log")
             part = log_part(self._log_path, replace(question, lines=min(question.lines, MOST_LOG_LINES)))
             request.reply(self.keys.log(self.name), encode(part))
-        except PeerError as error:
-            request.refuse(str(error))
-        finally:
-            request.finish()
 
     def _wake(self, request: Request) -> None:
-        try:
+        with answering(request):
             wake = decode(request.payload, Wake)
             self.start(wake.component, wake.after)
             request.reply(self.keys.wake(self.name), b"started")
-        except PeerError as error:
-            request.refuse(str(error))
-        finally:
-            request.finish()
 
 
 def pause_after(seconds: float) -> float:
