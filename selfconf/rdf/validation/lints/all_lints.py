@@ -20,6 +20,7 @@ from selfconf.rdf.validation.lints.sources import incommensurable_units, misname
 from selfconf.rdf.validation.lints.templates import (
     borrowed_parameters,
     idle_words,
+    impossible_inputs,
     impossible_roles,
     paths_from_components,
     properties_of_roles,
@@ -34,6 +35,7 @@ from selfconf.rdf.validation.lints.templates import (
     unused_parameters,
 )
 from selfconf.rdf.validation.lints.terms import (
+    classes_as_properties,
     literals_for_iris,
     local_components,
     misplaced_terms,
@@ -59,6 +61,7 @@ def lint(file: LintedFile, conforms: bool) -> list[Diagnostic]:
 WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unknown_terms,
     properties_as_classes,
+    classes_as_properties,
     repeated_descriptions,
     prefixes,
     undeclared_prefixes,
@@ -92,6 +95,7 @@ TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     properties_of_roles,
     queried_parameters,
     impossible_roles,
+    impossible_inputs,
     idle_loops,
     starving_inputs,
     unjoined_optional_roles,

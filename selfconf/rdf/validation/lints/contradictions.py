@@ -74,6 +74,16 @@ def contradictions(normal: NormalForm, choosing: bool = True) -> Iterator[ShapeC
             yield ShapeContradiction(choice, choice)
 
 
+def excluded_values(normal: NormalForm) -> Iterator[ShapeContradiction]:
+    """What rules out all values of a path that may have none, at most once for each path.
+
+    Only a node without such values conforms, for which `sh:maxCount 0` would be written.
+    """
+    for values in list(normal.values.values()):
+        if values.needed() is None and all(most > 0 for most, _ in values.most):
+            yield from islice(contradictions(values.each), 1)
+
+
 def _with(normal: NormalForm, shape: Node) -> ShapeContradiction | None:
     """Why a normal form cannot be satisfied together with a further shape."""
     return next(contradictions(normal.plus(shape), choosing=False), None)

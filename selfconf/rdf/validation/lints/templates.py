@@ -22,7 +22,12 @@ from selfconf.rdf.permitted_fields import (
 from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.linted_file import LintedFile
-from selfconf.rdf.validation.lints.contradictions import ShapeContradiction, contradictions, entails
+from selfconf.rdf.validation.lints.contradictions import (
+    ShapeContradiction,
+    contradictions,
+    entails,
+    excluded_values,
+)
 from selfconf.rdf.validation.lints.normal_form import NormalForm
 from selfconf.rdf.validation.term_index import OWN, STANDARD, namespace
 from selfconf.rdf.vocabulary import SC
@@ -322,12 +327,29 @@ def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
         short = file.short(str(role))
         for conflict in contradictions(NormalForm(file.source, (role, *always))):
             yield _contradiction(file, role, conflict, f"no component can play the role {short}", "SC-L11")
+        for conflict in excluded_values(NormalForm(file.source, (role, *always))):
+            if not file.positions.triples.keys().isdisjoint(conflict):
+                effect = f"only a component without such a value can play the role {short}"
+                yield _contradiction(file, role, conflict, effect, "SC-L11")
         for shape in file.graph.objects(role, URIRef(SC.recruits)):
             for conflict in (
                 () if isinstance(shape, Literal) else contradictions(NormalForm(file.source, (shape, *always)))
             ):
                 effect = f"no component can be recruited for the role {short}"
                 yield _contradiction(file, shape, conflict, effect, "SC-L19")
+
+
+def impossible_inputs(file: LintedFile) -> Iterator[Diagnostic]:
+    """What inputs accept that contradicts itself, or what holds of every output."""
+    always = list(file.source.applied(SH.targetObjectsOf, URIRef(SC.hasOutput)))
+    for shape in set(file.graph.objects(None, URIRef(SC.accepts))):
+        normal = NormalForm(file.source, (shape, *always))
+        for conflict in contradictions(normal):
+            yield _contradiction(file, shape, conflict, "no output can feed this input", "SC-L22")
+        for conflict in excluded_values(normal):
+            if not file.positions.triples.keys().isdisjoint(conflict):
+                effect = "only an output without such a value can feed this input"
+                yield _contradiction(file, shape, conflict, effect, "SC-L22")
 
 
 def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, effect: str, code: str) -> Diagnostic:

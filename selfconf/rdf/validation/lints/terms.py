@@ -163,6 +163,20 @@ def properties_as_classes(file: LintedFile) -> Iterator[Diagnostic]:
             yield at(file.positions, offsets.object, "SC-L01" if iri in _SC else "SC-L02", message, hint=hint)
 
 
+def classes_as_properties(file: LintedFile) -> Iterator[Diagnostic]:
+    """Classes where a path or a cost names a property, and costs of a property whose values are no numbers."""
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        iri, short = str(value), file.short(str(value))
+        if (predicate == SH.path or str(predicate) == _SC.property) and isinstance(value, URIRef):
+            if iri in file.index.classes and iri not in file.index.properties:
+                yield at(
+                    file.positions, offsets.object, "SC-L02", f"{short} is a class, where a property has to stand."
+                )
+            elif str(predicate) == _SC.property and iri in file.index.object_properties:
+                message = f"The values of {short} are things, and a cost counts numbers."
+                yield at(file.positions, offsets.object, "SC-L02", message)
+
+
 def _known(iri: str, index: TermIndex) -> bool:
     if not index.strange(iri):
         return True

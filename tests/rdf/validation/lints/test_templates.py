@@ -252,3 +252,24 @@ def test_a_shape_with_a_name_that_says_what_it_asks_for_is_left_alone() -> None:
 @pytest.mark.parametrize("word", ["sh:minCnt", "sc:vlue"])
 def test_a_misspelt_word_in_a_shape_is_one_problem(word: str) -> None:
     assert only(f"{TEMPLATE}:r sh:property [ sh:path rob:place ; {word} 1 ] .").code == "SC-L01"
+
+
+ASKED, LATENCY = TEMPLATE + ":r {} .", "rob:latency ;"
+RATED = ":a a sc:Component, rob:Tuner ; sc:hasInput [ sc:name 'i' ; sc:signalType rob:Audio ; sc:accepts [ {} ] ] ."
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong", "right", "code"),
+    [
+        (ASKED, f"{LATENCY} sh:minInclusive 12 ;", f"{LATENCY} sh:minInclusive 5 ;", "SC-L11"),
+        (ASKED, f"{LATENCY} sh:minInclusive 12 ;", f"{LATENCY} sh:maxCount 0 ;", "SC-L11"),
+        (ASKED, "( sc:hasOutput sc:rate ) ;", "( sc:hasOutput sc:rate sc:value ) ;", "SC-L11"),
+        (RATED, "sc:rate ;", "( sc:rate sc:value ) ;", "SC-L22"),
+        (RATED, "sc:rate ; sh:minCount 1 ;", "( sc:rate sc:value ) ; sh:minCount 1 ;", "SC-L22"),
+    ],
+)
+def test_what_no_value_can_meet_is_noticed_where_there_may_be_none(
+    text: str, wrong: str, right: str, code: str
+) -> None:
+    assert only(text.format(f"sh:property [ sh:path {wrong} sh:maxInclusive 9 ]")).code == code
+    assert not lints(text.format(f"sh:property [ sh:path {right} sh:maxInclusive 9 ]"))

@@ -362,3 +362,19 @@ def test_a_term_at_the_wrong_part_of_a_template_is_noticed_with_what_to_write(wr
     found = only(wrong)
     assert (found.code, found.hint is not None) == ("SC-L25", True)
     assert not lints(right)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        (COSTED.replace("rob:latency ; {}", "rob:Camera"), COSTED.replace("rob:latency ; {}", "rob:power")),
+        (COSTED.replace("rob:latency ; {}", "rob:place"), COSTED.replace("rob:latency ; {}", ":price")),
+        (
+            TEMPLATE + ":r sh:property [ sh:path rob:Place ; sh:minCount 1 ] .",
+            TEMPLATE + ":r sh:property [ sh:path rob:place ; sh:minCount 1 ] .",
+        ),
+    ],
+)
+def test_what_is_no_property_or_counts_nothing_is_noticed_in_a_path_and_a_cost(wrong: str, right: str) -> None:
+    assert only(wrong).code == "SC-L02"
+    assert not lints(right)
