@@ -50,6 +50,8 @@ class LocalSite:
     """The file in which it keeps what its components print; empty from a site of before that does not say it."""
     from_here: str = field(default="", compare=False)
     """Where its relay listens for its own host, beside the endpoint that others know; empty if there it does not."""
+    served: Sequence[str] = field(default=(), compare=False)
+    """The files and folders with what it advertises, as absolute paths."""
 
     def is_suspended(self) -> bool:
         """Whether the process was stopped by a signal and has not gone on, as after Ctrl-Z."""

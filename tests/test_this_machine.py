@@ -216,6 +216,7 @@ def test_the_file_is_plain_json(runtime_folder: Path) -> None:
         "relays": True,
         "log": "",
         "from_here": "",
+        "served": [],
         **process,
     }
 

@@ -85,6 +85,8 @@ class Joining:
         self._file = AnnouncedSite(self._described)
         self.log = ""
         """The log of the site, for others on this machine."""
+        self.served: Sequence[str] = ()
+        """The files and folders with what the site advertises, for others on this machine."""
         self._awaited = hubs
         """Those that relayed when this site last had a hub, or that it has been trying to reach since."""
         self._hung_at: float | None = None
@@ -134,6 +136,7 @@ class Joining:
             relays=self.relays,
             log=self.log,
             from_here=self.bus.from_here,
+            served=self.served,
         )
 
     def announce(self) -> None:

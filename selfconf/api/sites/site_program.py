@@ -136,6 +136,7 @@ class _SiteProgram:
         self._ended = Termination(self._bus, told=self._work.abandon)
         log_path = _log_path(options.log, ecology, name).absolute()
         self._joining.log = str(log_path)
+        self._joining.served = [str(path.resolve()) for path in options.paths]
         self._composites = _CompositesOnceThereAre(self._made_composites)
         self._site = Site(
             self._bus,
@@ -173,7 +174,7 @@ class _SiteProgram:
         )
 
     def tell_what_is_served(self) -> None:
-        """Say what is served and where, and which terms of it nothing declares."""
+        """Say what is served and where, which terms of it nothing declares, and which site serves the same files."""
         advertisements = self._site.shelf.advertisements
         for unknown in unknown_in_ecology(advertisements):
             self._complain(unknown)
@@ -181,6 +182,9 @@ class _SiteProgram:
         how = " without keys, open to everybody who reaches it" if self._is_open_to_all else ""
         where = f"{self._joining.endpoint}{how}"
         self._complain(f"site {self._name} of ecology {self._ecology} serves {served} on {where}")
+        for other in this_machine.local_sites(self._ecology):
+            for path in sorted({*self._joining.served}.intersection(other.served)) if other.site != self._name else ():
+                self._complain(f"site {other.site}, process {other.process}, serves {path} already: end one of the two")
 
     def _distrusted(self) -> None:
         """End, as the certificate of this site was revoked."""

@@ -113,6 +113,16 @@ def test_where_the_usual_port_of_an_ecology_is_taken_any_other_will_do(
 
 
 @pytest.mark.process
+def test_a_second_site_of_the_same_folder_says_which_site_serves_it_already(home: Home) -> None:
+    first = home.site("a", "ads")
+    home.site("c", "ads/tracker.ttl")
+    second = home.site("b", "../" + home.folder.name + "/ads")
+    said = f"site a, process {first.number}, serves {home.folder / 'ads'} already: end one of the two\n"
+    assert home.until(lambda: said in second.complaints), second.complaints
+    assert second.complaints.count("already") == 1
+
+
+@pytest.mark.process
 def test_a_second_site_of_a_name_does_not_start_and_says_who_has_it(home: Home, tmp_path: Path) -> None:
     first = home.site("a", "ads/tracker.ttl")
     elsewhere = {**home.environment, "SELFCONF_RUNTIME_DIR": str(tmp_path / "elsewhere")}  # as on another host
