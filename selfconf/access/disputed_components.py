@@ -37,7 +37,8 @@ def claims(
     """Return which components belong to each of some sites, of which one is `here`, and which are disputed by which.
 
     `advertised` is what each site advertises, `decided` the site that is believed for a component. Those that are
-    `gone` lose what they advertised to the one that advertises it now, unless they are believed.
+    `gone` lose what they advertised to the one that advertises it now, unless they are believed. What is believed to be
+    that of a site which has not been seen is disputed by the one that advertises it.
     """
     claiming: dict[IRI, list[str]] = {}
     for site, components in sorted(advertised.items()):
@@ -48,7 +49,7 @@ def claims(
         present = [site for site in sites if site not in gone] or sites
         if decided.get(component) in sites:
             owners[component] = decided[component]
-        elif len(present) == 1:
+        elif len(present) == 1 and decided.get(component, present[0]) in advertised:
             owners[component] = present[0]
         else:
             disputed[component] = sites

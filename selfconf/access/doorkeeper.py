@@ -271,14 +271,20 @@ class Doorkeeper:
         return _Advertised(dict(self._own()), self._others.advertised(), beside, self._others.away(GONE_AFTER))
 
     def _undisputed(self, advertised: Mapping[str, frozenset[IRI]], gone: frozenset[str]) -> dict[str, frozenset[IRI]]:
-        """The components that each site speaks for; complains of those that have become disputed by sites that live."""
-        owned, disputed = claims(advertised, believed(self._folder.path), here=self._name, gone=gone)
+        """The components that each site speaks for; complains of those that have become disputed by sites that live.
+
+        And of those that a site advertises while they are believed to be another's.
+        """
+        decided = believed(self._folder.path)
+        owned, disputed = claims(advertised, decided, here=self._name, gone=gone)
         away = self._others.away()
-        disputed = {component: sites for component, sites in disputed.items() if len({*sites} - away) > 1}
+        disputed = {one: sites for one, sites in disputed.items() if one in decided or len({*sites} - away) > 1}
         for component in sorted(disputed.keys() - self._disputed):
+            sites = f"site{'s' * (len(disputed[component]) > 1)} {' and '.join(disputed[component])}"
+            other = f", and believed to be that of {decided[component]}" if component in decided else ""
             self._complain(
-                f"{component} is advertised by the sites {' and '.join(disputed[component])}; it belongs to none until"
-                f" you say to which: selfconf access --believe SITE {component}"
+                f"{component} is advertised by the {sites}{other}; it belongs to none until you say to which: selfconf"
+                f" access --believe SITE {component}"
             )
         self._disputed = frozenset(disputed)
         return owned

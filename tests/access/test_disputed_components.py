@@ -63,3 +63,11 @@ def test_a_site_that_is_gone_has_no_claim_against_one_that_is_there_unless_it_is
     assert not disputed
     assert [site for site, some in owned.items() if LAMP in some] == [owner]
     assert BELL in owned["attic"], "no other claims it"
+
+
+def test_what_is_believed_to_be_that_of_a_site_that_was_not_seen_yet_is_no_others() -> None:
+    cellar = {"cellar": frozenset((LAMP, BELL))}
+    owned, disputed = claims(cellar, {LAMP: "attic"}, here="garage")
+    assert (owned, disputed) == ({"cellar": {BELL}}, {LAMP: ["cellar"]})
+    owned, disputed = claims({**cellar, "attic": frozenset()}, {LAMP: "attic"}, here="garage")
+    assert (owned["cellar"], disputed) == ({LAMP, BELL}, {}), "it has moved"

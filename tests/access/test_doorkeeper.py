@@ -312,6 +312,15 @@ def test_what_a_site_has_advertised_that_is_gone_is_that_of_the_one_that_adverti
     assert [said for said in door.said if "urn:bell is advertised by the sites attic and cellar" in said]
 
 
+def test_what_is_believed_to_be_that_of_a_site_that_was_not_seen_yet_is_no_others(door: Door) -> None:
+    believe(door.folder.path, BELL, "attic")
+    advertise(door, "cellar", BELL)
+    assert vouched(door, "cellar") == set()
+    assert [said for said in door.said if "urn:bell is advertised by the site cellar, and believed to be" in said]
+    advertise(door, "attic", BELL)
+    assert vouched(door, "attic") == {Principal.component(BELL).name}
+
+
 def test_a_site_goes_on_with_its_own(door: Door) -> None:
     advertise(door, "attic", LAMP)
     assert vouched(door, "attic") == set()
