@@ -274,7 +274,7 @@ class ComponentCode:
         self._resting = False
         self._rests += 1
         turn = self.turn
-        trouble = self._set(self._values) or self._over(turn)
+        trouble = self._set(dict(self._values)) or self._over(turn)  # a call may add values meanwhile
         if trouble is None:
             self._on = True
             trouble = self._started()

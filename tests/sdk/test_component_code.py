@@ -252,6 +252,23 @@ def test_an_actuator_that_is_to_act_and_to_rest_again_while_its_code_is_busy_res
     assert recorder.said[-1] == ("started",)
 
 
+def test_a_parameter_that_a_task_adds_while_an_actuator_is_woken_is_set_as_well() -> None:
+    class Slow(Recorder):
+        def parameter_set(self, name: str, value: Any) -> None:
+            super().parameter_set(name, value)
+            if self.said.count(("goal", "x")) == 2:  # it is woken
+                split.call(apply(2, US, values={"goal": Literal("x"), "speed": Literal("y")}))
+
+    parameters = tuple(replace(CAP_PROFILE.parameters[0], name=name) for name in ("goal", "speed"))
+    split = Split(recorder := Slow(), replace(DRIVE_PROFILE, ports=Ports(), parameters=parameters))
+    split.call(reserve(1, US))
+    for rests in (False, True, False):
+        split.call(apply(1, US, values={"goal": Literal("x")}, rests=rests))
+        split.run_code()
+    assert recorder.said[-3:] == [("goal", "x"), ("started",), ("speed", "y")]
+    assert split.verdicts[-1] is Verdict.DONE
+
+
 def test_a_timer_that_is_late_is_run_once_and_not_made_up_for() -> None:
     class Ticking(Recorder):
         def started(self) -> None:
