@@ -138,8 +138,14 @@ def _faults(shapes: Graph, graph: Graph, positions: Positions) -> Iterator[Diagn
         results = list(read_shape_of_shapes().results(shapes))
     except ValidationFailure:
         return
+    told: set[tuple[Node, Node]] = set()
     for result in results:
         focus, path, value = result[SH.focusNode], result.get(SH.resultPath), result.get(SH.value)
+        if isinstance(path, URIRef) and (loose := _without_parentheses(shapes, positions, focus, path)):
+            if (focus, path) not in told:  # members with commas between are one mistake
+                yield at(positions, min(loose), "SC-T13", unfit(IRI.unchecked(path)))
+            told.add((focus, path))
+            continue
         offsets = positions.triples.get((focus, path, value)) if path is not None and value is not None else None
         if offsets is not None and isinstance(path, URIRef):
             yield at(positions, offsets.object, "SC-T13", unfit(IRI.unchecked(path)))
@@ -152,6 +158,14 @@ def _faults(shapes: Graph, graph: Graph, positions: Positions) -> Iterator[Diagn
         else:
             offset, message = _malformed(shapes, positions, focus)
             yield at(positions, offset, "SC-T13", message)
+
+
+def _without_parentheses(shapes: Graph, positions: Positions, shape: Node, predicate: URIRef) -> list[int]:
+    """Where several values stand that are no lists, of a predicate whose one value is a list."""
+    values = list(shapes.objects(shape, predicate)) if str(predicate) in LISTS else []
+    loose = [one for one in values if one != RDF.nil and (one, RDF.first, None) not in shapes]
+    found = [positions.triples.get((shape, predicate, one)) for one in loose if len(values) > 1]
+    return [one.object for one in found if one]
 
 
 def _sampled(graph: Graph, shape: Node, predicate: Node | None) -> Node | None:

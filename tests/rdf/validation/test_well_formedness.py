@@ -166,3 +166,10 @@ def test_a_parameter_that_cannot_stand_where_it_does_is_told_there() -> None:
     assert (found.line - HEAD, found.column) == (2, 25)
     assert found.message == "The value of sh:class has to be an IRI, and this parameter stands for another value."
     assert not malformed(PARAMETER.format("sh:nodeKind sh:IRI") + ":r a sc:Role ; sh:class :robot .")
+
+
+@pytest.mark.parametrize("said", ["sh:in :a , :b", "sh:in 1 , 2 , 3", "sh:or [ sh:class :A ] , [ sh:class :B ]"])
+def test_members_with_commas_between_are_one_problem_at_the_first(said: str) -> None:
+    (found,) = malformed(f":r a sc:Role ; sh:property [ sh:path :p ; {said} ] .")
+    assert found.message.startswith(f"The value of {said[:5]} has to be a list in parentheses")
+    assert found.column == len(":r a sc:Role ; sh:property [ sh:path :p ; ") + 7
