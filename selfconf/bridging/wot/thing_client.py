@@ -29,6 +29,8 @@ IDLE_FOR_ACTIONS = 1.0
 """As long for actions: a thing may close it in the moment of the next request, and a call is not made a second time."""
 MOST_EVENTS = 1000
 """How many server-sent events of one stream are read in a second; a thing that sends more is held up."""
+NO_ANSWER = "does not answer"
+"""How a sentence ends that goes on, after a colon, with why there is no connection."""
 _EVENT_STREAM = "text/event-stream"
 _ANY_BYTES = "application/octet-stream"
 _LINE_END = b"\n"
@@ -159,7 +161,7 @@ class ThingClient:
             _, writer = await asyncio.wait_for(asyncio.open_connection(url.host, url.port), self._limits.answer)
             writer.close()
         except (OSError, ValueError, asyncio.TimeoutError) as error:  # ValueError for a host that no name can be
-            raise ThingError(f"{origin(form.url)} does not answer: {_reason(error)}") from None
+            raise ThingError(f"{origin(form.url)} {NO_ANSWER}: {_reason(error)}") from None
 
     @asynccontextmanager
     async def _sent(
@@ -199,7 +201,7 @@ class ThingClient:
             raise ThingError(f"{form} has not answered in full within {seconds or self._limits.answer:g} s") from None
         except (aiohttp.ClientError, OSError, ValueError) as error:
             kind = BrokenAnswerError if _is_break(error) else ThingError
-            raise kind(f"{form} does not answer: {_reason(error)}") from None
+            raise kind(f"{form} {NO_ANSWER}: {_reason(error)}") from None
 
     def _check(self, form: ThingForm, answer: aiohttp.ClientResponse) -> None:
         where = answer.headers.get("Location")

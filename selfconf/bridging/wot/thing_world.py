@@ -22,7 +22,7 @@ from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.wot.credentials import ThingCredentials, origin
 from selfconf.bridging.wot.forms import ThingForm, ThingForms
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
-from selfconf.bridging.wot.thing_client import ThingClient, ThingError, ThingLimits
+from selfconf.bridging.wot.thing_client import NO_ANSWER, ThingClient, ThingError, ThingLimits
 from selfconf.bridging.wot.thing_component import ThingComponent
 from selfconf.errors import AuthorError
 from selfconf.importing import (
@@ -223,7 +223,7 @@ class ThingWatch:
         """Since when it lives here, by the clock of the loop."""
         self._waits = self._not_before = 0.0
         self._trouble = ""
-        """What it was last complained of, up to the first colon: what follows may be other words each time."""
+        """What it was last complained of, as `_kind` has it."""
         document = ImportedDocument("", thing.source.shown, (found.component.described(),), thing.prefixes)
         bridge.advertise(self._iri, document)
         self._looking = asyncio.ensure_future(self._look())
@@ -295,10 +295,19 @@ class ThingWatch:
         asyncio.get_running_loop().call_later(LETTING_GO, self._bridge.end_life, self._iri, code)
 
     def _tell(self, trouble: str) -> None:
-        kind = trouble.partition(": ")[0]
+        kind = _kind(trouble)
         if trouble and kind != self._trouble:
             self._bridge.complain(f"{self._iri.short}: {trouble}")
         self._trouble = kind
+
+
+def _kind(trouble: str) -> str:
+    """What a complaint is compared by: without what follows its first colon, which may be other words each time.
+
+    Why there is no connection, such as a certificate that is not trusted, is said in few words, and counts.
+    """
+    kind = trouble.partition(": ")[0]
+    return trouble if kind.endswith(NO_ANSWER) else kind
 
 
 def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[DescribedThing], list[AuthorError]]:

@@ -169,6 +169,18 @@ def test_a_thing_lives_as_long_as_it_answers(
         assert until(lambda: found.lives("lamp"))
 
 
+def test_another_reason_for_which_a_thing_does_not_answer_is_news(
+    thing_server: Callable[[int], ThingServer], living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server(0)
+    server.close()
+    source = written(tmp_path, server.describe(base=server.url.replace("http:", "https:") + "/"))
+    with bridging(living, tmp_path / "ads", source) as found:
+        assert until(lambda: found.complained("does not answer: Connection refused"))
+        thing_server(server.port)
+        assert until(lambda: found.complained("does not answer: there is no TLS to speak with it"))
+
+
 def test_a_thing_without_anything_to_read_is_there_while_it_listens(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:
