@@ -18,10 +18,11 @@ from selfconf.model.literal_values import fraction
 from selfconf.model.setting_names import setting
 from selfconf.model.template import MOST_PRIORITY, Task, Template
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.wording import in_full
 from selfconf.rdf.permitted_fields import SAID_BY
 from selfconf.rdf.tasks.interactions import interactions_of
 from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
-from selfconf.rdf.tasks.parameters import parameters_of
+from selfconf.rdf.tasks.parameters import misfits, parameters_of
 from selfconf.rdf.tasks.ports import template_ports
 from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.turtle import Document, ListFault, Node
@@ -100,7 +101,7 @@ class _Reader(DocumentReader):
             problem = f"the template {worded(template_iri)} of the task is not in this file"
             raise self.mistake(problem, task, SC.template, template_iri)
         template = self.template(template_iri)
-        known = {parameter.iri for parameter in template.parameters}
+        known = {parameter.iri: parameter for parameter in template.parameters}
         bindings: dict[IRI, Term] = {}
         for binding in self.document.values(task, SC.binding):
             parameter = self.only(binding, SC.parameter, "a binding names exactly one sc:parameter")
@@ -111,6 +112,10 @@ class _Reader(DocumentReader):
             if parameter in bindings:
                 problem = f"the task binds the parameter {worded(parameter)} twice"
                 raise self.mistake(problem, binding, SC.parameter, parameter)
+            for reason in misfits(known[parameter], (value,), self.document).values():
+                what = f"{in_full([value])} cannot stand for the parameter {known[parameter].name!r}"
+                problem = f"{what}: {reason.rstrip('.')}"
+                raise self.mistake(problem, binding, SC.value, value)
             bindings[parameter] = value
         return Task(template, bindings, task if isinstance(task, IRI) else None, self._priority(task))
 

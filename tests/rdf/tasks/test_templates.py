@@ -15,7 +15,7 @@ from selfconf.model.term import IRI, Literal
 from selfconf.rdf.tasks import templates
 from selfconf.rdf.tasks.templates import cost_of
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.vocabulary import ROB, SC
+from selfconf.rdf.vocabulary import ROB, SC, XSD
 from tests.lab import NAVIGATE, PREFIXES, iri
 
 FIRST, REST = (f"<http://www.w3.org/1999/02/22-rdf-syntax-ns#{name}>" for name in ("first", "rest"))
@@ -239,3 +239,17 @@ def test_a_parameter_that_stands_for_what_is_the_same_for_all_tasks_is_named(
     text = f":t a sc:Template ; sc:parameter :p ; sc:roles ( :r ) . :p a sc:Parameter ; sc:name 'p' {default} ."
     with pytest.raises(TemplateError, match=rf"the parameter <.*#p> cannot stand for sc:{place}, which is the same "):
         read(f"{text} {ROLE} {stated} .")
+
+
+def test_a_value_of_a_task_that_cannot_stand_for_its_parameter_is_told_where_it_stands() -> None:
+    text = (
+        f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :p . {ROLE} "
+        ":p a sc:Parameter ; sc:name 'p' ; sh:datatype xsd:decimal . "
+        ":k a sc:Task ; sc:template :t ; sc:binding [ sc:parameter :p ; sc:value {} ] ."
+    )
+    with pytest.raises(
+        TemplateError, match=r": 5 cannot stand for the parameter 'p': it is 5, not a decimal"
+    ) as raised:
+        read(text.replace("{}", "5"))
+    assert raised.value.subject == iri("k")
+    assert read(text.replace("{}", "5.0")).bindings == {iri("p"): Literal("5.0", XSD.decimal)}
