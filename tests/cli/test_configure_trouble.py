@@ -136,8 +136,7 @@ def test_files_that_are_not_there_or_are_not_turtle_are_one_sentence(desk: Desk)
 def test_without_a_peer_there_is_a_sentence_that_says_what_to_start(
     desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in ("selfconf.api.membership", "selfconf.rendezvous"):
-        monkeypatch.setattr(f"{module}.client", partial(client, seconds=0.1))
+    monkeypatch.setattr("selfconf.rendezvous.client", partial(client, seconds=0.1))
     assert desk.configure(*BOUND, ads=False).is_one_sentence("selfconf site")
     assert desk.configure(*BOUND, "--connect", "tcp/127.0.0.1:1", ads=False).is_one_sentence("no site answers")
     assert desk.configure(*BOUND, "--connect", "here", ads=False).is_one_sentence("no endpoint")
