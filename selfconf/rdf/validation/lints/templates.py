@@ -121,7 +121,9 @@ def undescribed_shapes(file: LintedFile) -> Iterator[Diagnostic]:
 
 
 def _is_shape(file: LintedFile, shape: Node) -> bool:
-    """Whether anything is said of a shape as such."""
+    """Whether anything is said of a shape as such, or it is a parameter, which stands for one."""
+    if shape in file.source.parameters:
+        return True
     types = set(file.graph.objects(shape, RDF.type))
     return not types.isdisjoint((SH.NodeShape, SH.PropertyShape, URIRef(SC.Role))) or any(
         str(predicate) in vocabulary.SH for predicate in file.graph.predicates(shape)
@@ -269,7 +271,7 @@ def idle_words(file: LintedFile) -> Iterator[Diagnostic]:
         if isinstance(predicate, URIRef) and predicate in SH:
             idle = word not in _READ_IN_SHAPES
         else:
-            idle = word in SC and word in file.index.terms and shape not in roles
+            idle = word in SC and word in file.index.terms and shape not in roles | file.source.parameters
         if shape in shapes and idle and (offsets := file.positions.triples.get((shape, predicate, value))):
             message = f"{file.short(word)} says nothing in a shape, so this is passed over."
             yield at(file.positions, offsets.predicate, "SC-L25", message, hint=_INSTEAD_OF_WORDS.get(word))

@@ -247,6 +247,8 @@ def test_what_a_role_asks_for_in_vain_is_noticed_with_what_to_write(wrong: str, 
 def test_a_shape_with_a_name_that_says_what_it_asks_for_is_left_alone() -> None:
     assert not lints(TEMPLATE + ":r sh:node :There . :There sh:property [ sh:path rob:place ; sh:minCount 1 ] .")
     assert not lints(TEMPLATE + ":r sh:node :Any . :Any a sh:NodeShape .")
+    parameter = ":t sc:parameter :p . :p a sc:Parameter ; sc:name 'p' ."
+    assert not lints(f"{TEMPLATE}{parameter} :r sh:node :p .")
 
 
 @pytest.mark.parametrize("word", ["sh:minCnt", "sc:vlue"])
