@@ -11,7 +11,7 @@ replies only that this is still the one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
@@ -193,14 +193,14 @@ class SiteInquiry:
         """The advertisement of each component; of one that several sites advertise, that of the site that is believed.
 
         Without keys it is the first by name, and the others are named. With keys no site is believed until a person has
-        said whose it is: then it is left out. So is what is believed to be that of a site that has not answered.
+        said whose it is: then it is left out.
         """
         claims: dict[IRI, list[FoundAdvertisement]] = {}
         for one in advertised:
             claims.setdefault(one.advertisement.component, []).append(one)
         found = {component: claim[0] for component, claim in claims.items()}
-        decided = self._decided()
-        disputed = _disputed(claims, decided or {}, {name for name, _ in self.ecology.known})
+        disputed = [component for component, claim in claims.items() if len(claim) > 1]
+        decided = self._decided() if disputed else {}
         said: list[str] = []
         for component in disputed:
             claim = claims[component]
@@ -215,7 +215,10 @@ class SiteInquiry:
                 found[component] = theirs[0]
             else:
                 del found[component]
-                said.append(_left_out(component, sites, decided))
+                said.append(
+                    f"left out {component}: it is disputed, for the sites {' and '.join(sites)} advertise it; say whose"
+                    f" it is: selfconf access --believe SITE {component}"
+                )
         self._complaints += _few(said, "that are disputed" if decided is not None else "of components that others have")
         return found
 
@@ -266,22 +269,6 @@ class SiteInquiry:
         if len(mine) != 1 and not bad:
             complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
         return mine[0] if len(mine) == 1 else None
-
-
-def _disputed(
-    claims: Mapping[IRI, Sequence[FoundAdvertisement]], decided: Mapping[IRI, str], answered: Set[str]
-) -> list[IRI]:
-    """The components that several sites advertise, or one though another is believed that has not answered."""
-    unseen = {component: site for component, site in decided.items() if site not in answered}
-    return [c for c, claim in claims.items() if len(claim) > 1 or unseen.get(c, claim[0].site) != claim[0].site]
-
-
-def _left_out(component: IRI, sites: Sequence[str], decided: Mapping[IRI, str]) -> str:
-    """That a component is left out which some sites advertise, and why."""
-    why = f"it is disputed, for the sites {' and '.join(sites)} advertise it"
-    if len(sites) == 1:
-        why = f"site {sites[0]} advertises it, and it is believed to be that of {decided[component]}"
-    return f"left out {component}: {why}; say whose it is: selfconf access --believe SITE {component}"
 
 
 def _few(complaints: list[str], whose: str) -> list[str]:

@@ -323,21 +323,6 @@ def test_with_keys_a_disputed_component_is_nobodys_until_somebody_says_whose(
     assert [one.startswith(disputed) for one in found.complaints] == [True] * (site is None)
 
 
-@pytest.mark.parametrize("there", [False, True], ids=["not there", "there"])
-def test_with_keys_what_is_believed_to_be_that_of_a_site_that_is_not_there_is_no_others(
-    there: bool, field: Field
-) -> None:
-    field.ecology.believed = lambda: {TRACKER: "attic"}
-    field.site("cellar", "tracker", "drive")
-    if there:
-        field.site("attic", "sonar")
-    found = field.discover()
-    assert iri("astrid-drive") in found.found
-    assert (TRACKER in found.found) == there, "a site that does not advertise it has given it away"
-    left_out = f"left out {TRACKER}: site cellar advertises it, and it is believed to be that of attic; say whose it is"
-    assert [one.startswith(left_out) for one in found.complaints] == [True] * (not there)
-
-
 def test_a_note_of_beliefs_that_cannot_be_read_is_told_and_believes_nobody(field: Field) -> None:
     def broken() -> dict[IRI, str]:
         raise AuthorError("is no object of components", file="believed.json")
