@@ -77,9 +77,13 @@ def contradictions(normal: NormalForm, choosing: bool = True) -> Iterator[ShapeC
 def excluded_values(normal: NormalForm) -> Iterator[ShapeContradiction]:
     """What rules out all values of a path that may have none, at most once for each path.
 
-    Only a node without such values conforms, for which `sh:maxCount 0` would be written.
+    Only a node without such values conforms, for which `sh:maxCount 0` would be written. Paths of which the author says
+    nothing are passed over: what holds of every advertisement has no contradictions.
     """
+    written = normal.source.graphs[0]
     for values in list(normal.values.values()):
+        if not any((shape, None, None) in written for shape in values.shapes):
+            continue
         if values.needed() is None and all(most > 0 for most, _ in values.most):
             yield from islice(contradictions(values.each), 1)
 

@@ -327,9 +327,10 @@ def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
     always = list(file.source.applied(SH.targetClass, URIRef(SC.Component)))
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
         short = file.short(str(role))
-        for conflict in contradictions(NormalForm(file.source, (role, *always))):
+        normal = NormalForm(file.source, (role, *always))
+        for conflict in contradictions(normal):
             yield _contradiction(file, role, conflict, f"no component can play the role {short}", "SC-L11")
-        for conflict in excluded_values(NormalForm(file.source, (role, *always))):
+        for conflict in excluded_values(normal):
             if not file.positions.triples.keys().isdisjoint(conflict):
                 effect = f"only a component without such a value can play the role {short}"
                 yield _contradiction(file, role, conflict, effect, "SC-L11")
