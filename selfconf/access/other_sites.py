@@ -58,6 +58,7 @@ class OtherSites:
         (lives.add if alive else lives.discard)(life_of(key))
         self._away.pop(site, None)
         if not lives:
+            del self._lives[site]
             self._away[site] = self._bus.now()
         self.ask_soon()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from selfconf.bus.answering import answering
@@ -10,11 +12,11 @@ from selfconf.bus.port import Replies, Request, Sample
 from selfconf.errors import PeerError
 
 
-def asked(answer: object) -> Replies:
+def asked(answer: Callable[[Request], None]) -> Replies:
     """What a question comes to that is answered so."""
     network, found = Network(), list[Replies]()
     served, asker = network.node(), network.node()
-    served.serve("lamp", answer)  # type: ignore[arg-type]
+    served.serve("lamp", answer)
     asker.ask("lamp", b"", 1.0, found.append)
     network.run(lambda: bool(found), 2.0)
     (replies,) = found

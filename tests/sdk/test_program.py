@@ -122,9 +122,9 @@ class Lamp(Component):
         if "hang" in sys.argv:
             print("hanging", flush=True)
             while True:
-                time.sleep(0.01)
+                time.sleep(0.01)  # code that never returns
         if "busy" in sys.argv:
-            time.sleep(0.2)
+            time.sleep(0.2)  # code that takes long
 
     def stopped(self):
         print("at rest", flush=True)

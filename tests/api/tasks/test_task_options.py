@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from selfconf.api.tasks.task_options import AS_USUAL, TaskOptions
@@ -15,6 +17,6 @@ def test_what_is_not_said_is_as_usual() -> None:
 
 
 @pytest.mark.parametrize(("policy", "name"), [("mend", "tidy"), ("repair", 7)])
-def test_a_policy_and_a_name_that_are_none_are_refused(policy: str, name: object) -> None:
+def test_a_policy_and_a_name_that_are_none_are_refused(policy: str, name: Any) -> None:
     with pytest.raises(ProgrammerError):
-        TaskOptions.of(policy, name, None, None)  # type: ignore[arg-type]
+        TaskOptions.of(policy, name, None, None)

@@ -73,7 +73,7 @@ came = threading.Event()
 def changed(event):
     if str(event.kind) == "SampleKind.PUT":
         came.set()
-        time.sleep(0.2)
+        time.sleep(0.2)  # a callback that takes long
 listener = client.info.declare_transport_events_listener(callback(changed))
 hub.close()
 hub = open_session("router", listen=[endpoint])
