@@ -78,7 +78,9 @@ def _declined(state: State, event: Answered) -> Reaction:
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
     # Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough.
     again = silent and event.startable and event.call is not Call.WAKE and not repeats
-    return losing.lose(counted, event.component, Loss(Cause.REFUSED, detail, event.life, False, not silent, again))
+    return losing.lose(
+        counted, event.component, Loss(Cause.REFUSED, detail, event.life, answered=not silent, startable=again)
+    )
 
 
 def _told(state: State, event: Answered) -> State:
@@ -117,7 +119,7 @@ def _busy(state: State, event: Answered) -> Reaction:
             return then(effects, _reserve_anew(apart, event.component))
     if event.component not in apart.asked_about:  # before this is a refusal: who holds it, and what they insist on
         apart = replace(apart, news=True, asked_about=apart.asked_about | {event.component})
-    busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, True)
+    busy = Loss(Cause.REFUSED, event.detail or "another task holds it", event.life, busy=True)
     return then(effects, losing.lose(apart, event.component, busy))
 
 

@@ -36,7 +36,9 @@ def heed_failure(state: State, event: Failed) -> Reaction:
     startable = event.startable and event.cause in PROCESS_ENDS
     if startable:  # the next life has not made the deployment begin anew
         state = replace(state, repeats={c: times for c, times in state.repeats.items() if c != event.component})
-    loss = Loss(event.cause, event.detail, event.life or held.life, event.cause is Cause.YIELD, startable=startable)
+    loss = Loss(
+        event.cause, event.detail, event.life or held.life, busy=event.cause is Cause.YIELD, startable=startable
+    )
     if event.cause not in GOES_ON:
         return lose(state, event.component, loss)
     return _let_go(state, event.component, loss)

@@ -112,7 +112,7 @@ def _coveted(state: State, event: Composed) -> State:
         return state
     wanted = event.usable or frozenset(outcome.components if isinstance(outcome, Configuration) else state.taken)
     busy = {
-        component: Loss(Cause.REFUSED, str(state.taken[component]), "", True)
+        component: Loss(Cause.REFUSED, str(state.taken[component]), busy=True)
         for component in sorted(wanted & state.taken.keys())
     }
     if isinstance(refusal, Refusal) and isinstance(outcome, Configuration):

@@ -94,11 +94,11 @@ class Loss:
     cause: Cause
     detail: str = ""
     life: str = ""
-    busy: bool = False
+    busy: bool = field(default=False, kw_only=True)
     """Whether another task held it: it may be had once that one lets go of it."""
-    answered: bool = True
+    answered: bool = field(default=True, kw_only=True)
     """Whether that is known from the component: else it could not be reached, and may well be able to act."""
-    startable: bool = False
+    startable: bool = field(default=False, kw_only=True)
     """Whether its process has ended, or is about to, and its site can start it again."""
 
     @property
