@@ -99,12 +99,6 @@ def search(problem: Problem) -> Configuration | Refusal:
     return answer
 
 
-def decide(problem: Problem, steps: int) -> Configuration | Refusal | Undecided:
-    """Return the first configuration, or why there is none, or that neither is found within a number of steps."""
-    *_, answer = answers(problem, steps)
-    return answer
-
-
 def possible(problem: Problem, budget: Budget) -> bool:
     """Return whether a configuration is found within the budget, be it the first one or another."""
     return isinstance(solution(LazyReduction(problem), budget, any_by_clauses), list)
