@@ -20,7 +20,7 @@ from decimal import Decimal
 
 from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.obstacle import Obstacle
-from selfconf.model.profile import Place, Profile, WantedSignal
+from selfconf.model.profile import Placed, Profile, WantedSignal
 from selfconf.model.term import IRI, Term
 
 ANY_VALUE = -1
@@ -86,7 +86,7 @@ class Recruit:
 
 
 @immutable
-class NearMiss:
+class NearMiss(Placed):
     """A component that a role would take, but for one thing."""
 
     role: IRI
@@ -98,8 +98,6 @@ class NearMiss:
     """How near it comes to what the role asks for, from 0 to 1, by its ports and its texts."""
     recruit: bool = field(default=False, kw_only=True)
     """Whether it would not play the role, but be recruited for it."""
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the component is described, if that is known."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "allows", FrozenMapping(self.allows))

@@ -32,6 +32,14 @@ class Place:
         return self.source if self.line is None else f"{self.source}:{self.line}"
 
 
+@immutable
+class Placed:
+    """A fact about a role or component that some document describes."""
+
+    place: Place | None = field(default=None, kw_only=True, compare=False)
+    """Where that is described, if it is known."""
+
+
 class SentRequest(NamedTuple):
     """What is sent along with a call; without a type, nothing is."""
 

@@ -16,7 +16,7 @@ from selfconf.model.holder import Holder
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.partition import NearMiss
-from selfconf.model.profile import CALL_MARK, Place, WantedSignal, port_in_words
+from selfconf.model.profile import CALL_MARK, Placed, WantedSignal, port_in_words
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.setting_names import setting
@@ -25,15 +25,13 @@ from selfconf.model.wording import listed
 
 
 @immutable
-class Contradiction:
+class Contradiction(Placed):
     """A role asks for more components than it allows."""
 
     code: ClassVar[str] = "contradictory-count"
     role: IRI
     minimum: int
     maximum: int
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def requirements(self) -> tuple[Requirement, ...]:
@@ -48,14 +46,12 @@ class Contradiction:
 
 
 @immutable
-class ValueUnknown:
+class ValueUnknown(Placed):
     """A parameter is set on a component, is not bound, and no candidate states a value for it."""
 
     code: ClassVar[str] = "value-unknown"
     role: IRI
     parameter: str
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def requirements(self) -> tuple[Requirement, ...]:
@@ -70,7 +66,7 @@ class ValueUnknown:
 
 
 @immutable
-class TooFewEligible:
+class TooFewEligible(Placed):
     """A role has fewer eligible components than it asks for."""
 
     code: ClassVar[str] = "too-few-eligible"
@@ -79,8 +75,6 @@ class TooFewEligible:
     found: int
     held: int = field(default=0, kw_only=True, compare=False)
     """How many more are eligible, but held by other tasks that this one cannot take them from."""
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def requirements(self) -> tuple[Requirement, ...]:
@@ -162,7 +156,7 @@ class MisnamedPort:
 
 
 @immutable
-class InputUnfed:
+class InputUnfed(Placed):
     """Every candidate of a role that matters has an input that no candidate of the roles feeding it can feed."""
 
     code: ClassVar[str] = "input-unfed"
@@ -182,8 +176,6 @@ class InputUnfed:
     """The component that comes nearest to being recruited for it, if there is one."""
     misnamed: MisnamedPort | None = field(default=None, kw_only=True)
     """A port of the interactions that feed the role which has another name than they say, if there is one."""
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component that it speaks of is described, if that is known."""
 
     def __str__(self) -> str:
         issues, called = _issues(self.input, self.wanted), self.input.endswith(CALL_MARK)
@@ -205,15 +197,13 @@ class InputUnfed:
 
 
 @immutable
-class TooFewDistinct:
+class TooFewDistinct(Placed):
     """Some roles together ask for more components than are eligible for any of them."""
 
     code: ClassVar[str] = "too-few-distinct"
     roles: tuple[IRI, ...]
     wanted: int
     found: int
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def role(self) -> IRI:
@@ -233,15 +223,13 @@ class TooFewDistinct:
 
 
 @immutable
-class Conflict:
+class Conflict(Placed):
     """Each of these roles can be played, but not all of them together."""
 
     code: ClassVar[str] = "conflict"
     roles: tuple[IRI, ...]
     parameters: tuple[str, ...] = ()
     requirements: tuple[Requirement, ...] = ()
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component that it speaks of is described, if that is known."""
 
     @property
     def role(self) -> IRI:

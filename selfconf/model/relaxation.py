@@ -12,7 +12,7 @@ from typing import ClassVar
 
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.partition import Candidate, NearMiss
-from selfconf.model.profile import CALL_MARK, Operation, Output, Place
+from selfconf.model.profile import CALL_MARK, Operation, Output, Placed
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import in_words, listed
 
@@ -72,15 +72,13 @@ def _signal(output: Output) -> str:
 
 
 @immutable
-class AddComponents:
+class AddComponents(Placed):
     """Fewest components whose addition makes the task possible."""
 
     code: ClassVar[str] = "add-components"
     additions: tuple[Addition, ...]
     shared: tuple[str, ...] = ()
     """The free parameters, by name, of which all that share them have to state one value, whichever that is."""
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component to be changed is described, if that is known."""
 
     @property
     def role(self) -> IRI:
@@ -116,14 +114,12 @@ class AddRecruits(AddComponents):
 
 
 @immutable
-class AskForFewer:
+class AskForFewer(Placed):
     """A role that asks for fewer components, or for none, makes the task possible."""
 
     code: ClassVar[str] = "ask-for-fewer"
     role: IRI
     minimum: int
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component to be changed is described, if that is known."""
 
     def __str__(self) -> str:
         if not self.minimum:
@@ -132,15 +128,13 @@ class AskForFewer:
 
 
 @immutable
-class LetRecruit:
+class LetRecruit(Placed):
     """A role that recruits makes the task possible."""
 
     code: ClassVar[str] = "let-recruit"
     role: IRI
     recruits: tuple[IRI, ...]
     """The components that would be recruited."""
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component to be changed is described, if that is known."""
 
     def __str__(self) -> str:
         would = "it would bring" if self.recruits else "no recruit would be needed"
@@ -149,22 +143,20 @@ class LetRecruit:
 
 
 @immutable
-class AddInteraction:
+class AddInteraction(Placed):
     """One more interaction makes the task possible."""
 
     code: ClassVar[str] = "add-interaction"
     role: IRI
     """The role that feeds."""
     sink: IRI
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the role or component to be changed is described, if that is known."""
 
     def __str__(self) -> str:
         return f"let the role {self.role.short} feed the role {self.sink.short} (sc:feeds)"
 
 
 @immutable
-class AcceptNearMiss:
+class AcceptNearMiss(Placed):
     """A role that takes a component, as it is, which one thing keeps out makes the task possible.
 
     To change the component instead may not be enough: another constraint of the role may then fail.
@@ -173,8 +165,6 @@ class AcceptNearMiss:
     code: ClassVar[str] = "accept-near-miss"
     near: NearMiss
     candidate: Candidate = field(repr=False)
-    place: Place | None = field(default=None, kw_only=True, compare=False)
-    """Where the component is described, if that is known."""
 
     @property
     def role(self) -> IRI:
