@@ -49,9 +49,10 @@ def run(given: argparse.Namespace) -> int:
     """Serve until SIGINT, SIGTERM or SIGHUP; then 0. Of `restart`: 0 once the component lives again."""
     if given.paths[:1] == [RESTART]:
         return _restart(given)
+    from selfconf.api.arguments import checked_path
     from selfconf.api.sites.site_program import SiteOptions, serve
 
-    paths = [Path(path) for path in given.paths] or given.project.values.get("ads")
+    paths = [checked_path(path) for path in given.paths] or given.project.values.get("ads")
     if not paths:
         given.misused("there is nothing to serve; name files or folders, or give `ads` in selfconf.toml")
     options = SiteOptions(

@@ -64,6 +64,9 @@ def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadabl
             except AuthorError as error:
                 unreadable(error)
             continue
+        if not one:  # `Path` takes it for the current folder
+            unreadable(AuthorError("an empty text is no source; the current folder is '.'"))
+            continue
         for path in files.within(Path(one), unreadable, endings):
             name = path.relative_to(one).as_posix() if path != Path(one) else path.name
             try:

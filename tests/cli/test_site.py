@@ -36,6 +36,12 @@ def test_it_says_what_it_serves_and_where_and_leaves_nothing_behind(home: Home) 
     assert home.left_behind() == []
 
 
+def test_an_empty_path_as_of_a_variable_that_is_not_set_is_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    # A site that took it for the current folder would be refused, too, as it would listen beyond this host.
+    found = run(capsys, "site", "", "--ecology", "home", "--listen", "tcp/0.0.0.0:0")
+    assert found.is_one_sentence("an empty text is no path; the current folder is '.'")
+
+
 def test_sites_of_one_ecology_on_one_machine_find_each_other(home: Home, capsys: pytest.CaptureFixture[str]) -> None:
     home.site("a", "ads/tracker.ttl")
     home.site("b", "ads/drive.ttl")

@@ -90,6 +90,16 @@ def test_what_is_not_there_is_named_and_the_rest_is_gathered(tmp_path: Path) -> 
     assert "there is no file or folder" in str(errors[0])
 
 
+def test_an_empty_text_as_of_a_variable_that_is_not_set_is_no_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "lamp.json").write_text("{}")
+    monkeypatch.chdir(tmp_path)
+    found, errors = gathered("")
+    assert found == []
+    assert str(errors[0]) == "an empty text is no source; the current folder is '.'"
+
+
 def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
     with (tmp_path / "large.json").open("wb") as file:
         file.truncate(20 << 20)
