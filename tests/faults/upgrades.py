@@ -18,7 +18,8 @@ from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Cause
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.sdk.inputs.followed_output import JUST_COME
-from selfconf.sdk.inputs.inputs import HANDOVER, Inputs
+from selfconf.sdk.inputs.handover import HANDOVER
+from selfconf.sdk.inputs.inputs import Inputs
 from tests.faults.histories import History, Life
 from tests.faults.invariants import Invariant, acting, awake, disagreeing, feeds, node_of
 
@@ -199,7 +200,8 @@ class UpgradeWatch:
         for port in life.runtime.profile.signal_inputs if isinstance(inputs, Inputs) else ():
             assert isinstance(inputs, Inputs)
             old = sources(going.before, life.component, port.name)
-            followed = {key[1].component: inputs._subscriptions[key] for key in inputs.followed if key[0] == port.name}
+            one = inputs._inputs[port.name]
+            followed = {wire.component: one._subscriptions[wire] for wire in one.followed}
             now, one = self._history.network.time, (life.runtime.life, port.name)
             for source in old:
                 if source in followed:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from selfconf.bus.memory import Network
@@ -31,7 +32,8 @@ KEYS = Keys("lab")
 US, THEM = KEYS.configurator_life("us", "1"), KEYS.configurator_life("them", "1")
 TASKS = {US: "task~us", THEM: "task~them"}
 """The task of each configurator."""
-CAP, DRIVE, TRACKER = IRI("urn:c:cap"), IRI("urn:c:drive"), IRI("urn:c:tracker")
+CAP, DRIVE = IRI("urn:c:cap"), IRI("urn:c:drive")
+TRACKER, ODOMETRY = IRI("urn:c:tracker"), IRI("urn:c:odometry")
 XSD = "http://www.w3.org/2001/XMLSchema#"
 CAP_PROFILE = Profile(
     CAP,
@@ -43,6 +45,16 @@ DRIVE_PROFILE = Profile(
 )
 """An actuator: it has no outputs."""
 TRACKER_PROFILE = Profile(TRACKER, ports=Ports(outputs=(Output("pose", (IRI("urn:s:Pose"),)),)))
+
+
+class Watchful(Recorder):
+    """Writes down as well when it is blind."""
+
+    def unfed(self, port: str) -> None:
+        self.said.append(("unfed", port))
+
+    def fed(self, port: str) -> None:
+        self.said.append(("fed", port))
 
 
 class Stage:
@@ -99,6 +111,15 @@ class Stage:
         self.caller.ask(KEYS.call(component, "apply"), encode(apply()), 1.0, replies.append)
         assert self.network.run(lambda: bool(replies), 5.0)
         return runtime
+
+
+def other_source(stage: Stage) -> ComponentRuntime:
+    """Another component with an output `pose`, which acts."""
+    profile = replace(TRACKER_PROFILE, component=ODOMETRY)
+    runtime = ComponentRuntime(stage.network.node(), KEYS, profile, Recorder(), "life-o")
+    stage.caller.ask(KEYS.call(ODOMETRY, "apply"), encode(apply()), 1.0, lambda _: None)
+    stage.let_pass(0.1)
+    return runtime
 
 
 def apply(

@@ -4,7 +4,7 @@
 an `InputFollower`.
 """
 
-from selfconf.sdk.inputs.input_subscription import InputEvents
 from selfconf.sdk.inputs.inputs import InputFollower, Inputs
+from selfconf.sdk.inputs.signal_input import InputEvents
 
 __all__ = ["InputEvents", "InputFollower", "Inputs"]

@@ -14,7 +14,6 @@ from typing import Any
 
 from selfconf.bus.port import Bus
 from selfconf.errors import PeerError
-from selfconf.model.immutable import immutable
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.code_thread import CodeThread
@@ -33,18 +32,6 @@ log = logging.getLogger(__name__)
 PASSED_OVER = "passed over a signal on %s: %s"
 
 
-@immutable
-class InputEvents:
-    """What the inputs of a component report: on the code's thread what arrives, on the bus's thread the rest."""
-
-    deliver: Callable[[str, Signal], None]
-    """A signal has arrived on an input; called on the thread of the component's code."""
-    silent: Callable[[Wire, float], None]
-    """An output that has promised a rate has issued nothing for so many seconds."""
-    unfed: Callable[[str], None]
-    """An input has lost its last source."""
-
-
 class InputSubscription:
     """One input's subscription to one output, which is muted at first, as one that only stands by."""
 
@@ -53,18 +40,19 @@ class InputSubscription:
         bus: Bus,
         keys: Keys,
         code: CodeThread,
-        port: str,
         wire: Wire,
         queue: SignalQueue,
-        events: InputEvents,
-        lost: Callable[[str], None],
+        deliver: Callable[[Signal], None],
+        silent: Callable[[float], None],
+        lost: Callable[[], None],
         read: Callable[[Any, str], Any],
     ) -> None:
-        self._port, self._wire, self._events, self._read_value = port, wire, events, read
+        """`deliver` is called on the code's thread; `silent`, with seconds, and `lost` on the bus's."""
+        self._wire, self._deliver, self._silent, self._read_value = wire, deliver, silent, read
         key = keys.output(wire.component, wire.output)
         self._output = FollowedOutput(bus.now, queue, partial(code.signal, self._read))
         self._last_signal = LastSignal(bus, key, self._output)
-        self._source = SourceWatch(bus, keys, wire, self._output, self._last_signal, partial(lost, port))
+        self._source = SourceWatch(bus, keys, wire, self._output, self._last_signal, lost)
         self._silence = SilenceWatch(bus, wire.period, lambda: self._output.heard_at, self._be_silent)
         self._declared = [bus.subscribe(key, self._output.receive, direct=True)]
         bus.later(SIGNALS_FIRST, self._watch)
@@ -159,12 +147,10 @@ class InputSubscription:
         if lost and stamp.life not in output.lives:  # on its way when that life ended, or its source is cut off
             self._source.expect_sign()
         output.order.newest, output.lost = SignalNumber(stamp.life, stamp.sequence), False
-        self._events.deliver(
-            self._port, Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
-        )
+        self._deliver(Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media))
 
     def _be_silent(self, seconds: float) -> None:
         """The output has not kept its promise."""
-        self._events.silent(self._wire, seconds)
+        self._silent(seconds)
         self._source.lose(self._output.heard_at)
         self._silence.expect(first=self._output.order.newest is NONE)

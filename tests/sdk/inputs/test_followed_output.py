@@ -17,7 +17,7 @@ from selfconf.protocol.messages import Stamp
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.inputs.followed_output import JUST_COME, FollowedOutput
-from selfconf.sdk.inputs.input_subscription import InputEvents
+from selfconf.sdk.inputs.signal_input import InputEvents
 from selfconf.sdk.inputs.signal_queue import EVENTS, SignalQueue
 from tests.sdk.stage import (
     CAP_PROFILE,

@@ -47,7 +47,7 @@ class Late:
         """Those of the actuator."""
         inputs = self.stage.runtime.inputs
         assert isinstance(inputs, Inputs)
-        return inputs._subscriptions
+        return {(name, wire): it for name, one in inputs._inputs.items() for wire, it in one._subscriptions.items()}
 
     def issue(self, sequence: int) -> None:
         """A signal comes."""
