@@ -13,8 +13,8 @@ from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.positions import NotTurtleError, Positions, parse_with_positions
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.input_shapes import unaccepted_shapes
-from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.all_lints import lint
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.shape_violations import AnswerJudge, Shapes, shape_violations
 from selfconf.rdf.validation.term_index import TermIndex
 from selfconf.rdf.validation.unfit_values import unfit_values

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from selfconf.model.diagnostic import Diagnostic
-from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
 from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.signal_classes import (
     components_as_signals,
     misplaced_classes_in_shapes,

@@ -21,7 +21,7 @@ from rdflib.term import Node
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.wording import listed
 from selfconf.rdf.validation.diagnostics import at
-from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
 from selfconf.rdf.vocabulary import ROB, SC
 

@@ -14,7 +14,7 @@ from rdflib.term import Node
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.wording import listed
 from selfconf.rdf.validation.diagnostics import at
-from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.term_index import TermIndex
 
 _CLASSES, _PROPERTIES = "classes", "properties"

@@ -13,7 +13,7 @@ from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.diagnostics import at
-from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.vocabulary import SC
 
 _PORT_LINKS = frozenset(map(URIRef, (SC.hasInput, SC.hasOutput)))

@@ -20,7 +20,7 @@ from selfconf.model.unit_dimension import differ_in_dimension, meant_unit
 from selfconf.rdf.conformance import violations
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.validation.diagnostics import at
-from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.vocabulary import SC, UNIT
 
 _INPUT, _OUTPUT, _UNIT, _SIGNAL = (URIRef(one) for one in (SC.hasInput, SC.hasOutput, SC.unit, SC.signalType))

@@ -21,13 +21,13 @@ from selfconf.rdf.permitted_fields import (
 )
 from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.diagnostics import at
-from selfconf.rdf.validation.linted_file import LintedFile
 from selfconf.rdf.validation.lints.contradictions import (
     ShapeContradiction,
     contradictions,
     entails,
     excluded_values,
 )
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.normal_form import NormalForm
 from selfconf.rdf.validation.term_index import OWN, STANDARD, namespace
 from selfconf.rdf.vocabulary import SC

@@ -22,7 +22,7 @@ from selfconf.model.term import IRI
 from selfconf.rdf import vocabulary
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_PARTS, foreign_terms
 from selfconf.rdf.validation.diagnostics import at
-from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.prefilter import TERM_POSITIONS
 from selfconf.rdf.validation.term_index import OWN, STANDARD, TermIndex, namespace
 

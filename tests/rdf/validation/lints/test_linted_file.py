@@ -7,7 +7,7 @@ from rdflib import RDF, BNode, Graph, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.rdf.positions import parse_with_positions
-from selfconf.rdf.validation.linted_file import LintedFile
+from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.term_index import TermIndex
 from selfconf.rdf.vocabulary import SC, SH
 from tests.lab import PREFIXES, iri
