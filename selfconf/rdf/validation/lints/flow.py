@@ -20,7 +20,6 @@ from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.wording import listed
-from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
 from selfconf.rdf.vocabulary import ROB, SC
@@ -63,7 +62,7 @@ def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
                 closing = [link.offset for link in inside if roles.index(link.sink) <= roles.index(link.source)]
                 message = f"{which}, without an actuator: nothing comes of this loop."
                 hint = "Let it feed a role outside, or a kind of rob:Actuator."
-                yield at(file.positions, max(closing), "SC-L12", message, hint=hint)
+                yield file.at(max(closing), "SC-L12", message, hint=hint)
 
 
 def _loops(roles: Sequence[Node], links: Iterable[RoleLink]) -> set[frozenset[Node]]:
@@ -96,7 +95,7 @@ def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:
                 else:
                     message = f"This asks for {what}, and no role feeds the role {file.short(str(sink))}."
                     hint = f"Let a role sc:feeds {file.short(str(sink))}."
-                yield at(file.positions, _place(file, asked.statement), "SC-L13", message, hint=hint)
+                yield file.at(_place(file, asked.statement), "SC-L13", message, hint=hint)
 
 
 def _fed_otherwise(file: LintedFile, role: Node) -> bool:

@@ -13,7 +13,6 @@ from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.wording import listed
-from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.term_index import TermIndex
 
@@ -41,7 +40,7 @@ def circular_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
         names = listed(sorted(file.short(one) for one in file.index.in_circle(circle) if not one.startswith("_:")))
         kind, word = (_CLASSES, "owl:equivalentClass") if classes else (_PROPERTIES, "owl:equivalentProperty")
         message = f"The {kind} {names} lie below each other, so that each matches where another is wanted."
-        yield at(file.positions, offset, "SC-L29", message, hint=f"If that is meant, say so by {word}.")
+        yield file.at(offset, "SC-L29", message, hint=f"If that is meant, say so by {word}.")
 
 
 def mixed_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
@@ -57,7 +56,7 @@ def mixed_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
             what = "a property" if wanted == _CLASSES else "a class"
             message = f"{file.short(str(predicate))} stands between {wanted}, and {file.short(str(stray))} is {what}."
             hint = None if wanted in kinds else f"Did you mean {file.short(str(other_word))}?"
-            yield at(file.positions, offset, "SC-L30", message, hint=hint)
+            yield file.at(offset, "SC-L30", message, hint=hint)
 
 
 def _kind(index: TermIndex, term: str) -> str | None:

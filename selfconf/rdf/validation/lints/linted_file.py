@@ -10,7 +10,9 @@ from functools import cached_property
 from rdflib import RDF, Graph, Literal, URIRef
 from rdflib.term import Node
 
+from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.normal_form import ShapeSource
 from selfconf.rdf.validation.term_index import TermIndex, namespace
 
@@ -39,6 +41,12 @@ class LintedFile:
             if known == home:
                 return f"{prefix}:{iri[len(home) :]}"
         return f"<{iri}>"
+
+    def at(
+        self, offset: int, code: str, message: str, severity: Severity | None = None, hint: str | None = None
+    ) -> Diagnostic:
+        """A diagnostic at an offset; as severe as its code usually is, unless it is said otherwise."""
+        return at(self.positions, offset, code, message, severity, hint)
 
     def offset(self, node: Node) -> int:
         """Where a node is described."""

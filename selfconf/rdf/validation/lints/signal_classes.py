@@ -12,7 +12,6 @@ from rdflib import RDF, SH, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
-from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.vocabulary import SC
 
@@ -29,7 +28,7 @@ def signals_among_types(file: LintedFile) -> Iterator[Diagnostic]:
                 message = f"{file.short(str(kind))} is a kind of signals, and no component is a signal."
                 hint = "Say of a port that it has such signals, by sc:signalType."
                 offset = file.positions.triples[component, RDF.type, kind].object
-                yield at(file.positions, offset, "SC-L28", message, hint=hint)
+                yield file.at(offset, "SC-L28", message, hint=hint)
 
 
 def components_as_signals(file: LintedFile) -> Iterator[Diagnostic]:
@@ -50,19 +49,19 @@ def misplaced_classes_in_shapes(file: LintedFile) -> Iterator[Diagnostic]:
             message = f"{short} is a kind of signals, and no port is a signal."
             steps = "sc:signalType" if last is None else f"( {file.short(str(last))} sc:signalType )"
             hint = f"Ask for its signal type: sh:property [ sh:path {steps} ; sh:hasValue {short} ]."
-            yield at(file.positions, offset, "SC-L28", message, hint=hint)
+            yield file.at(offset, "SC-L28", message, hint=hint)
         elif last in _TYPE_LINKS and word == SH["class"]:
             message = (
                 f"This asks for a signal of the type {short}, and {file.short(str(last))} leads to the type itself."
             )
-            yield at(file.positions, offset, "SC-L28", message, hint=f"Write sh:hasValue {short}.")
+            yield file.at(offset, "SC-L28", message, hint=f"Write sh:hasValue {short}.")
         elif last in _TYPE_LINKS and file.index.classes_components(str(kind)):
             yield _component_kind(file, kind, offset)
 
 
 def _component_kind(file: LintedFile, kind: Node, offset: int) -> Diagnostic:
     message = f"{file.short(str(kind))} is a kind of components, and no signal is a component."
-    return at(file.positions, offset, "SC-L28", message, hint="Name a class of signals.")
+    return file.at(offset, "SC-L28", message, hint="Name a class of signals.")
 
 
 def _asked_classes(file: LintedFile) -> Iterator[tuple[Node, Node, Node, int]]:

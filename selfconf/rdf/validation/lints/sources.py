@@ -19,7 +19,6 @@ from selfconf.model.term import Literal as TypedLiteral
 from selfconf.model.unit_dimension import differ_in_dimension, meant_unit
 from selfconf.rdf.conformance import violations
 from selfconf.rdf.rdflib_terms import from_rdflib
-from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.vocabulary import SC, UNIT
 
@@ -42,7 +41,7 @@ def incommensurable_units(file: LintedFile) -> Iterator[Diagnostic]:
                 f"{file.short(str(wanted))} is of another dimension than {file.short(units[0])}, which an output of "
                 "this signal type in this file has."
             )
-            yield at(file.positions, file.positions.triples[port, _UNIT, wanted].object, "SC-L21", message)
+            yield file.at(file.positions.triples[port, _UNIT, wanted].object, "SC-L21", message)
 
 
 def misnamed_units(file: LintedFile) -> Iterator[Diagnostic]:
@@ -51,7 +50,7 @@ def misnamed_units(file: LintedFile) -> Iterator[Diagnostic]:
         meant = meant_unit(IRI.unchecked(unit)) if isinstance(unit, URIRef) and unit in UNIT else None
         if meant is not None:
             message = f"QUDT has no unit {file.short(str(unit))}; did you mean {file.short(UNIT[meant])}?"
-            yield at(file.positions, file.positions.triples[port, _UNIT, unit].object, "SC-L23", message)
+            yield file.at(file.positions.triples[port, _UNIT, unit].object, "SC-L23", message)
 
 
 def unmet_shapes(file: LintedFile) -> Iterator[Diagnostic]:
@@ -62,7 +61,7 @@ def unmet_shapes(file: LintedFile) -> Iterator[Diagnostic]:
         near = outputs.of(port)
         if 0 < len(near) <= MOST_OUTPUTS and not _met(file, shape, near):
             message = "No output of this signal type in this file conforms to this shape."
-            yield at(file.positions, file.positions.triples[port, _ACCEPTS, shape].predicate, "SC-L22", message)
+            yield file.at(file.positions.triples[port, _ACCEPTS, shape].predicate, "SC-L22", message)
 
 
 class _Outputs:

@@ -20,7 +20,6 @@ from selfconf.rdf.permitted_fields import (
     SHAPE_VALUED,
 )
 from selfconf.rdf.sparql import without
-from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.contradictions import (
     ShapeContradiction,
     contradictions,
@@ -61,7 +60,7 @@ def unlisted_roles(file: LintedFile) -> Iterator[Diagnostic]:
     listed = {role for roles in file.graph.objects(None, URIRef(SC.roles)) for role in file.items(roles)}
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))) - listed:
         message = "This role stands in the list of roles of no template, so no component plays it."
-        yield at(file.positions, file.offset(role), "SC-L09", message)
+        yield file.at(file.offset(role), "SC-L09", message)
 
 
 def unjoined_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
@@ -76,7 +75,7 @@ def unjoined_optional_roles(file: LintedFile) -> Iterator[Diagnostic]:
                 message = "This role may stay unplayed, and what plays it feeds no role and is fed by none."
                 hint = "Say which role it feeds (sc:feeds), unless its components act by themselves."
                 offset = file.positions.triples[role, URIRef(SC.minCount), least].predicate
-                yield at(file.positions, offset, "SC-L20", message, hint=hint)
+                yield file.at(offset, "SC-L20", message, hint=hint)
 
 
 def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
@@ -88,7 +87,7 @@ def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
     for one in both:
         message = f"{file.short(str(one))} is a component and a role as well."
         offset = file.positions.triples[one, RDF.type, URIRef(SC.Role)].object
-        yield at(file.positions, offset, "SC-L14", message, hint="Give one of the two another IRI.")
+        yield file.at(offset, "SC-L14", message, hint="Give one of the two another IRI.")
     for role, said, kind in _told_otherwise(file):
         if role in both:
             continue
@@ -99,7 +98,7 @@ def typed_roles(file: LintedFile) -> Iterator[Diagnostic]:
             else f"A target asks nothing of a component, so one that is no {name} may play this role."
         )
         offset = file.positions.triples[role, said, kind].object
-        yield at(file.positions, offset, "SC-L14", message, hint=f"Write sh:class {name}.")
+        yield file.at(offset, "SC-L14", message, hint=f"Write sh:class {name}.")
 
 
 def _kind(file: LintedFile, shape: Node) -> str:
@@ -117,7 +116,7 @@ def undescribed_shapes(file: LintedFile) -> Iterator[Diagnostic]:
             message = f"{short} is no shape that is described in this file, so everything meets it."
             hint = f"For the instances of a class write [ sh:class {short} ] in its place."
             if statement in file.positions.triples:
-                yield at(file.positions, file.positions.triples[statement].object, "SC-L14", message, hint=hint)
+                yield file.at(file.positions.triples[statement].object, "SC-L14", message, hint=hint)
 
 
 def _is_shape(file: LintedFile, shape: Node) -> bool:
@@ -143,7 +142,7 @@ def paths_from_components(file: LintedFile) -> Iterator[Diagnostic]:
                         f"Begin the path with what leads to the part: ( {file.short(_OF_PARTS_ALONE[step])} {short} )."
                     )
                     offset = file.positions.triples[shape, SH.path, said].object
-                    yield at(file.positions, offset, "SC-L25", message, hint=hint)
+                    yield file.at(offset, "SC-L25", message, hint=hint)
 
 
 def _roles_and_components(file: LintedFile) -> set[Node]:
@@ -183,7 +182,7 @@ def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:
         if entails(every, NormalForm(file.source, (role,))):
             message = f"Every component meets the shape of the role {file.short(str(role))}, so any may play it."
             hint = "Say of which class its component is, by sh:class."
-            yield at(file.positions, file.offset(role), "SC-L27", message, hint=hint)
+            yield file.at(file.offset(role), "SC-L27", message, hint=hint)
 
 
 def signals_for_components(file: LintedFile) -> Iterator[Diagnostic]:
@@ -201,7 +200,7 @@ def signals_for_components(file: LintedFile) -> Iterator[Diagnostic]:
                 message += "play this role." if shape in roles else "be recruited."
                 path = f"sh:property [ sh:path ( sc:hasOutput sc:signalType ) ; sh:hasValue {short} ]"
                 hint = f"Name a class of components; for one that issues such signals, write {path}."
-                yield at(file.positions, file.positions.triples[statement].object, "SC-L28", message, hint=hint)
+                yield file.at(file.positions.triples[statement].object, "SC-L28", message, hint=hint)
 
 
 def unlisted_parameters(file: LintedFile) -> Iterator[Diagnostic]:
@@ -210,7 +209,7 @@ def unlisted_parameters(file: LintedFile) -> Iterator[Diagnostic]:
     for parameter in set(file.graph.subjects(RDF.type, URIRef(SC.Parameter))) - listed:
         message = "No template has this parameter, so it stands for itself and never for a value."
         hint = f"Say sc:parameter {file.short(str(parameter))} of its template."
-        yield at(file.positions, file.offset(parameter), "SC-L15", message, hint=hint)
+        yield file.at(file.offset(parameter), "SC-L15", message, hint=hint)
 
 
 def borrowed_parameters(file: LintedFile) -> Iterator[Diagnostic]:
@@ -225,7 +224,7 @@ def borrowed_parameters(file: LintedFile) -> Iterator[Diagnostic]:
                 short, of = file.short(str(mention[2])), file.short(str(template))
                 message = f"{of} has no parameter {short}, so for it this stands for itself and never for a value."
                 hint = f"Say sc:parameter {short} of {of} as well."
-                yield at(file.positions, file.positions.triples[mention].object, "SC-L15", message, hint=hint)
+                yield file.at(file.positions.triples[mention].object, "SC-L15", message, hint=hint)
 
 
 def _said_for(file: LintedFile, role: Node) -> Iterator[tuple[Node, Node, Node]]:
@@ -255,7 +254,7 @@ def properties_of_roles(file: LintedFile) -> Iterator[Diagnostic]:
                 statement = (role, predicate, value)
                 message = f"{file.short(property_)} is said of the role, which asks no component for it by that."
                 hint = f"Write sh:property [ sh:path {file.short(property_)} ; sh:hasValue ... ]."
-                yield at(file.positions, file.positions.triples[statement].predicate, "SC-L25", message, hint=hint)
+                yield file.at(file.positions.triples[statement].predicate, "SC-L25", message, hint=hint)
 
 
 def idle_words(file: LintedFile) -> Iterator[Diagnostic]:
@@ -274,7 +273,7 @@ def idle_words(file: LintedFile) -> Iterator[Diagnostic]:
             idle = word in SC and word in file.index.terms and shape not in roles | file.source.parameters
         if shape in shapes and idle and (offsets := file.positions.triples.get((shape, predicate, value))):
             message = f"{file.short(word)} says nothing in a shape, so this is passed over."
-            yield at(file.positions, offsets.predicate, "SC-L25", message, hint=_INSTEAD_OF_WORDS.get(word))
+            yield file.at(offsets.predicate, "SC-L25", message, hint=_INSTEAD_OF_WORDS.get(word))
 
 
 def _shapes_named(file: LintedFile, said: Iterable[tuple[Node, Node, Node]]) -> set[Node]:
@@ -294,7 +293,7 @@ def unused_parameters(file: LintedFile) -> Iterator[Diagnostic]:
         if owners and all(str(predicate) == SC.parameter for predicate in uses):
             offset = min(file.positions.triples[owner, URIRef(SC.parameter), parameter].object for owner in owners)
             message = f"No role mentions the parameter {file.short(str(parameter))}."
-            yield at(file.positions, offset, "SC-L10", message)
+            yield file.at(offset, "SC-L10", message)
 
 
 def queried_parameters(file: LintedFile) -> Iterator[Diagnostic]:
@@ -308,7 +307,7 @@ def queried_parameters(file: LintedFile) -> Iterator[Diagnostic]:
                 message = f"The parameter {short} stands for itself in a query, and never for a value."
                 hint = f"Ask for its value beside the query, as by sh:in ( {short} )."
                 offset = file.positions.triples[subject, predicate, query].object
-                yield at(file.positions, offset, "SC-L16", message, hint=hint)
+                yield file.at(offset, "SC-L16", message, hint=hint)
 
 
 def _named(file: LintedFile, query: str) -> set[str]:
@@ -376,4 +375,4 @@ def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, 
         message = f"{file.said(later)} cannot hold of any advertisement, so {effect}. {always}"
     if SH.closed in (later[1], earlier[1]):
         hint = "List what else a component may say in sh:ignoredProperties, at least rdf:type."
-    return at(file.positions, offset, code, message, hint=hint)
+    return file.at(offset, code, message, hint=hint)

@@ -21,7 +21,6 @@ from selfconf.model.literal_values import DATATYPES, MOST_CHARACTERS, TRUTH, num
 from selfconf.model.term import IRI
 from selfconf.rdf import vocabulary
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_PARTS, foreign_terms
-from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.prefilter import TERM_POSITIONS
 from selfconf.rdf.validation.term_index import OWN, STANDARD, TermIndex, namespace
@@ -160,7 +159,7 @@ def properties_as_classes(file: LintedFile) -> Iterator[Diagnostic]:
             meant = next((one for one in sorted(classes) if one.lower() == iri.lower()), None)
             hint = f"Did you mean {file.short(meant)}?" if meant else None
             message = f"{file.short(iri)} is a property, where a class has to stand."
-            yield at(file.positions, offsets.object, "SC-L01" if iri in _SC else "SC-L02", message, hint=hint)
+            yield file.at(offsets.object, "SC-L01" if iri in _SC else "SC-L02", message, hint=hint)
 
 
 def classes_as_properties(file: LintedFile) -> Iterator[Diagnostic]:
@@ -169,12 +168,10 @@ def classes_as_properties(file: LintedFile) -> Iterator[Diagnostic]:
         iri, short = str(value), file.short(str(value))
         if (predicate == SH.path or str(predicate) == _SC.property) and isinstance(value, URIRef):
             if iri in file.index.classes and iri not in file.index.properties:
-                yield at(
-                    file.positions, offsets.object, "SC-L02", f"{short} is a class, where a property has to stand."
-                )
+                yield file.at(offsets.object, "SC-L02", f"{short} is a class, where a property has to stand.")
             elif str(predicate) == _SC.property and iri in file.index.object_properties:
                 message = f"The values of {short} are things, and a cost counts numbers."
-                yield at(file.positions, offsets.object, "SC-L02", message)
+                yield file.at(offsets.object, "SC-L02", message)
 
 
 def _known(iri: str, index: TermIndex) -> bool:
@@ -211,7 +208,7 @@ def _unknown(file: LintedFile, iri: str, offset: int, meant: str | None) -> Diag
     short = file.short(iri)
     fixed = home in _STANDARD or home == _SC.base
     message = f"There is no term {short}." if fixed else f"No loaded ontology declares {short}."
-    return at(file.positions, offset, "SC-L01" if home in (_SC.base, _SH.base) else "SC-L02", message, hint=hint)
+    return file.at(offset, "SC-L01" if home in (_SC.base, _SH.base) else "SC-L02", message, hint=hint)
 
 
 def _elsewhere(iri: str, file: LintedFile) -> str | None:
@@ -246,11 +243,11 @@ def repeated_descriptions(file: LintedFile) -> Iterator[Diagnostic]:
     for thing, other in file.elsewhere.items():
         offset, short = file.offset(URIRef(thing)), file.short(thing)
         if (URIRef(thing), RDF.type, URIRef(_SC.Component)) in file.graph:
-            yield at(file.positions, offset, "SC-L04", f"The component {short} is described in {other} as well.")
+            yield file.at(offset, "SC-L04", f"The component {short} is described in {other} as well.")
         else:
             message = f"The template {short} is described in {other} as well, and not as it is here."
             hint = "Give one of the two another IRI, or describe both alike."
-            yield at(file.positions, offset, "SC-L31", message, hint=hint)
+            yield file.at(offset, "SC-L31", message, hint=hint)
 
 
 def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
@@ -259,7 +256,7 @@ def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
     for prefix, iri, offset in file.positions.prefixes:
         if first.setdefault(prefix, iri) != iri:
             message = f"The prefix {prefix}: has been bound to <{first[prefix]}> before, and is now <{iri}>."
-            yield at(file.positions, offset, "SC-L05", message)
+            yield file.at(offset, "SC-L05", message)
         if (meant := file.index.confused(iri)) is not None:
             yield _confused(file, iri, meant, offset)
 
@@ -278,7 +275,7 @@ def undeclared_prefixes(file: LintedFile) -> Iterator[Diagnostic]:
 def _confused(file: LintedFile, iri: str, meant: str, offset: int) -> Diagnostic:
     severity = Severity.ERROR if meant.startswith(OWN) or meant == _SH.base else Severity.WARNING
     message = f"The namespace <{iri}> is not <{meant}>."
-    return at(file.positions, offset, "SC-L06", message, severity, f"Did you mean <{meant}>?")
+    return file.at(offset, "SC-L06", message, severity, f"Did you mean <{meant}>?")
 
 
 def ownerless_ports(file: LintedFile) -> Iterator[Diagnostic]:
@@ -289,10 +286,10 @@ def ownerless_ports(file: LintedFile) -> Iterator[Diagnostic]:
             if (node, RDF.type, URIRef(_SC.Component)) in file.graph:
                 said = file.positions.triples[next(file.graph.triples((node, URIRef(kind), None)))].predicate
                 message = f"{file.short(kind)} says nothing of a component, so this is passed over."
-                yield at(file.positions, said, "SC-L25", message, hint=f"Say it of a {part} in brackets, by {link}.")
+                yield file.at(said, "SC-L25", message, hint=f"Say it of a {part} in brackets, by {link}.")
             elif (None, None, node) not in file.graph and (node, RDF.type, URIRef(_SC.Interaction)) not in file.graph:
                 message = "No component has this port." if part == "port" else "Nothing has this parameter."
-                yield at(file.positions, file.offset(node), "SC-L17", message, hint=f"Say whose it is, by {link}.")
+                yield file.at(file.offset(node), "SC-L17", message, hint=f"Say whose it is, by {link}.")
 
 
 def untyped_ports(file: LintedFile) -> Iterator[Diagnostic]:
@@ -305,7 +302,7 @@ def untyped_ports(file: LintedFile) -> Iterator[Diagnostic]:
             name = file.graph.value(node, URIRef(_SC.name))
             called = "This port" if name is None else f"The port {str(name)!r}"
             hint = "Give it a sc:signalType, or name it in each sc:Interaction that is to pair it."
-            yield at(file.positions, file.offset(node), "SC-L18", f"{called} has no signal type.", hint=hint)
+            yield file.at(file.offset(node), "SC-L18", f"{called} has no signal type.", hint=hint)
 
 
 def typed_operations(file: LintedFile) -> Iterator[Diagnostic]:
@@ -316,9 +313,7 @@ def typed_operations(file: LintedFile) -> Iterator[Diagnostic]:
             for kind in file.graph.objects(node, signal):
                 message = "An operation has no signal type, so this is passed over."
                 hint = "Say what it takes by sc:request, and what it answers by sc:response."
-                yield at(
-                    file.positions, file.positions.triples[node, signal, kind].predicate, "SC-L24", message, hint=hint
-                )
+                yield file.at(file.positions.triples[node, signal, kind].predicate, "SC-L24", message, hint=hint)
 
 
 def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
@@ -341,7 +336,7 @@ def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
             instead = (_INSTEAD[str(kind), said] for kind in kinds if (str(kind), said) in _INSTEAD)
             hint = next(instead, f"It is said of {owners}.")
             message = f"{file.short(said)} says nothing here, so this is passed over."
-            yield at(file.positions, offsets.predicate, "SC-L25", message, hint=hint)
+            yield file.at(offsets.predicate, "SC-L25", message, hint=hint)
 
 
 def templates_as_groundings(file: LintedFile) -> Iterator[Diagnostic]:
@@ -351,7 +346,7 @@ def templates_as_groundings(file: LintedFile) -> Iterator[Diagnostic]:
             short = file.short(str(grounding))
             offset = file.positions.triples[component, URIRef(_SC.grounding), grounding].object
             message = f"{short} is a template, and what a grounding has inside is its sc:template."
-            yield at(file.positions, offset, "SC-L25", message, hint=f"Write sc:grounding [ sc:template {short} ].")
+            yield file.at(offset, "SC-L25", message, hint=f"Write sc:grounding [ sc:template {short} ].")
 
 
 def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
@@ -363,12 +358,11 @@ def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
         if isinstance(value, Literal):
             message = f"The value of {file.short(predicate)} is a thing with an IRI, not a literal."
             hint = f"Write an IRI, such as :{suggested_local_name(value) or 'kitchen'}."
-            yield at(file.positions, offset, "SC-L07", message, hint=hint)
+            yield file.at(offset, "SC-L07", message, hint=hint)
         elif value in file.source.parameters and (value, SH.datatype, None) in file.graph:
             short = file.short(str(value))
             message = f"The value of {file.short(predicate)} is a thing with an IRI, and {short} stands for a literal."
-            yield at(
-                file.positions,
+            yield file.at(
                 offset,
                 "SC-L07",
                 message,
@@ -384,7 +378,7 @@ def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:
             kinds = " or ".join(map(file.short, wanted))
             message = f"The value of {file.short(predicate)} is of the datatype {kinds}, and this is none."
             hint = f"Write {_written(str(value), wanted[0], file)}."
-            yield at(file.positions, offset, "SC-L26", message, hint=hint)
+            yield file.at(offset, "SC-L26", message, hint=hint)
 
 
 def _values(file: LintedFile) -> Iterator[tuple[str, Node, int]]:
@@ -415,4 +409,4 @@ def local_components(file: LintedFile) -> Iterator[Diagnostic]:
         if isinstance(component, URIRef) and component.startswith("file:"):
             message = "The IRI of this component is relative, so it changes with the place of the file."
             hint = "Declare a prefix, or a @base that starts with https:."
-            yield at(file.positions, file.offset(component), "SC-L08", message, hint=hint)
+            yield file.at(file.offset(component), "SC-L08", message, hint=hint)
