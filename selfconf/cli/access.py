@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, joined
 from selfconf.cli.tasks import code_of_tasks
-from selfconf.cli.terminal import complain, display_json
+from selfconf.cli.terminal import complain, display, display_json
 from selfconf.errors import AuthorError
 from selfconf.model.wording import client_text, utc_text
 
@@ -63,7 +63,7 @@ def _believe(given: argparse.Namespace, site: str, component: str) -> int:
         raise AuthorError("which programs shall believe it? give their folder of keys: --keys DIR")
     iri = written_component(component)  # no ecology is asked, which would know of which component it is the local name
     believe(folder, iri, site)
-    print(f"programs with the folder {folder} believe that {iri} is that of site {site}")
+    display(f"programs with the folder {folder} believe that {iri} is that of site {site}")
     return 0
 
 
@@ -79,7 +79,7 @@ def _task(given: argparse.Namespace, ecology: LivingEcology) -> int:
         display_json({"task": given.task, "hears": [{"component": c, "of": list(o)} for c, o in links.items()]})
         return 0
     for component, heard in links.items():
-        print(f"{component!r} hears {', '.join(map(repr, heard)) or 'no component'}")
+        display(f"{component!r} hears {', '.join(map(repr, heard)) or 'no component'}")
     return 0
 
 
@@ -112,14 +112,14 @@ def _body(site: SiteAccess) -> dict[str, Any]:
 
 
 def _tell(site: SiteAccess) -> None:
-    print(f"site {site.site}")
+    display(f"site {site.site}")
     for one in site.accesses:
         about = [site.components.get(chunk, chunk) for chunk in one.about]
         whose = f" ({', '.join(about[:3])}{', ...' * (len(about) > 3)})" if about else ""
-        print(f"  {one.principal or 'everybody'}{whose}: {one.sentence}")
-    print(f"  refused: {'nothing' if not site.refused else ''}")
+        display(f"  {one.principal or 'everybody'}{whose}: {one.sentence}")
+    display(f"  refused: {'nothing' if not site.refused else ''}")
     for refused in site.refused:
         at = datetime.fromtimestamp(refused.latest, timezone.utc)
         where = f" on {refused.key}" if refused.key else ""
         what = f"{client_text(refused.principal)}: {refused.attempt}{where}"
-        print(f"    {what}, {refused.number} times, latest {utc_text(at)}")
+        display(f"    {what}, {refused.number} times, latest {utc_text(at)}")

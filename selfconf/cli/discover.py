@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
-from selfconf.cli.terminal import display_json, styled_state
+from selfconf.cli.terminal import display, display_json, styled_state
 
 if TYPE_CHECKING:
     from selfconf.api.living.component_states import ComponentState
@@ -37,10 +37,10 @@ def run(given: argparse.Namespace) -> int:
         body = {"ecology": ecology.name, "components": [one.body() for one in states], "sites": discovery.sites}
         display_json({**body, "missing": discovery.missing})
         return 0
-    print(_table(states))
+    display(_table(states))
     for line in _sentences(states, disobedient):
-        print(line)
-    print(f"{count(len(states), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
+        display(line)
+    display(f"{count(len(states), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
     return 0
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_format_argument, domain
-from selfconf.cli.terminal import complain, display_json
+from selfconf.cli.terminal import complain, display, display_json
 from selfconf.errors import AuthorError
 from selfconf.model.wording import listed
 
@@ -104,9 +104,9 @@ def _print_table(report: ImportReport) -> None:
 
     rows = [[str(file.path), file.state.value, str(len(_components(file)))] for file in report.files]
     if rows:
-        print(table(["file", "is", "components"], rows))
+        display(table(["file", "is", "components"], rows))
     components = sum(len(_components(file)) for file in report.files)
-    print(f"{count(components, 'component')} in {count(len(rows), 'file')}")
+    display(f"{count(components, 'component')} in {count(len(rows), 'file')}")
 
 
 def _components(file: ImportedFile) -> list[dict[str, Any]]:

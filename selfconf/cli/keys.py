@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_keys_argument
 from selfconf.cli.parsing import add_parser
-from selfconf.cli.terminal import display_json
+from selfconf.cli.terminal import display, display_json
 from selfconf.errors import AuthorError
 from selfconf.model.wording import utc_text
 
@@ -91,7 +91,7 @@ def _init(given: argparse.Namespace) -> int:
     from selfconf.access import Authority
 
     Authority.init(given.folder)
-    print(f"made an authority in {given.folder}; this folder permits everything, so keep it to yourself")
+    display(f"made an authority in {given.folder}; this folder permits everything, so keep it to yourself")
     return 0
 
 
@@ -100,13 +100,13 @@ def _issue(given: argparse.Namespace) -> int:
 
     certificate = _authority(given).issue(Principal.written(given.holder), given.out, given.host, given.days)
     until = utc_text(certificate.ends)
-    print(f"{given.out} speaks for {certificate.common_name}, until {until}; give it to its holder")
+    display(f"{given.out} speaks for {certificate.common_name}, until {until}; give it to its holder")
     return 0
 
 
 def _renew(given: argparse.Namespace) -> int:
     certificate = _authority(given).renew(given.folder, given.days)
-    print(f"{given.folder} speaks for {certificate.common_name}, until {utc_text(certificate.ends)}")
+    display(f"{given.folder} speaks for {certificate.common_name}, until {utc_text(certificate.ends)}")
     return 0
 
 
@@ -115,13 +115,13 @@ def _revoke(given: argparse.Namespace) -> int:
 
     authority, principal = _authority(given), Principal.written(given.holder)
     number = authority.revoke(principal)
-    print(f"revoked {number} certificate{'s' * (number != 1)} of {principal}")
+    display(f"revoked {number} certificate{'s' * (number != 1)} of {principal}")
     if authority.aware():
-        print("the folders of keys that were issued on this machine, and are where they were, know it")
-    print(f"copy {authority.path / 'revoked.pem'} into the folder of keys of every site on another machine")
+        display("the folders of keys that were issued on this machine, and are where they were, know it")
+    display(f"copy {authority.path / 'revoked.pem'} into the folder of keys of every site on another machine")
     for site, folder in authority.unaware():
         where = "" if folder is None else f", which is not in {folder} any more, or cannot be written"
-        print(f"copy it into the folder of {site} too{where}")
+        display(f"copy it into the folder of {site} too{where}")
     return 0
 
 
@@ -135,9 +135,9 @@ def _show(given: argparse.Namespace) -> int:
     if given.format == "json":
         display_json({"authority": folder.is_authority, "certificates": shown})
     else:
-        print(f"{given.folder}: {'an authority' if folder.is_authority else 'keys of a holder'}")
+        display(f"{given.folder}: {'an authority' if folder.is_authority else 'keys of a holder'}")
         for one in shown:
-            print(f"  {one['name']:<24} until {one['ends']}  {one['fault'] or 'good'}")
+            display(f"  {one['name']:<24} until {one['ends']}  {one['fault'] or 'good'}")
     return 1 if not folder.is_authority and shown[0]["fault"] else 0
 
 

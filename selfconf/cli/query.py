@@ -20,7 +20,7 @@ from selfconf.cli.options import (
     one_stdin,
     rows_option,
 )
-from selfconf.cli.terminal import complain
+from selfconf.cli.terminal import complain, display
 from selfconf.errors import AuthorError
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def _add_past(dataset: Dataset, folder: Path) -> None:
 
 
 def _told(shown: Shown, rows: int) -> int:
-    print(shown.text)
+    display(shown.text)
     if shown.cut:
         complain(f"there are more than {rows} rows; ask for less, or for more by --rows")
     if shown.remark:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from selfconf.cli.options import add_ontology_argument, add_reasoning_argument
 from selfconf.cli.site_options import add_site_arguments
-from selfconf.cli.terminal import complaining_aside
+from selfconf.cli.terminal import complaining_aside, display
 
 EXAMPLE = """  selfconf site examples/peis-home --ecology home
   selfconf site restart person-tracker"""
@@ -80,5 +80,5 @@ def _restart(given: argparse.Namespace) -> int:
         given.misused("restart takes one component, by its IRI or local name; a folder of that name is ./restart")
     with joined(given) as ecology:
         now = ecology.restart(given.paths[1])
-    print(f"{now.component} lives again at site {now.site}: {now.place}")
+    display(f"{now.component} lives again at site {now.site}: {now.place}")
     return 0

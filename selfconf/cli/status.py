@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 from selfconf.cli.tasks import code_of_tasks
-from selfconf.cli.terminal import STATE_COLOURS, complain, display_json, paint
+from selfconf.cli.terminal import STATE_COLOURS, complain, display, display_json, paint
 from selfconf.model.term import IRI
 from selfconf.model.wording import one_line
 
@@ -41,9 +41,9 @@ def run(given: argparse.Namespace) -> int:
         display_json(bodies)
         return code
     if not found and not code:
-        print(f"nothing is deployed in ecology {ecology.name}")
+        display(f"nothing is deployed in ecology {ecology.name}")
     for line in _told(found, deployed, disobedient):
-        print(line)
+        display(line)
     return code
 
 

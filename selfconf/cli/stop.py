@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
-from selfconf.cli.terminal import display_json
+from selfconf.cli.terminal import display, display_json
 
 EXAMPLE = """  selfconf stop"""
 
@@ -29,5 +29,5 @@ def run(given: argparse.Namespace) -> int:
         display_json({"ecology": ecology.name, "stopped": found})
         return 0
     where = f"in ecology {ecology.name}"
-    print(f"took down {', '.join(found)} {where}" if found else f"nothing is deployed {where}")
+    display(f"took down {', '.join(found)} {where}" if found else f"nothing is deployed {where}")
     return 0

@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
-from selfconf.cli.terminal import display_json
+from selfconf.cli.terminal import display, display_json
 
 if TYPE_CHECKING:
     from selfconf.api.living.living_ecology import LivingEcology
@@ -46,9 +46,9 @@ def run(given: argparse.Namespace) -> int:
             for task in found
         ]
         head = ["task", "priority", "phase", "since", "configurator", "lives in", "components"]
-        print(table(head, rows))
+        display(table(head, rows))
     elif not code:
-        print(f"there is no task in ecology {ecology.name}")
+        display(f"there is no task in ecology {ecology.name}")
     return code
 
 

@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
-from selfconf.cli.terminal import display_json
+from selfconf.cli.terminal import display, display_json
 from selfconf.model.moments import parsed_moment
 
 EXAMPLE = """  selfconf why position
@@ -58,9 +58,9 @@ def _tell(given: argparse.Namespace, sentences: Sequence[str], where: str) -> in
     if given.format == "json":
         display_json({"term": given.term, "at": given.at, "sentences": list(sentences)})
     elif sentences:
-        print("\n".join(sentences))
+        display("\n".join(sentences))
     else:
-        print(f"no task has to do with {given.term}{where}")
+        display(f"no task has to do with {given.term}{where}")
     return 0 if sentences else 1
 
 

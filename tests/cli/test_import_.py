@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 from pathlib import Path
 
 import jsonschema
@@ -11,6 +13,7 @@ from referencing import Registry, Resource
 
 from selfconf import library
 from selfconf.api.living import living_import
+from selfconf.cli.main import main
 from selfconf.importing import ImportReport
 from tests.cli.command import run
 
@@ -103,6 +106,16 @@ def test_a_document_that_cannot_be_read_is_named_with_its_place_and_the_rest_is_
     assert outcome.err.startswith("things/bad.json:2:7: this is not JSON")
     assert "there is no file or folder nowhere" in outcome.err
     assert (things.parent / "ads" / "lamp.ttl").is_file()
+
+
+def test_the_exit_code_is_the_same_where_the_reader_of_the_table_has_gone(
+    things: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ours, theirs = os.pipe()
+    os.close(ours)
+    with os.fdopen(theirs, "w", buffering=1) as pipe:  # each line at once, as with PYTHONUNBUFFERED in a container
+        monkeypatch.setattr(sys, "stdout", pipe)
+        assert main(["import", "wot", "things", "nowhere", "--out", "ads"]) == 2
 
 
 def test_a_file_of_somebody_else_stops_the_import(things: Path, capsys: pytest.CaptureFixture[str]) -> None:
