@@ -12,13 +12,14 @@ signals match is seen in the widest sense, that of the loaded ontologies.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from rdflib import RDF, SH, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.model.strong_components import strong_components
 from selfconf.model.wording import listed
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
@@ -50,7 +51,7 @@ class Ask(NamedTuple):
 def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
     """Loops of roles that feed only each other, with no actuator among them."""
     for roles, links in _templates(file):
-        for loop in _loops(roles, links):
+        for loop in _loops(links):
             inside = [link for link in links if link.source in loop]
             if all(link.sink in loop for link in inside) and not any(_comes_out(file, role) for role in loop):
                 names = listed([file.short(str(role)) for role in roles if role in loop])
@@ -65,13 +66,17 @@ def idle_loops(file: LintedFile) -> Iterator[Diagnostic]:
                 yield file.at(max(closing), "SC-L12", message, hint=hint)
 
 
-def _loops(roles: Sequence[Node], links: Iterable[RoleLink]) -> set[frozenset[Node]]:
+def _loops(links: Collection[RoleLink]) -> Collection[set[Node]]:
     """The roles that feed each other in a circle, as many of them together as do."""
     feeds: dict[Node, set[Node]] = {}
     for link in links:
         feeds.setdefault(link.source, set()).add(link.sink)
-    after = {role: _reached(role, feeds) for role in roles}
-    return {frozenset(two for two in after[one] if one in after[two]) for one in roles if one in after[one]}
+    group = strong_components(feeds)
+    loops: dict[Node, set[Node]] = {}
+    for source, sink, *_ in links:
+        if group[source] == group[sink]:
+            loops.setdefault(group[source], set()).update((source, sink))
+    return loops.values()
 
 
 def starving_inputs(file: LintedFile) -> Iterator[Diagnostic]:
@@ -127,18 +132,6 @@ def _templates(file: LintedFile) -> Iterator[tuple[list[Node], list[RoleLink]]]:
                 ports = graph.value(node, URIRef(SC.output)), graph.value(node, URIRef(SC.input))
                 links.append(RoleLink(source, sink, *ports, places[node, URIRef(SC.to), sink].object))
         yield roles, links
-
-
-def _reached(role: Node, feeds: Mapping[Node, set[Node]]) -> set[Node]:
-    """The roles that a role feeds, also by way of others."""
-    found: set[Node] = set()
-    waiting = [role]
-    while waiting:
-        source = waiting.pop()
-        fed = feeds.get(source, set()) - found
-        found |= fed
-        waiting += fed
-    return found
 
 
 def _comes_out(file: LintedFile, role: Node) -> bool:
