@@ -15,6 +15,9 @@ from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
 from selfconf.rdf.turtle import Triple
 from selfconf.rdf.vocabulary import PROV, SC, TYPE, XSD
 
+CONFIGURATION = "urn:selfconf:configuration:"
+"""What the names of deployed configurations begin with."""
+
 
 def moment(seconds: float) -> Literal:
     """A time, in seconds of the Unix epoch, as xsd:dateTime."""
@@ -25,7 +28,7 @@ def configuration_iri(configuration: Configuration, epoch: int) -> IRI:
     """A name for a deployed configuration: what it is and when."""
     plain = replace(configuration, bindings=dict(configuration.bindings))  # whatever kind of mapping it holds
     digest = hashlib.blake2s(repr((plain, epoch, *configuration.recruits)).encode(), digest_size=8).hexdigest()
-    return IRI.unchecked(f"urn:selfconf:configuration:{digest}")
+    return IRI.unchecked(CONFIGURATION + digest)
 
 
 @immutable

@@ -13,6 +13,8 @@ from selfconf.protocol.messages import TaskRecord
 
 Body = dict[str, Any]
 """A JSON object."""
+DEPLOYED = "urn:selfconf:selfconf/"
+"""What the names of the graphs begin with in which configurators tell what they have deployed."""
 
 
 @immutable

@@ -24,15 +24,13 @@ import pyoxigraph as ox
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import configurator_of
-from selfconf.rdf.provenance import failure_triples, moment
+from selfconf.rdf.provenance import CONFIGURATION, failure_triples, moment
 from selfconf.rdf.turtle import ox_term
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
-from selfconf.serve.watching.change import Body
+from selfconf.serve.watching.change import DEPLOYED, Body
 
 log = logging.getLogger(__name__)
 
-DEPLOYED = "urn:selfconf:selfconf/"
-"""What the names of the graphs begin with in which configurators tell what they have deployed."""
 MOST_KEPT = 5000
 """How many configurations are kept; then the oldest one goes."""
 KEPT_FOR = 366 * 86_400.0
@@ -229,10 +227,11 @@ class History:
 
 
 def _configuration(quads: Iterable[ox.Quad]) -> str | None:
-    """The configuration that some quads describe, if they do."""
+    """The configuration that some quads describe, if they do; none that is called as a component may be."""
     kind, wanted = ox.NamedNode(TYPE), ox.NamedNode(SC.Configuration)
     found = (q.subject for q in quads if (q.predicate, q.object) == (kind, wanted))
-    return next((subject.value for subject in found if isinstance(subject, ox.NamedNode)), None)
+    names = (subject.value for subject in found if isinstance(subject, ox.NamedNode))
+    return next((name for name in names if name.startswith(CONFIGURATION)), None)
 
 
 def _configurator(graph: str) -> str:

@@ -16,7 +16,8 @@ from selfconf.discovery import Beliefs, Discovery, EcologyView, FoundAdvertiseme
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.rdf import turtle
-from selfconf.serve.watching.change import Body, EcologyChange
+from selfconf.rdf.provenance import CONFIGURATION
+from selfconf.serve.watching.change import DEPLOYED, Body, EcologyChange
 from selfconf.serve.watching.component_bodies import component_body
 from selfconf.serve.watching.task_watcher import TOGETHER, TaskWatcher
 
@@ -97,8 +98,7 @@ class EcologyWatcher:
         self._chunks.update({component_chunk(component): component for component in new})
         bodies = {component: component_body(found, self._state(component)) for component, found in new.items()}
         self._components.update(bodies)
-        graphs = {str(c): turtle.ntriples(found.advertisement.triples) for c, found in new.items()}
-        graphs |= {str(c): b"" for c in gone}
+        graphs = _graphs({**new, **gone})
         shown: dict[str, Body | None] = {str(component): body for component, body in bodies.items()}
         shown |= {str(component): None for component in gone}
         sites = self._changed_sites(discovery)
@@ -190,6 +190,18 @@ class EcologyWatcher:
     def _hand_on(self, change: EcologyChange) -> None:
         if not change.empty:
             self._tell(change)
+
+
+def _graphs(advertised: Mapping[IRI, FoundAdvertisement | None]) -> dict[str, bytes]:
+    """What components advertise now, as N-Triples by the name of the graph.
+
+    A component may have any name; its graph is not to take the place of what configurators tell.
+    """
+    return {
+        str(component): b"" if found is None else turtle.ntriples(found.advertisement.triples)
+        for component, found in advertised.items()
+        if not component.startswith((DEPLOYED, CONFIGURATION))
+    }
 
 
 def _moment(event: Body) -> float:

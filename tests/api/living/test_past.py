@@ -8,10 +8,11 @@ import pytest
 
 from selfconf.api.living.past import past_configurations, past_graphs, past_why
 from selfconf.errors import AuthorError
+from selfconf.rdf.provenance import CONFIGURATION
 from selfconf.rdf.turtle import ntriples, parse
 from selfconf.rdf.vocabulary import SC
-from selfconf.serve.watching.change import EcologyChange
-from selfconf.serve.watching.history import DEPLOYED, History
+from selfconf.serve.watching.change import DEPLOYED, EcologyChange
+from selfconf.serve.watching.history import History
 from selfconf.serve.watching.watcher import EcologyWatcher
 from tests.lab import ADVERTISEMENTS, Lab, iri
 
@@ -30,7 +31,7 @@ class Clock:
 def told(number: int, position: str, before: str = "", at: float = 0.0) -> bytes:
     """What a configurator tells of a configuration, which the loss of another position has led to."""
     failure = (
-        f"prov:wasRevisionOf <urn:c:{number - 1}> ;"
+        f"prov:wasRevisionOf <{CONFIGURATION}{number - 1}> ;"
         f' prov:wasInfluencedBy [ sc:component :{before} ; sc:cause "fail" ; sc:detail "out of view" ;'
         f' prov:atTime "1970-01-12T13:46:{int(at - 1_000_000 + 40):02}.000+00:00"^^xsd:dateTime ] ;'
         if before
@@ -39,7 +40,7 @@ def told(number: int, position: str, before: str = "", at: float = 0.0) -> bytes
     over = f"; sc:passedOver :{before}" if before else ""
     text = f"""@prefix : <https://example.org/peis-home#> . @prefix sc: <https://w3id.org/selfconf#> .
         @prefix prov: <http://www.w3.org/ns/prov#> . @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
-        <urn:c:{number}> a sc:Configuration ; sc:template :navigate ; sc:task [ sc:template :navigate ] ;
+        <{CONFIGURATION}{number}> a sc:Configuration ; sc:template :navigate ; sc:task [ sc:template :navigate ] ;
             prov:wasAttributedTo <urn:selfconf:configurator:c1> ; {failure}
             prov:generatedAtTime "1970-01-12T13:46:{int(at - 1_000_000 + 40):02}.500+00:00"^^xsd:dateTime ;
             sc:assignment [ sc:role :position ; sc:component :{position} {over} ] ."""

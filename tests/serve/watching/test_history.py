@@ -10,18 +10,25 @@ import pytest
 
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
+from selfconf.rdf.provenance import CONFIGURATION
 from selfconf.rdf.turtle import ntriples, parse
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
 from selfconf.serve.watching import history
-from selfconf.serve.watching.history import DEPLOYED, History
+from selfconf.serve.watching.change import DEPLOYED
+from selfconf.serve.watching.history import History
 from tests.lab import Lab, iri
 
 GRAPH, OTHER_GRAPH = DEPLOYED + "lab/conf/c1/cfg", DEPLOYED + "lab/conf/c2/cfg"
 
 
+def name(number: int) -> str:
+    """What a configuration is called."""
+    return f"{CONFIGURATION}{number}"
+
+
 def told(number: int) -> bytes:
     """What a configurator tells of a configuration."""
-    text = f"""<urn:c:{number}> a <https://w3id.org/selfconf#Configuration> ;
+    text = f"""<{name(number)}> a <https://w3id.org/selfconf#Configuration> ;
         <http://www.w3.org/ns/prov#generatedAtTime> "2026-01-01T00:00:{number:02}Z" ;
         <https://w3id.org/selfconf#assignment> [ <https://w3id.org/selfconf#role> <urn:role> ] ."""
     return ntriples(parse(text, "cfg").triples())
@@ -31,11 +38,19 @@ def test_a_configuration_ends_when_another_takes_its_place_or_its_configurator_g
     kept = History(tmp_path, lambda: 86_400.0)
     assert kept.note({GRAPH: told(1), "urn:a-component": told(9)}) == {}
     (ended,) = kept.note({GRAPH: told(2)}).items()
-    assert ended[0] == "urn:c:1"
+    assert ended[0] == name(1)
     assert b'invalidatedAtTime> "1970-01-02T00:00:00' in ended[1]
     assert kept.note({GRAPH: told(2)}) == {}
-    assert list(kept.note({GRAPH: b""})) == ["urn:c:2"]
-    assert set(kept.past()) == {"urn:c:1", "urn:c:2"}
+    assert list(kept.note({GRAPH: b""})) == [name(2)]
+    assert set(kept.past()) == {name(1), name(2)}
+
+
+def test_what_is_called_as_a_component_may_be_is_no_configuration(tmp_path: Path) -> None:
+    """Else its end would be told in the graph of the component, in place of what that advertises."""
+    kept = History(tmp_path)
+    kept.note({GRAPH: f"<urn:lamp> <{TYPE}> <{SC.Configuration}> .\n".encode()})
+    assert kept.note({GRAPH: b""}) == {}
+    assert kept.past() == {}
 
 
 def test_a_configuration_that_is_told_after_its_end_has_ended_once(tmp_path: Path) -> None:
@@ -43,16 +58,16 @@ def test_a_configuration_that_is_told_after_its_end_has_ended_once(tmp_path: Pat
     for number in (1, 2, 1, 3):
         kept.note({GRAPH: told(number)})
     ends = {name: triples.count(b"invalidatedAtTime") for name, triples in kept.past().items()}
-    assert ends == {"urn:c:1": 1, "urn:c:2": 1, "urn:c:3": 0}
+    assert ends == {name(1): 1, name(2): 1, name(3): 0}
 
 
 def test_a_configuration_that_is_deployed_again_after_its_end_runs(tmp_path: Path) -> None:
     kept = History(tmp_path)
     kept.note({GRAPH: told(1)})
-    assert list(kept.note({GRAPH: b""})) == ["urn:c:1"]  # as where the server was cut off for a while
-    assert kept.note({GRAPH: told(1)}) == {"urn:c:1": b""}, "it is none of the past any more"
-    assert b"invalidatedAtTime" not in kept.past()["urn:c:1"]
-    assert b"invalidatedAtTime" in kept.note({GRAPH: told(2)})["urn:c:1"]
+    assert list(kept.note({GRAPH: b""})) == [name(1)]  # as where the server was cut off for a while
+    assert kept.note({GRAPH: told(1)}) == {name(1): b""}, "it is none of the past any more"
+    assert b"invalidatedAtTime" not in kept.past()[name(1)]
+    assert b"invalidatedAtTime" in kept.note({GRAPH: told(2)})[name(1)]
 
 
 @pytest.mark.parametrize("first", [OTHER_GRAPH, GRAPH], ids=["told before the end", "told after it"])
@@ -61,8 +76,8 @@ def test_a_configuration_with_which_another_configurator_goes_on_has_not_ended(t
     kept.note({GRAPH: told(1)})
     for graph in (first, GRAPH if first is OTHER_GRAPH else OTHER_GRAPH):
         kept.note({graph: told(1) if graph is OTHER_GRAPH else b""})
-    assert b"invalidatedAtTime" not in kept.past()["urn:c:1"]
-    assert list(kept.note({OTHER_GRAPH: b""})) == ["urn:c:1"]
+    assert b"invalidatedAtTime" not in kept.past()[name(1)]
+    assert list(kept.note({OTHER_GRAPH: b""})) == [name(1)]
 
 
 def test_where_nothing_takes_its_place_a_configuration_says_which_of_its_components_failed(tmp_path: Path) -> None:
@@ -70,12 +85,12 @@ def test_where_nothing_takes_its_place_a_configuration_says_which_of_its_compone
     part = {"act": "lost", "configurator": "c1", "component": "urn:lamp", "cause": "crash", "detail": "", "time": 80.0}
     others = ({**part, "component": "urn:other"}, {**part, "configurator": "c2", "cause": "fail"}, {"act": "lost"})
     for number, event in ((1, part), (2, {**part, "cause": "fail", "detail": "dark", "time": 1e11})):
-        kept.note({GRAPH: told(number) + f"<urn:c:{number}> <{SC.recruited}> <urn:lamp> .\n".encode()})
+        kept.note({GRAPH: told(number) + f"<{name(number)}> <{SC.recruited}> <urn:lamp> .\n".encode()})
         kept.note({}, (event, *others))
-    first, second = kept.past()["urn:c:1"], kept.note({GRAPH: b""})["urn:c:2"]
+    first, second = kept.past()[name(1)], kept.note({GRAPH: b""})[name(2)]
     assert b"Failure" not in first  # the second one says what has led to it
     document = parse(second, "second")
-    (failure,) = document.values(IRI("urn:c:2"), PROV.qualifiedInvalidation)
+    (failure,) = document.values(IRI(name(2)), PROV.qualifiedInvalidation)
     assert {(p, getattr(o, "lexical", o)) for p, o in document.about(failure)} == {
         (TYPE, SC.Failure), (SC.component, "urn:lamp"), (SC.cause, "fail"), (SC.detail, "dark"),
         (PROV.atTime, "1970-01-01T00:01:30Z"),
@@ -89,10 +104,10 @@ def test_it_is_there_for_the_next_server(tmp_path: Path) -> None:
     first.note({GRAPH + "2": told(4)})
     first.close()
     second = History(tmp_path)
-    assert set(second.past()) == {"urn:c:1", "urn:c:2"}
+    assert set(second.past()) == {name(1), name(2)}
     second.note({GRAPH: told(3)})
-    assert set(second.settle()) == {"urn:c:4"}
-    assert set(second.note({GRAPH: b""})) == {"urn:c:3"}
+    assert set(second.settle()) == {name(4)}
+    assert set(second.note({GRAPH: b""})) == {name(3)}
 
 
 def test_what_runs_on_is_none_of_the_past_however_late_the_next_server_hears_of_it(tmp_path: Path) -> None:
@@ -100,8 +115,8 @@ def test_what_runs_on_is_none_of_the_past_however_late_the_next_server_hears_of_
     first.note({GRAPH: told(1)})
     first.close()
     second = History(tmp_path)
-    assert set(second.settle()) == {"urn:c:1"}
-    assert second.note({GRAPH: told(1)}) == {"urn:c:1": b""}
+    assert set(second.settle()) == {name(1)}
+    assert second.note({GRAPH: told(1)}) == {name(1): b""}
 
 
 def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -109,7 +124,7 @@ def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, monkeypatch: pyte
     kept = History(tmp_path)
     for number in range(6):
         kept.note({GRAPH: told(number)})
-    assert set(kept.past()) == {"urn:c:3", "urn:c:4", "urn:c:5"}
+    assert set(kept.past()) == {name(3), name(4), name(5)}
 
 
 def test_what_a_change_takes_does_not_grow_with_what_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -118,7 +133,7 @@ def test_what_a_change_takes_does_not_grow_with_what_is_kept(tmp_path: Path, mon
         kept.note({GRAPH: told(number)})
     monkeypatch.setattr(History, "_generated", lambda self, name: asked.append(name) or generated(self, name))
     kept.note({GRAPH: told(40)})
-    assert asked == ["urn:c:40"]
+    assert asked == [name(40)]
     kept.close()
 
 
@@ -128,7 +143,7 @@ def test_the_oldest_go_first_for_the_next_server_too(tmp_path: Path, monkeypatch
         first.note({GRAPH: told(number)})
     first.close()
     monkeypatch.setattr(history, "MOST_KEPT", 3)
-    assert set(History(tmp_path).note({GRAPH: told(4)})) == {"urn:c:1"}
+    assert set(History(tmp_path).note({GRAPH: told(4)})) == {name(1)}
 
 
 def test_what_a_full_disk_did_not_take_is_noted_once_there_is_room(tmp_path: Path) -> None:
@@ -143,13 +158,13 @@ def test_what_a_full_disk_did_not_take_is_noted_once_there_is_room(tmp_path: Pat
                 )
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, room)
-    assert list(kept.note({GRAPH + "2": told(4)})) == ["urn:c:1"]
-    assert list(kept.note({GRAPH: b""})) == ["urn:c:3"]
+    assert list(kept.note({GRAPH + "2": told(4)})) == [name(1)]
+    assert list(kept.note({GRAPH: b""})) == [name(3)]
     kept.close()
     later = History(tmp_path)
     ends = {name: triples.count(b"invalidatedAtTime") for name, triples in later.past().items()}
-    assert ends == {"urn:c:1": 1, "urn:c:3": 1}
-    assert set(later.settle()) == {"urn:c:4"}
+    assert ends == {name(1): 1, name(3): 1}
+    assert set(later.settle()) == {name(4)}
 
 
 @pytest.mark.parametrize("renamed", [False, True])
@@ -163,16 +178,16 @@ def test_a_history_that_was_removed_begins_anew_with_what_is_deployed(
     place.rename(renamed_to)
     if not renamed:
         shutil.rmtree(renamed_to, ignore_errors=True)  # the store may be writing into it
-    assert list(kept.note({GRAPH: told(4)})) == ["urn:c:2"]
+    assert list(kept.note({GRAPH: told(4)})) == [name(2)]
     assert [record.getMessage() for record in caplog.records] == [
         f"the history in {place} is not there any more; a new one begins there"
     ]
     kept.close()
     later = History(place)
-    assert set(later.past()) == {"urn:c:2"}
-    assert set(later.settle()) == {"urn:c:3", "urn:c:4"}
+    assert set(later.past()) == {name(2)}
+    assert set(later.settle()) == {name(3), name(4)}
     if renamed:
-        assert set(History(renamed_to).past()) == {"urn:c:1"}
+        assert set(History(renamed_to).past()) == {name(1)}
 
 
 def test_what_cannot_be_written_at_the_end_is_a_sentence(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
@@ -189,8 +204,8 @@ def test_what_is_older_than_a_year_goes_unless_it_runs_still(tmp_path: Path) -> 
     for number, graph in ((1, GRAPH), (2, GRAPH), (3, GRAPH + "2")):
         kept.note({graph: told(number)})
     now[0] += history.KEPT_FOR
-    assert kept.note({GRAPH: told(4)}) == {"urn:c:1": b"", "urn:c:2": b""}
-    assert set(kept.past()) == {"urn:c:3", "urn:c:4"}
+    assert kept.note({GRAPH: told(4)}) == {name(1): b"", name(2): b""}
+    assert set(kept.past()) == {name(3), name(4)}
 
 
 def test_a_folder_that_another_server_uses_is_a_sentence(tmp_path: Path) -> None:

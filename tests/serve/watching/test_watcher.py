@@ -10,7 +10,8 @@ import pytest
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
-from selfconf.serve.watching.change import EcologyChange
+from selfconf.rdf.provenance import CONFIGURATION
+from selfconf.serve.watching.change import DEPLOYED, EcologyChange
 from selfconf.serve.watching.task_watcher import LOOK_ANEW
 from selfconf.serve.watching.watcher import ASKED_AGAIN, EcologyWatcher
 from selfconf.site.site import Site
@@ -76,6 +77,16 @@ def test_it_sees_what_is_advertised_where_it_is_and_whether_it_lives(lab: Lab) -
     lab.let_pass(3.0)
     assert seen.components[iri("person-tracker")]["state"] == "absent"
     assert [event["component"] for event in seen.acts("ended")] == [iri("person-tracker")]
+
+
+@pytest.mark.parametrize("begins", [DEPLOYED, CONFIGURATION])
+def test_what_a_component_advertises_stands_in_no_graph_of_a_configurator(tmp_path: Path, begins: str) -> None:
+    lab, name = Lab(tmp_path, advertised={"odd": f"<{begins}x> a sc:Component, rob:Camera ."}), f"{begins}x"
+    lab.site("attic", "odd")
+    seen = Seen(lab)
+    lab.let_pass(1.0)
+    assert name in seen.components
+    assert name not in seen.graphs
 
 
 def test_it_sees_a_configuration_change_when_something_fails_and_why(lab: Lab) -> None:
