@@ -232,7 +232,7 @@ def test_a_file_with_a_problem_and_too_many_statements_is_refused_before_it_is_c
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(checking, "MOST_STATEMENTS", 50)
-    monkeypatch.setattr(file_check.FileCheck, "of", None)  # it is not asked
+    monkeypatch.setattr(file_check, "problems_of", None)  # it is not asked
     (problem,) = check("\n".join(f":x{n} sh:nodeKind :y{n} ." for n in range(51))).diagnostics
     assert (problem.code, problem.line) == ("SC-S05", 1)
     assert "51 statements" in problem.message

@@ -68,15 +68,9 @@ class FileChecker:
     def __call__(self, suspect: UnclearedFile) -> list[Diagnostic]:
         """The problems of a file."""
         # rdflib and pySHACL take longer to load than thousands of good files take to pass.
-        from selfconf.rdf.validation.described_elsewhere import descriptions
-        from selfconf.rdf.validation.file_check import FileCheck, shapes_of
+        from selfconf.rdf.validation.file_check import problems_of, shapes_of
 
-        check = FileCheck(shapes_of(*(source.text() for source in self.shapes)), self.index)
-        source = suspect.source
-        beside = descriptions(
-            (other.octets.removeprefix(BOM_UTF8), other.name, other.base, things) for other, things in suspect.beside
-        )
-        return check.of(source.text(), source.name, source.base, suspect.elsewhere, beside)
+        return problems_of(suspect, shapes_of(*(source.text() for source in self.shapes)), self.index)
 
     @cached_property
     def knowledge(self) -> bytes:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from codecs import BOM_UTF8
 from functools import lru_cache
 
 from rdflib import Graph
 
 from selfconf.model.diagnostic import Diagnostic, Severity
-from selfconf.model.immutable import immutable
 from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.positions import NotTurtleError, Positions, parse_with_positions
+from selfconf.rdf.validation.checking import UnclearedFile
+from selfconf.rdf.validation.described_elsewhere import descriptions
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.input_shapes import unaccepted_shapes
 from selfconf.rdf.validation.lints.all_lints import lint
@@ -33,42 +34,38 @@ def shapes_of(*texts: str) -> Shapes:
     return Shapes.of(graph)
 
 
-@immutable
-class FileCheck:
-    """What the check of a file needs, for any number of files."""
+def problems_of(uncleared: UnclearedFile, shapes: Shapes, index: TermIndex) -> list[Diagnostic]:
+    """The problems of one file, in no particular order, by what every file keeps to and the terms that are known."""
+    source = uncleared.source
+    beside = descriptions(
+        (other.octets.removeprefix(BOM_UTF8), other.name, other.base, things) for other, things in uncleared.beside
+    )
+    try:
+        with processor_limit(FILE_SECONDS):
+            return _problems_of(uncleared, beside, shapes, index)
+    except NotTurtleError as error:
+        offset, code, message = error.offset, "SC-S01", f"This is not Turtle 1.1: {error.message.rstrip('.')}."
+    except RecursionError:
+        offset, code = 0, "SC-S05"
+        message = "This file nests too deeply, or holds too long a list, to be checked."
+    except TimeUp:
+        offset, code = 0, "SC-S05"
+        message = f"This file takes more than {FILE_SECONDS:g} seconds of processor time to check: it asks too much."
+    return [at(Positions(source.name, source.text()), offset, code, message)]
 
-    shapes: Shapes
-    index: TermIndex
 
-    def of(
-        self, text: str, name: str, base: str, elsewhere: Mapping[str, str], beside: Graph | None = None
-    ) -> list[Diagnostic]:
-        """The problems of one file, in no particular order; `beside` is what others say of its configurations."""
-        try:
-            with processor_limit(FILE_SECONDS):
-                return self._of(text, name, base, elsewhere, Graph() if beside is None else beside)
-        except NotTurtleError as error:
-            message = f"This is not Turtle 1.1: {error.message.rstrip('.')}."
-            return [at(Positions(name, text), error.offset, "SC-S01", message)]
-        except RecursionError:
-            message = "This file nests too deeply, or holds too long a list, to be checked."
-            return [at(Positions(name, text), 0, "SC-S05", message)]
-        except TimeUp:
-            message = (
-                f"This file takes more than {FILE_SECONDS:g} seconds of processor time to check: it asks too much."
-            )
-            return [at(Positions(name, text), 0, "SC-S05", message)]
-
-    def _of(self, text: str, name: str, base: str, elsewhere: Mapping[str, str], beside: Graph) -> list[Diagnostic]:
-        graph, positions = parse_with_positions(text, name, base)
-        violations = list(endless_lists(graph, positions))
-        if not violations:  # pySHACL does not come back from a list without an end
-            violations = [
-                *shape_violations(graph, positions, self.shapes, AnswerJudge(beside, self.index)),
-                *malformed_roles(graph, positions),
-                *unaccepted_shapes(graph, positions),
-            ]
-            if not any(each.severity is Severity.ERROR for each in violations):  # else a parameter may be no shape
-                violations += unfit_values(graph, positions)
-        file = LintedFile(graph, positions, self.index, elsewhere, self.shapes.all)
-        return violations + lint(file, conforms=not violations)
+def _problems_of(uncleared: UnclearedFile, beside: Graph, shapes: Shapes, index: TermIndex) -> list[Diagnostic]:
+    """The problems of a file; `beside` is what others say of its configurations."""
+    source = uncleared.source
+    graph, positions = parse_with_positions(source.text(), source.name, source.base)
+    violations = list(endless_lists(graph, positions))
+    if not violations:  # pySHACL does not come back from a list without an end
+        violations = [
+            *shape_violations(graph, positions, shapes, AnswerJudge(beside, index)),
+            *malformed_roles(graph, positions),
+            *unaccepted_shapes(graph, positions),
+        ]
+        if not any(each.severity is Severity.ERROR for each in violations):  # else a parameter may be no shape
+            violations += unfit_values(graph, positions)
+    file = LintedFile(graph, positions, index, uncleared.elsewhere, shapes.all)
+    return violations + lint(file, conforms=not violations)

@@ -13,20 +13,22 @@ from selfconf.rdf.advertisements import read_advertisements
 from selfconf.rdf.tasks import InsideReader
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.validation import file_check
-from selfconf.rdf.validation.file_check import FileCheck, shapes_of
+from selfconf.rdf.validation.checking import SourceText, UnclearedFile
+from selfconf.rdf.validation.file_check import problems_of, shapes_of
 from selfconf.rdf.validation.prefilter import prefilter
 from selfconf.rdf.validation.term_index import index_of
 from tests.lab import PREFIXES
 from tests.shipped import shipped_shapes
 
 HEAD = PREFIXES.count("\n")
-CHECK = FileCheck(shipped_shapes(), index_of([prefilter(path.read_bytes()) for path in library.ontologies()]))
+INDEX = index_of([prefilter(path.read_bytes()) for path in library.ontologies()])
 LAMP = ":lamp a sc:Component, :Lamp .\n"
 
 
-def found(text: str, prefixes: str = PREFIXES) -> list[Diagnostic]:
-    """The problems of a file, which stands alone."""
-    return CHECK.of(prefixes + text, "a.ttl", "file:///a.ttl", {})
+def found(text: str, prefixes: str = PREFIXES, elsewhere: dict[str, str] | None = None) -> list[Diagnostic]:
+    """The problems of a file, which stands alone but for what is described elsewhere as well."""
+    source = SourceText("a.ttl", (prefixes + text).encode(), "file:///a.ttl")
+    return problems_of(UnclearedFile(source, elsewhere or {}), shipped_shapes(), INDEX)
 
 
 def told(text: str) -> list[tuple[str, int, int]]:
@@ -80,7 +82,7 @@ def test_a_check_that_takes_too_long_ends_and_says_so(monkeypatch: pytest.Monkey
 
 def test_a_component_that_another_file_describes_as_well_is_told_with_that_file() -> None:
     elsewhere = {"https://example.org/peis-home#lamp": "b.ttl"}
-    (only,) = CHECK.of(PREFIXES + LAMP, "a.ttl", "file:///a.ttl", elsewhere)
+    (only,) = found(LAMP, elsewhere=elsewhere)
     assert "b.ttl" in only.message
 
 
