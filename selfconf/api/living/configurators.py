@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 from typing import Any
 
 from selfconf.api.living.component_terms import iri_or_local_name
-from selfconf.api.living.deployed import connected, deployed_body
+from selfconf.api.living.deployed import connected, deployed_body, passed_over
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.bus.own_answers import own_answers
 from selfconf.errors import PeerError, TurtleError
@@ -63,21 +63,17 @@ class Configurators:
         answers, rejected = own_answers(samples, Notice, lambda one: self._keys.notices(one.configurator))
         for notice in answers:
             told.setdefault(notice.configurator, []).append(notice)
-        passed_over: dict[str, dict[str, list[str]]] = {}
+        deployed: dict[str, dict[str, Any]] = {}
         if at is None:
-            passed_over = self._passed_over()
+            deployed = self.deployed()
             rejected += self.complaints
         sentences: list[str] = []
         for configurator, notices in sorted(told.items()):
             events = [notice.event for notice in sorted(notices, key=lambda notice: notice.sequence)]
             try:
-                sentences += told_why(task_name(notices[0].task), events, meant, at, passed_over.get(configurator, {}))
+                passed = passed_over(deployed[configurator]) if configurator in deployed else {}
+                sentences += told_why(task_name(notices[0].task), events, meant, at, passed)
             except PeerError as error:
                 rejected.append(f"left out an answer: {error}")
         self.complaints = tuple(rejected)
         return sentences
-
-    def _passed_over(self) -> dict[str, dict[str, list[str]]]:
-        """By configurator and role, the candidates that go before those that are deployed."""
-        deployed = self.deployed().items()
-        return {name: {role["role"]: role["passed_over"] for role in body["roles"]} for name, body in deployed}

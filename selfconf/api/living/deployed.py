@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from selfconf.model.term import IRI, Literal, Term
@@ -56,6 +56,11 @@ def deployed_body(document: Document) -> dict[str, Any] | None:
         ],
         "replaced": replaced,
     }
+
+
+def passed_over(body: Mapping[str, Any]) -> dict[str, list[str]]:
+    """By role of a configuration as JSON, the candidates that go before those that were chosen."""
+    return {role["role"]: role["passed_over"] for role in body["roles"]}
 
 
 def _text(document: Document, node: Term, predicate: IRI) -> str:

@@ -17,7 +17,7 @@ from typing import Any
 import pyoxigraph as ox
 
 from selfconf.api.living.component_terms import iri_or_local_name
-from selfconf.api.living.deployed import deployed_body
+from selfconf.api.living.deployed import deployed_body, passed_over
 from selfconf.errors import AuthorError
 from selfconf.model.immutable import immutable
 from selfconf.model.moments import parsed_moment
@@ -60,11 +60,6 @@ class PastConfiguration:
         yield from self.failures
         yield {"act": "running", "time": self.generated, "configuration": self.body, "revises": bool(self.revises)}
 
-    @property
-    def passed_over(self) -> dict[str, list[str]]:
-        """By role, the candidates that go before those that were chosen."""
-        return {role["role"]: role["passed_over"] for role in self.body["roles"]}
-
 
 def past_graphs(folder: Path) -> dict[str, bytes]:
     """Every configuration that a folder has, as N-Triples by its name. Raises AuthorError where it holds no history."""
@@ -106,7 +101,7 @@ def past_why(folder: Path, term: str, at: float | None) -> list[str]:
     for (task, _), several in sorted(by_task.items(), key=lambda item: item[1][0].generated):
         meant = [one for one in several if at is None or one.generated <= at]
         if meant:
-            sentences += told_why(task, _events(several), iri_or_local_name(term), at, meant[-1].passed_over)
+            sentences += told_why(task, _events(several), iri_or_local_name(term), at, passed_over(meant[-1].body))
     return sentences
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.api.living.deployed import passed_over
 from selfconf.api.living.past import past_configurations, past_graphs, past_why
 from selfconf.errors import AuthorError
 from selfconf.rdf.provenance import CONFIGURATION
@@ -70,7 +71,7 @@ def test_every_configuration_is_read_with_its_time_its_end_and_what_had_failed(k
     assert (first.configurator, first.task, first.failures) == ("c1", "navigate", ())
     assert (first.generated, first.ended) == (1_000_000.5, 1_000_005.0)
     assert (second.failures[0]["cause"], second.failures[0]["time"]) == ("fail", 1_000_005.0)
-    assert second.passed_over == {iri("position"): [iri("tracker")]}
+    assert passed_over(second.body) == {iri("position"): [iri("tracker")]}
     assert third.ended == 1_000_015.0
 
 
