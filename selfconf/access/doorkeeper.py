@@ -11,12 +11,11 @@ which; on its own host a site goes on with its own.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from selfconf.access.certificate_files import read_certificate
+from selfconf.access.certificate_files import read_certificate, read_pair
 from selfconf.access.certificates import Certificate
 from selfconf.access.disputed_components import believed, claims
 from selfconf.access.expiry import CertificateWatch
@@ -30,15 +29,13 @@ from selfconf.bus.answering import answering
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
-from selfconf.errors import NetworkError, PeerError, SelfconfError
+from selfconf.errors import PeerError, SelfconfError
 from selfconf.files import FileStamp, stamp
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
-
-log = logging.getLogger(__name__)
 
 LOOK = 1.0
 """How often, in seconds, it is looked whether the folder of keys has changed, and what was refused."""
@@ -176,18 +173,19 @@ class Doorkeeper:
             if not known:
                 self._renew_rules_soon()
             known = known and not self._warned  # the hub is about to be opened anew, perhaps as it does not know it yet
-            mine = self._credentials.certificate.read_text()
             beside = tuple(sorted(self._hub.sites()))
-            request.reply(self._keys.introduce(self._name), encode(Introduction(mine, known, beside)))
+            request.reply(self._keys.introduce(self._name), encode(Introduction(self._own_pem(), known, beside)))
         except PeerError as error:
             request.refuse(str(error))
         except SelfconfError as error:
             self._tell_fault(str(error))
             request.refuse(f"site {self._name}: {error}")
-        except OSError as error:
-            request.refuse(f"site {self._name} cannot read its certificate: {error.strerror}")
         finally:
             request.finish()
+
+    def _own_pem(self) -> str:
+        """The certificate of this site as it lies in its file now. Raises AuthorError."""
+        return read_certificate(self._credentials.certificate).pem.decode()
 
     def _admit(self, pem: str) -> bool:
         """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good.
@@ -213,9 +211,9 @@ class Doorkeeper:
     def _introduce(self) -> None:
         """Show the certificate of this site to all others, and learn theirs."""
         try:
-            mine = encode(Introduction(self._credentials.certificate.read_text()))
-        except OSError as error:
-            log.error("cannot read %s: %s", self._credentials.certificate, error)
+            mine = encode(Introduction(self._own_pem()))
+        except SelfconfError as error:
+            self._tell_fault(str(error))
             return
         self._bus.ask(self._keys.introduce("*"), mine, SITES_ANSWER, self._met)
 
@@ -316,11 +314,12 @@ class Doorkeeper:
         self._undo_retry()
         self._warned = False
         try:
+            read_pair(self._credentials.certificate.with_suffix(""))  # the hub as it is would be closed, and not open
             self._hub.open_anew(self.rules)
             for name in self._strangers:  # what it tried before it was known was not refused for what it is
                 self._hub.refusals.forget(name)
             self._strangers = frozenset()
-        except NetworkError as error:
+        except SelfconfError as error:
             self._tell_fault(f"the hub cannot be opened with its new rules: {error}; trying again")
             self._undo_retry = self._bus.later(self._pause, self._enforced)
             self._pause = min(2 * self._pause, RAREST_RETRY)

@@ -363,6 +363,24 @@ def test_a_renewed_certificate_is_shown_though_those_of_components_cannot_be_ren
     assert door.said == ["holds no private key in PEM"]
 
 
+@pytest.mark.parametrize("copied", [b"\x30\x82", None], ids=["not in PEM", "of another key"])
+def test_by_a_wrong_certificate_the_hub_is_not_opened_anew_until_there_is_a_good_one(
+    door: Door, tmp_path: Path, copied: bytes | None
+) -> None:
+    alice = door.folder.issue(Principal(PrincipalKind.READER, "alice"), tmp_path / "alice").pem
+    certificate = door.folder.path / "own/site.home/certificate.pem"
+    good = certificate.read_bytes()
+    certificate.write_bytes(alice if copied is None else copied)
+    door.introduce(alice.decode())
+    door.pass_time(10.0)
+    assert door.enforced == []
+    assert any(one.startswith("the hub cannot be opened with its new rules: ") for one in door.said)
+    certificate.write_bytes(good)
+    door.pass_time(2.0)
+    assert door.enforced[-1] is door.keeper.rules
+    assert "read.alice" in door.principals
+
+
 def test_who_is_revoked_is_out(door: Door, tmp_path: Path) -> None:
     eve = door.folder.issue(Principal(PrincipalKind.CONFIGURATOR, "eve"), tmp_path / "eve")
     door.introduce(eve.pem.decode())
