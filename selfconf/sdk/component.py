@@ -82,7 +82,10 @@ class Component:
     """A component of the ecology. Override what you need; each of these methods does nothing by itself."""
 
     advertisement: ClassVar[str | Path] = ""
-    """The Turtle file with the advertisement; a relative path counts from the file that defines the class."""
+    """The Turtle file with the advertisement; a relative path counts from the file that defines the class.
+
+    Of a class that is in no file, as in a notebook, it counts from the current folder.
+    """
     component: ClassVar[str] = ""
     """The IRI of the component, needed only where the file advertises several."""
 
@@ -200,4 +203,8 @@ class Component:
         """Where the advertisement is; raises ProgrammerError if the class names none."""
         if not cls.advertisement:
             raise ProgrammerError(f"{cls.__name__} needs an `advertisement`: the Turtle file that says what it is")
-        return Path(inspect.getfile(cls)).parent / cls.advertisement
+        try:
+            folder = Path(inspect.getfile(cls)).parent
+        except (OSError, TypeError):  # the class is in no file: it was typed in a notebook, or at a prompt
+            folder = Path()
+        return folder / cls.advertisement

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -36,6 +38,12 @@ def test_a_class_without_an_advertisement_is_told_that_it_needs_one() -> None:
 
     with pytest.raises(ProgrammerError, match=r"^Nameless needs an `advertisement`"):
         Nameless.advertisement_path()
+
+
+def test_the_advertisement_of_a_class_in_no_file_is_in_the_current_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "notebook", ModuleType("notebook"))
+    typed = type("Typed", (Component,), {"__module__": "notebook", "advertisement": "lamp.ttl"})
+    assert typed.advertisement_path() == Path("lamp.ttl")
 
 
 @pytest.mark.parametrize(
