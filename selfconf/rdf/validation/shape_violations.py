@@ -40,16 +40,33 @@ _SC, _SH, _SHAPES = (Namespace(one.base) for one in (vocabulary.SC, vocabulary.S
 
 _MADE_DISTINCT_BY: dict[Node, URIRef] = {
     _SHAPES.PortNamesDistinct: _SC.name,
+    _SHAPES.TemplatePortNamesDistinct: _SC.name,
+    _SHAPES.OperationNamesDistinct: _SC.name,
     _SHAPES.OperationalNamesDistinct: _SC.name,
     _SHAPES.ParameterNamesDistinct: _SC.name,
     _SHAPES.BindingsDistinct: _SC.parameter,
     _SHAPES.ComponentPlaysOnce: _SC.component,
 }
 """Shapes that want values to differ, and the property in which they have to."""
-_COMPARED_BY: dict[Node, frozenset[Node]] = {
+_MORE_OF_NODE: dict[Node, frozenset[Node]] = {
     _SHAPES.CountOrder: frozenset((_SHAPES.MinCount, _SHAPES.MaxCount)),
+    **dict.fromkeys((_SHAPES.SettingTypeOnce, _SHAPES.SettingValueOnce), frozenset((_SHAPES.SettingNode,))),
+    **dict.fromkeys((_SHAPES.BindingParameterOnce, _SHAPES.BindingValueOnce), frozenset((_SHAPES.BindingNode,))),
 }
-"""Shapes that compare values, and the shapes of these values: what breaks one of those is nothing to compare."""
+"""Shapes that say nothing more of a node of which others are broken, as what is no number is not compared."""
+_MORE_OF_VALUE: dict[Node, frozenset[Node]] = {
+    _SHAPES.RoleTyped: frozenset((_SHAPES.RoleIri,)),
+    _SHAPES.ParameterTyped: frozenset((_SHAPES.ParameterIri,)),
+    **dict.fromkeys(
+        (
+            *(_SHAPES.MinCount, _SHAPES.MaxCount, _SHAPES.TermWeight, _SHAPES.TermOtherwise, _SHAPES.Priority),
+            *(_SHAPES.InteractionOutput, _SHAPES.InteractionInput),
+        ),
+        frozenset((_SHAPES.FixedValue,)),
+    ),
+    **dict.fromkeys((_SHAPES.PortNameText, _SHAPES.OperationNameText), frozenset((_SHAPES.TemplatePortFixed,))),
+}
+"""Shapes that say nothing more of a value of a node of which others are broken."""
 
 
 @immutable
@@ -77,6 +94,8 @@ _LISTING = (_SHAPES.RolesList, _SHAPES.RolesDistinct, _SHAPES.FedRoleListed)
 """Shapes whose queries only find what `_lists_stray` sees first; rdflib goes down a list by recursion."""
 
 
+_IN_BRACKETS = (*LINKED, vocabulary.SC.sets, vocabulary.SC.binding, vocabulary.SC.term)
+"""What leads to a node that is described, mostly in brackets, and never to a list."""
 _ANSWERS = ((_SH.targetClass, _SC.Configuration), (_SH.targetObjectsOf, _SC.task))
 """The targets of shapes that judge configurations."""
 _ALONG_HIERARCHY = frozenset((_SHAPES.ConnectionMatches,))
@@ -223,11 +242,12 @@ def shape_violations(
         *reported_violations(graph, shapes.read, needed - shapes.answers),
         *judge.violations(graph, shapes.read, needed & shapes.answers),
     ]
-    broken = {(violation.shape, violation.focus) for violation in reported}
+    broken = {(one.shape, *where) for one in reported for where in ((one.focus,), (one.focus, one.value))}
     found = [
-        (places.offset(violation), violation)
-        for violation in reported
-        if not any((shape, violation.focus) in broken for shape in _COMPARED_BY.get(violation.shape, ()))
+        (places.offset(one), one)
+        for one in reported
+        if not any((shape, one.focus) in broken for shape in _MORE_OF_NODE.get(one.shape, ()))
+        and not any((shape, one.focus, one.value) in broken for shape in _MORE_OF_VALUE.get(one.shape, ()))
     ]
     return [
         at(
@@ -239,21 +259,40 @@ def shape_violations(
             _remedy(violation, graph),
             str(violation.shape),
         )
-        for offset, violation in _without_firsts(found, graph)
+        for offset, violation in _without_firsts(_once_for_each_list(found, graph), graph)
     ]
 
 
 def _remedy(violation: ReportedViolation, graph: Graph) -> str | None:
     """What to do where something is said in a wrong form, or of something else, as the shape itself cannot tell."""
     focus = violation.focus
-    is_part = any((None, URIRef(link), focus) in graph for link in LINKED)
-    if is_part and (focus, RDF.first, None) in graph:
+    if _is_stray_list(focus, graph):
         return "These are no list: write a comma between one [ ... ] and the next, and no parentheses."
+    is_part = any((None, URIRef(link), focus) in graph for link in LINKED)
     if is_part and violation.shape == _SHAPES.ComponentTyped:
         return "Here it is said of a part of a component: say it of the component."
     if violation.shape == _SHAPES.Feeder and (focus, RDF.type, _SC.Component) in graph:
         return "A component says nothing of others: say it of a role, in a template."
     return None
+
+
+def _is_stray_list(node: Node, graph: Graph) -> bool:
+    """Whether a node is a list, where one in brackets belongs."""
+    return (node, RDF.first, None) in graph and any((None, URIRef(link), node) in graph for link in _IN_BRACKETS)
+
+
+def _once_for_each_list(
+    found: Iterable[tuple[int, ReportedViolation]], graph: Graph
+) -> Iterator[tuple[int, ReportedViolation]]:
+    """Of a list where a node in brackets belongs one violation: it has nothing of what such a node has."""
+    of_lists: dict[Node, tuple[int, ReportedViolation]] = {}
+    for offset, violation in found:
+        if _is_stray_list(violation.focus, graph):
+            one = of_lists.setdefault(violation.focus, (offset, violation))
+            of_lists[violation.focus] = min(one, (offset, violation), key=lambda pair: pair[1].message)
+        else:
+            yield offset, violation
+    yield from of_lists.values()
 
 
 @immutable
@@ -272,7 +311,7 @@ class _Places:
         elif violation.too_many:
             values = self._objects(violation.focus, predicates)
             candidates = values[1:] or values
-        elif isinstance(violation.focus, Literal):
+        elif isinstance(violation.focus, Literal) or violation.value == violation.focus:
             candidates = self._mentions(violation.focus, self._links(violation.shape))
         elif violation.value is not None and predicates:
             own = self._objects(violation.focus, predicates, violation.value)

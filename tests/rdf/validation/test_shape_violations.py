@@ -83,6 +83,52 @@ def test_counts_that_are_none_are_not_compared(counts: str, shapes: list[str]) -
     assert [shape for _, _, shape in told(f":r a sc:Role ; {counts} .")] == shapes
 
 
+PLAY = ':t a sc:Template ; sc:roles ( :r ) ; sc:parameter :p . :p a sc:Parameter ; sc:name "p" . :r a sc:Role {} .\n'
+TASK = PLAY.format("") + ":k a sc:Task ; sc:template :t ; sc:binding {} ."
+
+
+@pytest.mark.parametrize(
+    ("text", "only"),
+    [
+        (':t a sc:Template ; sc:roles ( "r" ) .', (1, 31, "RoleIri")),
+        (':t a sc:Template ; sc:roles ( :r ) ; sc:parameter "p" . :r a sc:Role .', (1, 51, "ParameterIri")),
+        (PLAY.format("; sc:minCount :p"), (1, 117, "FixedValue")),
+        (PLAY.format("") + ":t sc:priority :p .", (2, 16, "FixedValue")),
+        (PLAY.format("; sc:sets :p"), (1, 113, "SettingNode")),
+        (TASK.format(":p"), (2, 44, "BindingNode")),
+        (TASK.format('[ sc:parameter "p" ; sc:value 1 ]'), (2, 59, "BindingParameterIri")),
+        (
+            PLAY.format("") + ':t sc:hasInput [ sc:name "i" ; sc:signalType :S ; sc:of :x ] .',
+            (2, 57, "TemplatePortRole"),
+        ),
+    ],
+)
+def test_one_mistake_is_one_violation(text: str, only: tuple[int, int, str]) -> None:
+    assert told(text) == [only]
+
+
+@pytest.mark.parametrize(
+    "said", [":lamp sc:tolerates ( 5 )", ":r a sc:Role ; sc:sets ( [ ] )", ":lamp sc:hasParameter ( [ ] )"]
+)
+def test_a_list_for_a_node_in_brackets_is_one_violation(said: str) -> None:
+    assert len(told(f"{LAMP}{said} .")) == 1
+
+
+def test_two_lists_for_nodes_are_two_violations() -> None:
+    assert len(told(f"{LAMP}:lamp sc:hasParameter ( [ ] ) , ( [ ] ) .")) == 2
+
+
+@pytest.mark.parametrize("link", ["sc:hasOperation", "sc:needsOperation"])
+def test_of_two_operations_of_one_name_the_second_is_to_blame(link: str) -> None:
+    text = f'{LAMP}:lamp {link} [ sc:name "on" ] ,\n[ sc:name "on" ] .'
+    assert told(text) == [(3, 11, "OperationNamesDistinct")]
+
+
+def test_of_two_outputs_of_a_template_of_one_name_the_second_is_to_blame() -> None:
+    port = '[ sc:name "o" ; sc:signalType :S ; sc:of :r ]'
+    assert told(f"{PLAY.format('')}:t sc:hasOutput {port} ,\n{port} .") == [(3, 11, "TemplatePortNamesDistinct")]
+
+
 def test_of_three_equal_names_the_first_is_not_to_blame() -> None:
     ports = " , ".join(PORT.format("a") for _ in range(3))
     assert [shape for _, _, shape in told(f"{LAMP}:lamp sc:hasInput {ports} .")] == ["PortNamesDistinct"] * 2
