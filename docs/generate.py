@@ -22,7 +22,7 @@ def commands() -> str:
     """The reference of the command line, from the commands' own help."""
     os.environ["COLUMNS"] = "100"
     top = parser()
-    pages = [f"# The command line\n\n{NOTE}\n", project_file()]
+    pages = [f"# The command line\n\n{NOTE}\n", index(), project_file()]
     subparsers = next(action for action in top._actions if isinstance(action, argparse._SubParsersAction))
     for name in COMMANDS:
         help_ = subparsers.choices[name].format_help().rstrip()
@@ -30,6 +30,17 @@ def commands() -> str:
         pages.append(f"```text\n{help_}\n```\n")
         pages += [f"```text\n{one.format_help().rstrip()}\n```\n" for one in _subcommands(subparsers.choices[name])]
     return "\n".join(pages)
+
+
+def index() -> str:
+    """Each command with what it does, and a link to its options."""
+    rows = "\n".join(f"| [`{name}`](#selfconf-{name}) | {does} |" for name, does in COMMANDS.items())
+    return f"""| command | does |
+|---|---|
+{rows}
+
+[`{PROJECT_FILE}`](#selfconftoml) spares typing the same options each time.
+"""
 
 
 def _subcommands(command: argparse.ArgumentParser) -> list[argparse.ArgumentParser]:
@@ -44,10 +55,10 @@ def project_file() -> str:
     words = " and ".join(f"`{word}` for `{key}`" for word, key in OTHER_WORDS.items())
     return f"""## selfconf.toml
 
-A project says once, in a file `{PROJECT_FILE}`, what its commands would have to be told each time. It is looked for in
-the current folder and upward from it. Each key is the option of that name; what is typed goes before what the
-environment says (`$SELFCONF_ECOLOGY`, `$SELFCONF_CONNECT`, `$SELFCONF_KEYS`), and that before the file. `--help` shows
-where each value comes from now, and `selfconf validate` checks the file.
+In a file `{PROJECT_FILE}` a project says once which options its commands take. Commands look for it in the current
+folder and upward from it. Each key is the option of that name. An option that is typed goes before the environment
+(`$SELFCONF_ECOLOGY`, `$SELFCONF_CONNECT`, `$SELFCONF_KEYS`), and the environment before the file. `--help` shows where
+each value comes from now, and `selfconf validate` checks the file.
 
 ```toml
 ecology = "home"
@@ -65,12 +76,16 @@ robot = ":Astrid"
 {rows}
 | `bind.TEMPLATE.PARAMETER` | a value for a parameter, as `--bind PARAMETER=` takes it; numbers may go without quotes |
 
-One may write {words}, as the library calls them.
+You may also write {words}, as the library does.
 
-With `ads` or `endpoint` in the file, `configure`, `partition` and `query` look there, and ask the living ecology where
-`--ecology` or `--connect` is typed or set in the environment. `run` joins the ecology if sites of it are known, and
-else starts one for the `ads`; `site` serves the `ads`, and `validate` checks them, when no path is given. A file that
-belongs to neither you nor the owner of its folder is passed over.
+With `ads` or `endpoint` in the file,
+
+* `configure`, `partition` and `query` look there; they ask the living ecology if `--ecology` or `--connect` is typed or
+  set in the environment;
+* `run` joins the ecology if sites of it are known, and else starts one for the `ads`;
+* `site` serves the `ads`, and `validate` checks them, if no path is given.
+
+A file that belongs neither to you nor to the owner of its folder is ignored.
 """
 
 

@@ -111,7 +111,7 @@ PROJECT_KEYS: Mapping[str, ProjectKey] = {
     ),
     "keys": ProjectKey("a folder of keys, as `selfconf keys` makes them", _is_text, paths=True),
     "ads": ProjectKey(
-        "advertisements in files, and in folders but for hidden ones; one or a list",
+        "files and folders with advertisements, without hidden folders; one or a list",
         _is_texts,
         paths=True,
         several=True,
@@ -120,7 +120,7 @@ PROJECT_KEYS: Mapping[str, ProjectKey] = {
     "ontology": ProjectKey(
         "ontologies besides those of selfconf, files and folders; one or a list", _is_texts, paths=True, several=True
     ),
-    "reasoning": ProjectKey(f"what the roles see: {', '.join(REASONING)}", _is_one_of(REASONING)),
+    "reasoning": ProjectKey(f"which triples the roles see: {', '.join(REASONING)}", _is_one_of(REASONING)),
     "strategy": ProjectKey(f"how to search: {', '.join(STRATEGIES)}", _is_one_of(STRATEGIES)),
     "steps": ProjectKey("give up a search after so many steps", _is_whole),
     "seconds": ProjectKey("give up a search after so many seconds", _is_seconds),

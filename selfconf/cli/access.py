@@ -24,12 +24,13 @@ EXAMPLE = """  selfconf access --keys keys
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     add_ecology_arguments(parser)
-    parser.add_argument("--task", metavar="NAME", help="only what a deployed task needs: which components hear which")
+    parser.add_argument("--task", metavar="NAME", help="only which sources each component of a deployed task hears")
     parser.add_argument(
         "--believe",
         metavar=("SITE", "COMPONENT"),
         nargs=2,
-        help="say whose a component is that several sites advertise; for programs with the folder --keys",
+        help="decide to which site a component belongs that several sites advertise; holds for programs with the folder"
+        " --keys",
     )
     parser.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
 

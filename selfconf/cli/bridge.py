@@ -24,21 +24,21 @@ LISTENING = "where to listen, as for `selfconf site`"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     worlds = parser.add_subparsers(dest="world", metavar="WORLD", required=True)
-    does = "let Things of the W3C's Web of Things play in an ecology, by their descriptions, over HTTP"
+    does = "let Things of the W3C Web of Things take part in an ecology, over HTTP"
     wot = add_parser(worlds, "wot", does, WOT_EXAMPLE)
     wot.add_argument(
         "sources",
         metavar="SOURCE",
         nargs="+",
-        help="Thing Descriptions: a file, a folder with *.json and *.jsonld below it, or an http or https URL, that of"
-        " a directory included; read again every 5 seconds",
+        help="Thing Descriptions: a file, a folder with *.json and *.jsonld below it, or an http or https URL, also of"
+        " a directory of Things; read again every 5 seconds",
     )
     wot.add_argument(
         "--rate",
         metavar="HZ",
         type=_rate,
         default=1.0,
-        help="how often a property is read that cannot be observed (default: %(default)g)",
+        help="how often to read a property that cannot be observed (default: %(default)g)",
     )
     wot.add_argument(
         "--credentials",
@@ -51,11 +51,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="HOST",
         action="append",
         default=[],
-        help="a host to which a description may lead that was fetched from another one; repeatable",
+        help="a further host to which descriptions may lead that were fetched; repeatable",
     )
     add_ontology_argument(wot)
     add_site_arguments(wot, LISTENING, "--sites")
-    does = "let the nodes of a ROS 2 domain play in an ecology, over rmw_zenoh: jazzy, kilted and lyrical"
+    does = "let the nodes of a ROS 2 domain take part in an ecology, over rmw_zenoh: jazzy, kilted and lyrical"
     ros2 = add_parser(worlds, "ros2", does, ROS2_EXAMPLE)
     ros2.add_argument(
         "--connect",

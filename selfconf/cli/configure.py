@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--format", choices=["text", "json", "turtle", "mermaid"], default="text", help="default: %(default)s"
     )
     parser.add_argument(
-        "--what-if", action="store_true", help="tell for each component what would replace it if it failed"
+        "--what-if", action="store_true", help="show for each component what would replace it if it failed"
     )
     add_budget_arguments(parser)
     add_ecology_arguments(parser)

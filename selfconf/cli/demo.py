@@ -54,9 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=True,
         type=Path,
-        help="with keys, so that links are TLS and who may do what is kept: those of the authority in DIR, which is"
-        f" made where there is none; without DIR in the folder {OWN_KEYS} of --out (default: $SELFCONF_KEYS, or else"
-        " none)",
+        help="run with keys of the authority in DIR, which is made if there is none: links are TLS, and each program"
+        f" may do only what its certificate permits; without DIR the authority is in the folder {OWN_KEYS} of --out"
+        " (default: $SELFCONF_KEYS, or else no keys)",
     )
     parser.add_argument("--policy", choices=["repair", "dismantle"], default="repair", help="default: %(default)s")
 

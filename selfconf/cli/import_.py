@@ -41,13 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--namespace",
         metavar="IRI",
-        help="what the IRIs begin with of components to which their source gives none (default: urn:selfconf:FORMAT:)",
+        help="the beginning of the IRIs of components whose source has none for them (default: urn:selfconf:FORMAT:)",
     )
     parser.add_argument(
         "--connect",
         dest="router",  # of ROS 2, and not where a site listens, as `connect` of the project file says
         metavar="ENDPOINT",
-        help="for ros2, in the place of sources: where the router of ROS 2 listens; what lives now is imported",
+        help="for ros2, instead of sources: where the router of ROS 2 listens; the nodes that live now are imported",
     )
     parser.add_argument(
         "--domain", metavar="N", type=domain, default=0, help="the ROS_DOMAIN_ID of these nodes (default: %(default)s)"

@@ -50,11 +50,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     renew.add_argument("folder", metavar="DIR", type=Path, help="the folder of the holder")
     _add_days(renew)
     add_keys_argument(renew)
-    shown = "show the holder of a folder of keys, until when, and what is wrong with it"
+    shown = "show the holder of a folder of keys, when its certificate expires, and what is wrong with it"
     show = _action(actions, "show", shown, "alice-keys")
     show.add_argument("folder", metavar="DIR", type=Path, help="a folder of keys")
     show.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
-    revoked = "let no program in any more under a name, until its certificates have expired"
+    revoked = "close a name to every program, until its certificates have expired"
     revoke = _action(actions, "revoke", revoked, "conf.alice --keys keys")
     revoke.add_argument("holder", metavar="HOLDER", help="as for `issue`")
     add_keys_argument(revoke)

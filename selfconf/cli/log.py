@@ -28,16 +28,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="",
         help="only its lines: its IRI, or its local name with or without a prefix",
     )
-    parser.add_argument("--follow", action="store_true", help="go on with the lines to come, until Ctrl-C")
+    parser.add_argument("--follow", action="store_true", help="go on with new lines, until Ctrl-C")
     parser.add_argument(
-        "--lines", metavar="N", type=_number, default=LINES, help="how many lines of before (default: %(default)s)"
+        "--lines",
+        metavar="N",
+        type=_number,
+        default=LINES,
+        help="how many earlier lines to show (default: %(default)s)",
     )
     parser.add_argument(
         "--log",
         metavar="DIR",
         type=Path,
-        help="only the logs in this folder (default: where the sites of this machine keep them, also those that have"
-        " ended, and what the sites of other machines tell)",
+        help="only the logs in this folder (default: those of the sites of this machine, also of sites that have ended,"
+        " and those that the sites of other machines send)",
     )
     add_ecology_arguments(parser)
     add_format_argument(parser)

@@ -129,8 +129,8 @@ def add_keys_argument(parser: argparse.ArgumentParser) -> None:
         "--keys",
         metavar="DIR",
         type=Path,
-        help="a folder of keys, as `selfconf keys` makes them: links are TLS, and who may do what is kept (default:"
-        " $SELFCONF_KEYS, or else none)",
+        help="a folder of keys, as `selfconf keys` makes them: links are TLS, and each program may do only"
+        " what its certificate permits (default: $SELFCONF_KEYS, or else none)",
     )
 
 

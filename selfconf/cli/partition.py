@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--why",
         action="store_true",
-        help="tell for each candidate its preference and cost, and what the cheapest configuration with it would cost",
+        help="show for each candidate its preference and cost, and what the cheapest configuration with it would cost",
     )
     add_ecology_arguments(parser)
 

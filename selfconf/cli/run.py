@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--name",
         metavar="NAME",
         type=_name,
-        help="the name of the task (default: that of its template, without --detach with a number where a task has it)",
+        help="the name of the task (default: that of its template; without --detach with a number if it is taken)",
     )
     parser.add_argument(
         "--priority",
@@ -74,13 +74,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--upgrade",
         action="store_true",
-        help="change to components that the strategy would rather have, when they appear or recover",
+        help="change to components that the strategy prefers, when they appear or recover",
     )
     parser.add_argument(
         "--settle",
         metavar="SECONDS",
         type=delay_option,
-        help=f"with --upgrade, for how long they have to be there first (default: {SETTLE})",
+        help=f"with --upgrade, how long such components have to be there first (default: {SETTLE})",
     )
     parser.add_argument(
         "--detach",

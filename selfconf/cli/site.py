@@ -21,11 +21,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PATH",
         nargs="*",  # texts: a path would make one slash of the two of an IRI
         help="advertisements: files, or folders with *.ttl below them (default: the `ads` of selfconf.toml); or"
-        " `restart COMPONENT`: have the site that has started a component end it and start it again",
+        " `restart COMPONENT`, which ends a component that a site has started, and starts it again",
     )
     listen = (
-        "where to listen; port 0 is any free one (default: on 127.0.0.1, at a port that goes with the name of the"
-        " ecology, so that a site that is started again is found by its former clients; if it is taken, at any)"
+        "where to listen; port 0 is any free one (default: on 127.0.0.1, at a port derived from the name of the"
+        " ecology, so that former clients find a site that is started again; if it is taken, at any free port)"
     )
     add_site_arguments(parser, listen, "--connect")
     parser.add_argument(

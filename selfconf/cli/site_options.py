@@ -12,15 +12,17 @@ def add_site_arguments(parser: argparse.ArgumentParser, listen: str, sites: str)
     parser.add_argument(
         "--ecology", metavar="NAME", help="the ecology that this site is part of (default: $SELFCONF_ECOLOGY)"
     )
-    parser.add_argument("--name", metavar="SITE", help="the name of the site; by default one of its own")
+    parser.add_argument(
+        "--name", metavar="SITE", help="the name of the site (default: that of its certificate, or a random one)"
+    )
     parser.add_argument("--listen", metavar="ENDPOINT", help=listen)
     parser.add_argument(
         sites,
         metavar="ENDPOINT",
         action="append",
         default=[],
-        help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); those of the ecology on this machine"
-        " are found by themselves",
+        help="where other sites listen; repeatable (default: $SELFCONF_CONNECT); sites of the ecology on this machine"
+        " are found without it",
     )
     add_keys_argument(parser)
     parser.add_argument(

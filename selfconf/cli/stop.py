@@ -12,7 +12,7 @@ EXAMPLE = """  selfconf stop"""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    parser.add_argument("task", metavar="TASK", nargs="?", help="only this task; by default all of the ecology")
+    parser.add_argument("task", metavar="TASK", nargs="?", help="only this task (default: all tasks of the ecology)")
     parser.add_argument("--configurator", metavar="NAME", help="only what this configurator has deployed")
     add_format_argument(parser)
     add_ecology_arguments(parser)

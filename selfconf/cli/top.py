@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=1.0,
         help="seconds over which rates are taken, and after which a terminal gets a new table (default: %(default)g)",
     )
-    parser.add_argument("--once", action="store_true", help="one table on a terminal, too")
+    parser.add_argument("--once", action="store_true", help="print one table and end, also on a terminal")
     parser.add_argument("--format", choices=["table", "json"], default="table", help="default: %(default)s")
     add_ecology_arguments(parser)
 

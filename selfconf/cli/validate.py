@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--warnings-as-errors",
         action="store_true",
-        help="the exit code is 1 where there are warnings, too",
+        help="the exit code is 1 also if there are only warnings",
     )
     parser.add_argument(
         "--cache",

@@ -29,13 +29,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--at",
         metavar="TIME",
         type=_moment,
-        help="the moment that is meant: HH:MM, HH:MM:SS, or a date and time as ISO 8601 has it (default: now)",
+        help="the moment to ask about: HH:MM, HH:MM:SS, or a date and time as ISO 8601 has it (default: now)",
     )
     parser.add_argument(
         "--history",
         metavar="DIR",
         type=Path,
-        help="ask what `selfconf serve --history DIR` has kept, in place of the living ecology; it goes on meanwhile",
+        help="ask what `selfconf serve --history DIR` has kept, not the living ecology; the server may go on meanwhile",
     )
     add_format_argument(parser)
     add_ecology_arguments(parser)
