@@ -21,6 +21,7 @@ from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
+from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.keepers import RECORD, Keepers
 from tests.deployment.simulated import home, living_room
@@ -429,7 +430,10 @@ def test_who_follows_a_composite_goes_on_when_the_next_site_goes_on(tmp_path: Pa
     lab = keepers.lab
     drive, said = lab.components["drive"], list(lab.components["drive"].said)
     lost: list[str] = []
-    lab.runtimes["drive"].inputs._events = replace(lab.runtimes["drive"].inputs._events, unfed=lost.append)
+    inputs = lab.runtimes["drive"].inputs
+    assert isinstance(inputs, Inputs)
+    for one in inputs._inputs.values():
+        one._events = replace(one._events, unfed=lost.append)
     keepers.end(keeper)
     lab.let_pass(10.0)
     assert (lost, drive.said) == ([], said)

@@ -6,6 +6,7 @@ import pytest
 
 from selfconf.configurator.state import Phase
 from selfconf.deployment.components.audits import AUDIT, SILENT_AUDITS
+from selfconf.sdk.inputs import Inputs
 from tests.deployment.tasks import TASK
 from tests.lab import Lab, iri
 
@@ -62,6 +63,8 @@ def test_what_a_component_has_not_answered_in_its_last_life_does_not_count_in_th
 def test_the_status_says_how_many_signals_a_slow_component_has_passed_over(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
-    lab.runtimes["control"].inputs._dropped = 7
+    inputs = lab.runtimes["control"].inputs
+    assert isinstance(inputs, Inputs)
+    next(iter(inputs._inputs.values()))._dropped = 7
     lab.let_pass(4 * AUDIT)
     assert agent.status().dropped == {lab.runtimes["control"].profile.component: 7}
