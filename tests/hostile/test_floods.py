@@ -21,6 +21,7 @@ from selfconf.sdk.payloads import LARGEST_JSON
 from selfconf.sdk.runtime.runtime import MOST_PENDING
 from tests.hostile.bounded import bounded
 from tests.lab import Lab, iri
+from tests.sdk.inputs.test_handover import Change
 
 DEEP = b"[" * 100_000
 LARGE = b"x" * 50_000_000
@@ -278,3 +279,19 @@ def test_calls_do_not_pile_up_before_code_that_hangs(lab: Lab) -> None:
     answered = calls(lab, "tracker", "reserve", [reserve] * (MOST_PENDING + 10))
     refused = f"{MOST_PENDING} calls wait for the code of person-tracker; try again later"
     assert [one.errors for one in answered if one.errors] == [(refused,)] * 10
+
+
+def test_calls_do_not_pile_up_while_an_input_is_handed_over() -> None:
+    """The new output issues nothing, and the configurator that hears so does nothing."""
+    change = Change()
+    for _ in range(MOST_PENDING + 9):
+        change.ask()
+    change.let_pass(1.0, change.tracker)
+    refused = f"{MOST_PENDING} calls wait for the code of cap; try again later"
+    assert [one.errors for one in change.answers] == [(refused,)] * 10
+    change.let_pass(1.0, change.odometry)
+    assert len(change.answers) == MOST_PENDING + 10
+    change.answers.clear()
+    change.ask()
+    change.let_pass(0.2)
+    assert [one.errors for one in change.answers] == [()]

@@ -26,6 +26,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys, task_name
 from selfconf.protocol.messages import (
     Apply,
+    CallAnswer,
     Cause,
     Fail,
     Release,
@@ -49,7 +50,7 @@ from selfconf.sdk.runtime.waiting_tasks import WaitingTasks
 log = logging.getLogger(__name__)
 
 MOST_PENDING = 256
-"""How many calls wait for the component's code, to have started or to be at rest; those that come later are refused."""
+"""How many calls wait for the component's code and its inputs at most; those that come later are refused."""
 LIFE_ENDS = "it is leaving the ecology"
 """What a component says that cannot act any more in this life, but does not refuse to."""
 
@@ -100,6 +101,8 @@ class ComponentRuntime:
         """What waits for the code to have started."""
         self._after_stop: list[Callable[[], None]] = []
         """What waits for the code to be at rest."""
+        self._pending = 0
+        """How many calls were not answered yet."""
         component._runtime = self
         known, malformed = fields or {}, partial(self.fail, cause=Cause.MALFORMED)
         self.outputs = Outputs(bus, keys, profile, self.life, lambda: self.code.active, known, malformed)
@@ -205,12 +208,18 @@ class ComponentRuntime:
     # Control calls.
 
     def _obey_at_rest(self, message: Reserve | Apply | Release, reply: Reply) -> None:
-        """Obey a call once the code that was stopped is at rest. Raises PeerError where too many wait for the code."""
-        if len(self._after_start) + len(self._after_stop) >= MOST_PENDING:
+        """Obey a call once the code that was stopped is at rest. Raises PeerError where too many wait for an answer."""
+        if self._pending >= MOST_PENDING:
             raise PeerError(
                 f"{MOST_PENDING} calls wait for the code of {self.profile.component.short}; try again later"
             )
-        self._when_at_rest(partial(self._obey, message, reply))
+
+        def answered(answer: CallAnswer) -> None:
+            self._pending -= 1
+            reply(answer)
+
+        self._pending += 1
+        self._when_at_rest(partial(self._obey, message, answered))
 
     def _obey(self, message: Reserve | Apply | Release, reply: Reply) -> None:
         if self._closed:  # while the call waited for the code to be at rest; its site may start another life
