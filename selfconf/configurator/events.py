@@ -157,7 +157,12 @@ class StayedAway:
 
 @immutable
 class Improvable:
-    """What the task needs may be had from components that the strategy would rather have."""
+    """What the task needs may be had from components that the strategy would rather have.
+
+    But not from those that have appeared of late: it is `unsettled` whether they stay.
+    """
+
+    unsettled: frozenset[IRI] = frozenset()
 
 
 @immutable

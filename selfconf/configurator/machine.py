@@ -88,7 +88,7 @@ def step(state: State, event: Event) -> Reaction:
         case Rewired():
             return _rewired(state, event.component, event.rests)
         case Improvable():
-            return searching.look_for_better(state)
+            return searching.look_for_better(state, event.unsettled)
         case Reconnected():
             return _reconnected(state)
         case Ranked():

@@ -23,6 +23,7 @@ from selfconf.configurator.starting_order import resting_waves
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
+from selfconf.model.partition import Barred
 from selfconf.model.sharing import Avoided
 
 NOTHING: Avoided = MappingProxyType({})
@@ -54,9 +55,16 @@ def _compose(state: State, avoided: Avoided) -> Reaction:
 
 
 def begin_search(state: State, running: Configuration | None, avoided: Avoided) -> Reaction:
-    """Search near what runs, if anything, without what is lost, held by others or `avoided`; older searches end."""
+    """Search near what runs, if anything, without what is lost, held by others or `avoided`; older searches end.
+
+    While the task runs, nothing is changed to that has just appeared.
+    """
     attempt = state.attempt + 1
-    without = state.lost.keys() if state.ignores_holders else state.lost.keys() | state.taken.keys() | avoided.keys()
+    without: set[Barred] = {*state.lost}
+    if not state.ignores_holders:
+        without |= state.taken.keys() | avoided.keys()
+    if state.phase is Phase.RUNNING:
+        without |= state.unsettled - state.held.keys()
     searching = replace(state, attempt=attempt, avoided=avoided, awaits_return=False)
     return searching, (Compose(attempt, frozenset(without), running),)
 

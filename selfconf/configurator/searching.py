@@ -29,6 +29,7 @@ from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal
 from selfconf.model.sharing import Avoided, avoid, avoided_in_vain
+from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
 
 
@@ -120,11 +121,11 @@ def _coveted(state: State, event: Composed) -> State:
     return replace(state, lost={**state.lost, **busy}, refusal=refusal)
 
 
-def look_for_better(state: State) -> Reaction:
+def look_for_better(state: State, unsettled: frozenset[IRI]) -> Reaction:
     """Ask the ecology anew, while everything runs on: what has appeared may not have been advertised before."""
     if state.phase is not Phase.RUNNING:
         return state, ()
-    return replace(state, improving=True), (Discover(),)
+    return replace(state, improving=True, unsettled=unsettled), (Discover(),)
 
 
 def _improve(state: State, avoided: Avoided = NOTHING) -> Reaction:

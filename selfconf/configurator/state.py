@@ -183,6 +183,8 @@ class State:
     """
     improving: bool = False
     """Whether the ecology was asked for what the strategy would rather have than what runs."""
+    unsettled: frozenset[IRI] = frozenset()
+    """The components that had appeared just before that, which are not changed to before they have stayed."""
     awaits_return: bool = False
     """Whether the last search has found nothing, and waits for what was lost before it counts."""
     has_waited: bool = False

@@ -8,7 +8,7 @@ task that changes for the better tries it again from time to time, while what ru
 from __future__ import annotations
 
 import math
-from functools import partial
+from collections.abc import Iterable
 
 from selfconf.bus.port import Undo
 from selfconf.configurator import Appeared, Improvable, Loss, Phase
@@ -23,6 +23,8 @@ TRY_AGAIN = 5.0
 pause doubles each time."""
 LONGEST_PAUSE = 60.0
 """The longest such pause, in seconds."""
+MOST_UNREST = 4
+"""How many times as long as that takes at most what has appeared has to settle, while something comes all the time."""
 LET_GO_OF = 10.0
 """After how many seconds a task that may change for the better looks again whether another has let go of something,
 which tells only tasks that wait."""
@@ -45,6 +47,10 @@ class Retries:
         self._chance_at: float | None = None
         """When lost components are tried again, which may be overdue; None: no time is set."""
         self._improve: Undo = lambda: None
+        self._improve_by: float | None = None
+        """When it is looked at the latest whether what has appeared would be rather had; None: it is not planned."""
+        self._unsettled: dict[IRI, float] = {}
+        """The components that have appeared of late, each with when it will have been there for long enough."""
         self._improve_later: Undo = lambda: None
         self._recovery_pause = TRY_AGAIN
         self._awaits_recovery = False
@@ -62,17 +68,33 @@ class Retries:
         """Begin with a short pause when the task is refused next, as it runs now."""
         self._pause, self._chance_at = TRY_AGAIN, None
 
-    def settle(self) -> None:
-        """Look, after a while, whether what has appeared would be rather had; each time anew, so that it settles."""
-        if self._upgrade is not None:
-            self._improve()
-            self._improve = self._bus.later(self._upgrade, partial(self._step, Improvable()))
+    def settle(self, appeared: Iterable[IRI] = ()) -> None:
+        """Look, after a while, whether what has appeared would be rather had; each time anew, so that it settles.
+
+        Not for ever: in a large ecology there is always something that comes.
+        """
+        if self._upgrade is None:
+            return
+        now = self._bus.now()
+        self._unsettled |= dict.fromkeys(appeared, now + self._upgrade)
+        if self._improve_by is None:
+            self._improve_by = now + MOST_UNREST * self._upgrade
+        self._improve()
+        self._improve = self._bus.later(max(0.0, min(self._upgrade, self._improve_by - now)), self._look_for_better)
+
+    def _look_for_better(self) -> None:
+        """Look at what has been there for long enough, and at the rest once it has."""
+        now, self._improve_by = self._bus.now(), None
+        self._unsettled = {component: until for component, until in self._unsettled.items() if until > now}
+        self._step(Improvable(frozenset(self._unsettled)))
+        if self._unsettled:
+            self.settle()
 
     def look_whether_free(self) -> None:
         """Look again, after a while, for what would be rather had: only tasks that wait hear that it is free."""
         self._improve_later()
         if self._upgrade is not None:
-            self._improve_later = self._bus.later(LET_GO_OF, partial(self._step, Improvable()))
+            self._improve_later = self._bus.later(LET_GO_OF, self._look_for_better)
 
     def await_recovery(self) -> None:
         """While the task runs, set the time to try again what has raised FAIL, if it may change for the better."""

@@ -262,7 +262,7 @@ class TaskRunner:
     def _run_on(self, event: Event) -> None:
         """Be ready for what may be lost next, and for what would be rather had, after an event while the task runs."""
         if isinstance(event, Appeared) and self.state.target is not None:
-            self._retries.settle()
+            self._retries.settle(event.lives)
             self._search.prepare()
             if event.lives:
                 self._readiness.prepare_soon()

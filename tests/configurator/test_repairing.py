@@ -139,6 +139,15 @@ def test_before_a_change_for_the_better_the_ecology_is_asked_anew_while_everythi
     assert history.hear(Discovered()) == []
 
 
+def test_what_has_just_appeared_is_not_changed_to_and_what_runs_stays() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    unsettled = frozenset((TRACKER, ODOMETRY))
+    (search,) = history.hear(Improvable(unsettled), Discovered())
+    assert search == Compose(history.state.attempt, frozenset((TRACKER,)), None)
+    (search,) = history.hear(Improvable(), Discovered())
+    assert search == Compose(history.state.attempt, frozenset(), None)
+
+
 def test_what_an_ecology_has_answered_to_a_look_for_better_starts_no_search_after_a_failure() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
     history.hear(Improvable(), Failed(ODOMETRY, "1", Cause.FAIL))

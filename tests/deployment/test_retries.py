@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from selfconf.configurator.state import Phase
-from selfconf.deployment.retries import LET_GO_OF, LONGEST_PAUSE, TRY_AGAIN
+from selfconf.deployment.retries import LET_GO_OF, LONGEST_PAUSE, MOST_UNREST, TRY_AGAIN
 from selfconf.sdk.component import Refused
 from tests.deployment.simulated import slow_code
 from tests.deployment.tasks import TASK
 from tests.faults.ecologies import CHOICE
-from tests.lab import Lab
+from tests.lab import Lab, iri
 
 
 def test_patience_goes_on_when_a_component_that_another_configurator_held_is_free(lab: Lab) -> None:
@@ -173,3 +173,31 @@ def test_a_site_that_never_answers_does_not_put_off_another_chance(lab: Lab) -> 
     lab.components["drive"].fail("jammed")
     assert lab.until(lambda: agent.state.phase is Phase.REFUSED)
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 3 * TRY_AGAIN)
+
+
+def test_what_comes_and_goes_all_the_time_does_not_keep_a_task_from_changing_for_the_better(lab: Lab) -> None:
+    lab.crash("tracker")
+    agent = lab.agent(upgrade=5.0)
+    assert lab.running(agent)
+    lab.component("tracker")
+    for number in range(MOST_UNREST * 5):
+        leave = lab.network.node().announce(lab.keys.life(iri("stranger"), str(number)))
+        lab.let_pass(1.0)
+        leave()
+    assert lab.until(lambda: lab.active() == TASK | {"tracker"}, 3.0)
+
+
+def test_what_would_be_rather_had_is_not_changed_to_while_it_comes_and_goes(lab: Lab) -> None:
+    lab.crash("tracker")
+    agent = lab.agent(upgrade=5.0)
+    assert lab.running(agent)
+    for _ in range(4 * MOST_UNREST):
+        lab.component("tracker")
+        lab.let_pass(3.0)
+        assert lab.active() == TASK | {"odometry"}
+        lab.crash("tracker")
+        lab.let_pass(0.7)
+    lab.component("tracker")
+    lab.let_pass(4.9)
+    assert lab.active() == TASK | {"odometry"}
+    assert lab.until(lambda: lab.active() == TASK | {"tracker"}, 5.0)
