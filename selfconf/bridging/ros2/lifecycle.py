@@ -108,10 +108,10 @@ class NodeLifecycle:
         elif state in PASSING and self._domain.bus.now() < self._waits_until:
             turn = self._turn
             self._domain.bus.later(STATE_AGAIN, lambda: self._look(before) if turn == self._turn else None)
-        elif state in STEPS and state == before:
+        elif state in STEPS and before is not None and state <= before:
             self._activated = False
-            made = f"the transition {STEPS[state][1]!r} of the lifecycle node {self._name} is said to be made"
-            self._fail(f"{made}, and it is {label or state} still")
+            made = f"the transition {STEPS[before][1]!r} of the lifecycle node {self._name} is said to be made"
+            self._fail(f"{made}, and it is {label or state}")
         elif state in STEPS:
             late = self._activated_late if state == INACTIVE else lambda: None
             self._change(STEPS[state], partial(self._changed, state), self._fail, late)

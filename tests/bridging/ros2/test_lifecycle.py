@@ -34,9 +34,9 @@ def key_of(name: str) -> str:
 class Managed:
     """A lifecycle node that does what it is told, but for one transition."""
 
-    def __init__(self, stand_in: StandIn, state: int = 1, fails: int = 0, stays: bool = False) -> None:
-        """`fails` is the transition that it does not make; then it `stays` where it is, and says that it did."""
-        self.state, self.made, self._fails, self._stays = state, list[int](), fails, stays
+    def __init__(self, stand_in: StandIn, state: int = 1, fails: int = 0, instead: int = 0) -> None:
+        """`fails` is the transition that it does not make; it says that it did where it is in a state `instead`."""
+        self.state, self.made, self._fails, self._instead = state, list[int](), fails, instead
         name = stand_in.name
         event = key_of("lifecycle_msgs/msg/TransitionEvent")
         stand_in.serves(f"/{name}/change_state", self.change, key_of("lifecycle_msgs/srv/ChangeState"))
@@ -52,7 +52,9 @@ class Managed:
         done = after is not None and transition != self._fails
         if after is not None and done:
             self.state = after
-        return b"\x00\x01\x00\x00" + bytes([done or self._stays]), attachment
+        elif self._instead:
+            self.state, done = self._instead, True
+        return b"\x00\x01\x00\x00" + bytes([done]), attachment
 
     def say(self, payload: bytes, attachment: bytes) -> tuple[bytes, bytes]:
         """Say the state."""
@@ -137,13 +139,14 @@ def test_a_transition_that_fails_is_a_failure(living: LivingStage, tmp_path: Pat
         assert failed(found, managed) == "the transition 'activate' of the lifecycle node /map has failed"
 
 
-def test_a_node_that_stays_inactive_and_says_that_it_was_activated_is_a_failure(
-    living: LivingStage, tmp_path: Path
+@pytest.mark.parametrize("instead", [2, 1])
+def test_a_node_that_is_not_active_and_says_that_it_was_activated_is_a_failure(
+    living: LivingStage, tmp_path: Path, instead: int
 ) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
-        managed = complete(found, Managed(found.node("map"), fails=3, stays=True))
+        managed = complete(found, Managed(found.node("map"), fails=3, instead=instead))
         made = "the transition 'activate' of the lifecycle node /map is said to be made"
-        assert failed(found, managed) == f"{made}, and it is inactive still"
+        assert failed(found, managed) == f"{made}, and it is {LABELS[instead]}"
         assert managed.made[:2] == [1, 3]
 
 
