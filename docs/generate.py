@@ -9,7 +9,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from docs import json_schemas, ontology
-from selfconf.cli import validate
 from selfconf.cli.main import COMMANDS, parser
 from selfconf.model.codes import CODES
 from selfconf.project import OTHER_WORDS, PROJECT_FILE, PROJECT_KEYS
@@ -91,7 +90,18 @@ A file that belongs neither to you nor to the owner of its folder is ignored.
 
 def codes() -> str:
     """The reference of the codes that `validate` reports."""
-    return f"{NOTE}\n\n{validate.reference(CODES)}"
+    sections = [f"{NOTE}\n\n# Codes of `selfconf validate`\n\nGenerated from `selfconf/model/codes.py`.\n"]
+    for entry in CODES:
+        lines = [f"## {entry.code}: {entry.title}\n", f"*{entry.severity.value}* · {entry.why}\n"]
+        if entry.bad:
+            lines += [
+                "Not so:\n",
+                f"```{entry.language}\n{entry.bad}\n```\n",
+                "But so:\n",
+                f"```{entry.language}\n{entry.good}\n```\n",
+            ]
+        sections.append("\n".join(lines))
+    return "\n".join(sections)
 
 
 def bodies() -> str:

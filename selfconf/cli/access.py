@@ -6,7 +6,7 @@ import argparse
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
-from selfconf.cli.options import add_ecology_arguments, joined
+from selfconf.cli.options import add_ecology_arguments, add_format_argument, joined
 from selfconf.cli.tasks import code_of_tasks
 from selfconf.cli.terminal import complain, display, display_json
 from selfconf.errors import AuthorError
@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="decide to which site a component belongs that several sites advertise; holds for programs with the folder"
         " --keys",
     )
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
+    add_format_argument(parser)
 
 
 def run(given: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ import argparse
 import importlib.util
 from pathlib import Path
 
-from selfconf.cli.options import add_ontology_argument, domain
+from selfconf.cli.options import add_ontology_argument, domain, number_option
 from selfconf.cli.parsing import add_parser
 from selfconf.cli.site_options import add_site_arguments
 from selfconf.cli.terminal import complaining_aside
@@ -106,10 +106,7 @@ def run(given: argparse.Namespace) -> int:
 
 
 def _rate(text: str) -> float:
-    try:
-        rate = float(text)
-    except ValueError:
-        rate = 0.0
+    rate = number_option(text)
     if not 0.001 <= rate <= MOST_HERTZ:
         raise argparse.ArgumentTypeError(f"{text!r} is no rate; it takes a number of hertz from 0.001 to 100")
     return rate

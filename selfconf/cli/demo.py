@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 import importlib
 import importlib.util
+import math
 import os
 import socket
 import sys
 from pathlib import Path
 
+from selfconf.cli.options import number_option
 from selfconf.errors import AuthorError, InstallationError
 
 EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2
@@ -135,10 +137,7 @@ def _seed(text: str) -> int:
 
 
 def _speed(text: str) -> float:
-    try:
-        speed = float("inf") if text == "max" else float(text)
-    except ValueError:
-        speed = 0.0
+    speed = math.inf if text == "max" else number_option(text)
     if not speed > 0:
         raise argparse.ArgumentTypeError(f"{text!r} is no speed: give a number above zero, or max")
     return speed

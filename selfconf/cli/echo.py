@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
+from functools import partial
 from typing import TYPE_CHECKING
 
-from selfconf.cli.options import add_ecology_arguments, joined
+from selfconf.cli.options import add_ecology_arguments, count_option, joined
 from selfconf.cli.terminal import complain, paint
 
 if TYPE_CHECKING:
@@ -21,7 +22,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "component", metavar="COMPONENT", help="a component: its IRI, or its local name with or without a prefix"
     )
     parser.add_argument("output", metavar="PORT", help="the name of one of its outputs")
-    parser.add_argument("--count", metavar="N", type=_count, help="end after so many signals (default: at Ctrl-C)")
+    parser.add_argument(
+        "--count",
+        metavar="N",
+        type=partial(count_option, what="signals"),
+        help="end after so many signals (default: at Ctrl-C)",
+    )
     parser.add_argument(
         "--format",
         choices=["text", "json"],
@@ -58,9 +64,3 @@ def _text(signal: HeardSignal) -> str:
     moment = clock_time(signal.stamp.time, exact=True)
     missed = f" ({signal.passed_over} passed over)" if signal.passed_over else ""
     return f"{paint(moment, 'dim')}  {signal.rate:6.1f}/s  {signal.worded()}{missed}"
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or not int(text):
-        raise argparse.ArgumentTypeError(f"{text!r} is no number of signals; it takes a whole number above zero")
-    return int(text)

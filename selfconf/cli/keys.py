@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from selfconf.cli.options import add_keys_argument
+from selfconf.cli.options import add_format_argument, add_keys_argument, number_option
 from selfconf.cli.parsing import add_parser
 from selfconf.cli.terminal import display, display_json
 from selfconf.errors import AuthorError
@@ -53,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     shown = "show the holder of a folder of keys, when its certificate expires, and what is wrong with it"
     show = _action(actions, "show", shown, "alice-keys")
     show.add_argument("folder", metavar="DIR", type=Path, help="a folder of keys")
-    show.add_argument("--format", choices=("text", "json"), default="text", help="default: %(default)s")
+    add_format_argument(show)
     revoked = "close a name to every program, until its certificates have expired"
     revoke = _action(actions, "revoke", revoked, "conf.alice --keys keys")
     revoke.add_argument("holder", metavar="HOLDER", help="as for `issue`")
@@ -73,10 +72,7 @@ def _add_days(parser: argparse.ArgumentParser) -> None:
 
 
 def _days(text: str) -> float:
-    try:
-        days = float(text)
-    except ValueError:
-        days = math.nan
+    days = number_option(text)
     if not 0 < days <= LONGEST_DAYS:
         raise argparse.ArgumentTypeError(f"{text!r} is no number of days above zero, and at most {LONGEST_DAYS:g}")
     return days

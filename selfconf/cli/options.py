@@ -7,6 +7,7 @@ import gc
 import math
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -95,7 +96,10 @@ def add_endpoint_argument(parser: argparse.ArgumentParser) -> None:
 def add_budget_arguments(parser: argparse.ArgumentParser) -> None:
     """The options that limit a search."""
     parser.add_argument(
-        "--steps", metavar="N", type=_steps, help="give up a search after so many steps, which all machines count alike"
+        "--steps",
+        metavar="N",
+        type=partial(count_option, what="steps"),
+        help="give up a search after so many steps, which all machines count alike",
     )
     parser.add_argument("--seconds", metavar="S", type=seconds_option, help="give up a search after so many seconds")
 
@@ -134,16 +138,8 @@ def add_keys_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _steps(text: str) -> int:
-    return _counted(text, "steps")
-
-
-def rows_option(text: str) -> int:
-    """A number of rows above zero, as an option takes it."""
-    return _counted(text, "rows")
-
-
-def _counted(text: str, what: str) -> int:
+def count_option(text: str, what: str) -> int:
+    """A number of something above zero, as an option takes it; `what` says of what."""
     if not text.isdecimal() or not int(text):
         raise argparse.ArgumentTypeError(f"{text!r} is no number of {what}; it takes a whole number above zero")
     return int(text)
@@ -163,7 +159,7 @@ def add_answer_seconds_argument(parser: argparse.ArgumentParser, what: str, defa
 
 def seconds_option(text: str) -> float:
     """A number of seconds that something may take, as an option takes it."""
-    seconds = _number(text)
+    seconds = number_option(text)
     if not is_limit(seconds):
         raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes {LIMIT_IN_WORDS}")
     return seconds
@@ -171,13 +167,14 @@ def seconds_option(text: str) -> float:
 
 def delay_option(text: str) -> float:
     """A number of seconds after which something is done, as an option takes it: zero is at once."""
-    seconds = _number(text)
+    seconds = number_option(text)
     if not is_delay(seconds):
         raise argparse.ArgumentTypeError(f"{text!r} is no time; it takes {DELAY_IN_WORDS}")
     return seconds
 
 
-def _number(text: str) -> float:
+def number_option(text: str) -> float:
+    """A number as an option takes it; NaN for what is none, which lies in no range."""
     try:
         return float(text)
     except ValueError:

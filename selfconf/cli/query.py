@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import stat
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,9 +17,9 @@ from selfconf.cli.options import (
     add_endpoint_argument,
     add_ontology_argument,
     complain_of,
+    count_option,
     given_ecology,
     one_stdin,
-    rows_option,
 )
 from selfconf.cli.terminal import complain, display
 from selfconf.errors import AuthorError
@@ -53,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rows",
         metavar="N",
-        type=rows_option,
+        type=partial(count_option, what="rows"),
         default=ROWS,
         help="how many rows are shown at most (default: %(default)s)",
     )

@@ -99,18 +99,13 @@ def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> 
     yield f"{of}{names(status.template)}: {phase} for {lasts}, epoch {status.epoch}"
     yield f"  task {status.name}, priority {status.priority}"
     yield f"  configurator {status.configurator}, process {status.process} on {status.host}"
-    for line in _held(status, names) if deployed is None else _configuration(deployed, status, names):
+    for line in map(names, status.components) if deployed is None else _configuration(deployed, status, names):
         yield f"  {line}"
     for lost, cause in status.lost.items():
         yield f"  lost: {names(IRI.unchecked(lost))} ({cause})"
     for slow, count in status.dropped.items():
         yield f"  too slow: {names(IRI.unchecked(slow))} has passed over {count} signals"
     yield from (f"  {line}" for line in disobedience_text(dict.fromkeys(status.owed, ""), names))
-
-
-def _held(status: Status, names: Names) -> Iterator[str]:
-    """The components of a task of which no more is known."""
-    yield from map(names, status.components)
 
 
 def _configuration(body: Mapping[str, Any], status: Status, names: Names) -> Iterator[str]:

@@ -17,7 +17,6 @@ from selfconf.errors import AuthorError
 from selfconf.model.wording import one_line
 
 if TYPE_CHECKING:
-    from selfconf.model.codes import Code
     from selfconf.project import Project
 
 REPORT_FORMATS = ("text", "json", "github", "sarif", "junit")
@@ -64,14 +63,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: argparse.Namespace) -> int:
     """Validate, print the report, and return 0 (all conform), 1 (some do not) or 2 (some cannot be read)."""
-    if arguments.explain is not None:
-        if arguments.format != "text":
+    if given.explain is not None:
+        if given.format != "text":
             raise AuthorError("--explain is for people and writes text; leave out --format")
-        sys.stdout.write(explanation(arguments.explain))
+        sys.stdout.write(explanation(given.explain))
         return 0
-    paths = arguments.paths or _project_paths(arguments.project)
+    paths = given.paths or _project_paths(given.project)
     if not paths:
         raise AuthorError("there is nothing to validate; name a Turtle file or a folder, or write a selfconf.toml")
     from selfconf.api.file_checks import shared
@@ -81,15 +80,15 @@ def run(arguments: argparse.Namespace) -> int:
     with ProgressLine() as shown:
         shown.begin("validating")
         each = partial(shared, forking=shown.paused)
-        result = validated(paths, _ontologies(arguments, paths), arguments.cache, each)
-    illustrated = arguments.format == "text" and sys.stdout.isatty()
-    display(text.illustrate(result) if illustrated else RENDERERS[arguments.format](result), end="")
+        result = validated(paths, _ontologies(given, paths), given.cache, each)
+    illustrated = given.format == "text" and sys.stdout.isatty()
+    display(text.illustrate(result) if illustrated else RENDERERS[given.format](result), end="")
     complain(text.summary(result))
     if result.unreadable:
         names = ", ".join(map(one_line, sorted(result.unreadable)))
         complain(f"selfconf validate: cannot read {names}; correct the path or the syntax.")
         return 2
-    return 0 if result.conforms and not (arguments.warnings_as_errors and result.warnings) else 1
+    return 0 if result.conforms and not (given.warnings_as_errors and result.warnings) else 1
 
 
 def _project_paths(project: Project) -> list[Path]:
@@ -101,12 +100,12 @@ def _project_paths(project: Project) -> list[Path]:
     return [project.path, *ads] if project.path.is_file() else []
 
 
-def _ontologies(arguments: argparse.Namespace, paths: Iterable[str | Path]) -> list[str | Path]:
+def _ontologies(given: argparse.Namespace, paths: Iterable[str | Path]) -> list[str | Path]:
     """The ontologies that are given, without those that are not there of a project file that is checked itself."""
-    ontologies: list[str | Path] = arguments.ontology
-    project = arguments.project.path.resolve()
+    ontologies: list[str | Path] = given.ontology
+    project = given.project.path.resolve()
     checked = any(project.is_relative_to(Path(path).resolve()) for path in paths)
-    if "ontology" not in arguments.from_project or not checked:
+    if "ontology" not in given.from_project or not checked:
         return ontologies
     return [path for path in ontologies if Path(path).exists()]
 
@@ -122,22 +121,6 @@ def explanation(code: str) -> str:
     if entry.bad:
         parts += ["Not so:", _indented(entry.bad), "But so:", _indented(entry.good)]
     return "\n\n".join(parts) + "\n"
-
-
-def reference(codes: Iterable[Code]) -> str:
-    """The page of the manual that lists codes, in Markdown."""
-    sections = ["# Codes of `selfconf validate`\n\nGenerated from `selfconf/model/codes.py`.\n"]
-    for entry in codes:
-        lines = [f"## {entry.code}: {entry.title}\n", f"*{entry.severity.value}* · {entry.why}\n"]
-        if entry.bad:
-            lines += [
-                "Not so:\n",
-                f"```{entry.language}\n{entry.bad}\n```\n",
-                "But so:\n",
-                f"```{entry.language}\n{entry.good}\n```\n",
-            ]
-        sections.append("\n".join(lines))
-    return "\n".join(sections)
 
 
 def _indented(snippet: str) -> str:
