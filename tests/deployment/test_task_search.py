@@ -26,7 +26,7 @@ from tests.lab import NAVIGATE, Lab, iri
 def test_a_shape_that_cannot_be_judged_ends_the_task_with_its_error(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shacl, "SHAPE_SECONDS", 0.00001)  # over before any component is looked at
     pairs = " . ".join(f"$this ?p{number} ?o{number}" for number in range(9))
-    broken = NAVIGATE + f':drive sh:sparql [ sh:select "SELECT $this {{ {pairs} FILTER ( ?o1 > 2 ) }}" ] .\n'
+    broken = NAVIGATE + f':drive sh:sparql [ sh:select "SELECT $this {{ {pairs} FILTER ( ?o8 > 2 ) }}" ] .\n'
     agent = lab.agent(broken)
     assert lab.until(lambda: bool(lab.ended))
     assert isinstance(agent.trouble, TemplateError)
