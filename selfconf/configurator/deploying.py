@@ -243,6 +243,7 @@ def end_deployment(state: State) -> Reaction:
     if state.rewired:
         return rewire(replace(state, rewired=frozenset()), state.rewired)
     wanted = set(state.target.components)
+    acting = acting_wires(state)
     surplus = [component for component in state.held if component not in wanted]
     unneeded = sorted(state.queued - wanted - state.held.keys())
     effects: list[Effect] = [Running(state.target)]
@@ -259,7 +260,8 @@ def end_deployment(state: State) -> Reaction:
         has_yielded=False,
         news=state.news or state.heeds_others,  # by the next loss others may have let go, which they tell no task
         held={component: held for component, held in state.held.items() if component in wanted},
-        unreleased=resting_waves(acting_wires(state), surplus),
+        unreleased=resting_waves(acting, surplus),
+        surplus={component: acting[component] for component in surplus if component in acting},
         owed={**state.owed, **dict.fromkeys((*surplus, *unneeded), state.epoch)},
         watched=state.watched & wanted,
     )

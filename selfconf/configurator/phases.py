@@ -89,7 +89,7 @@ def dismantle(state: State, afterwards: Phase) -> Reaction:
         afterwards=afterwards,
         epoch=epoch,
         pending=frozenset(),
-        unreleased=resting_waves(acting_wires(state), owed),
+        unreleased=resting_waves({**state.surplus, **acting_wires(state)}, owed),
         queued=state.queued - owed.keys(),
         offered=state.offered - owed.keys(),
         fallback=None,

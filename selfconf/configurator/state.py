@@ -140,6 +140,8 @@ class State:
     unreleased: tuple[tuple[IRI, ...], ...] = ()
     """The components that act on until those that they feed are at rest, wave by wave: all, while dismantling, and what
     is not needed any more, while running."""
+    surplus: Mapping[IRI, Wires] = field(default_factory=dict)
+    """What each component followed that was not needed any more by what runs, or ran last: these may still act."""
     owed: Mapping[IRI, int] = field(default_factory=dict)
     """The components that were released and have not obeyed yet, each with the epoch of the release."""
     watched: frozenset[IRI] = frozenset()

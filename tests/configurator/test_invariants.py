@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.configurator.answering import OBEYED
+from selfconf.configurator.deploying import acting_wires
 from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
@@ -271,9 +272,9 @@ class Ledger:
         released = [effect.component for effect in effects if isinstance(effect, ReleaseFrom)]
         if self.state.phase in (Phase.RUNNING, Phase.DISMANTLING):
             for component in chain(*self.state.unreleased):
-                held = (before if self.state.phase is Phase.RUNNING else self.state).held.get(component, Held({}))
-                sources = {wire.component for wires in held.inputs.values() for wire in wires}
-                assert not sources & set(released) or not held.active
+                known = before if self.state.phase is Phase.RUNNING else self.state
+                followed = {**known.surplus, **acting_wires(known)}.get(component, {})
+                assert not {wire.component for wires in followed.values() for wire in wires} & set(released)
 
 
 @pytest.mark.parametrize("phase", Phase)

@@ -326,6 +326,17 @@ def test_what_is_not_needed_any_more_is_released_sinks_first() -> None:
     assert history.state.owed.keys() == {TRACKER, DRIVE}
 
 
+def test_what_is_not_needed_any_more_rests_sinks_first_also_where_the_task_is_stopped_meanwhile() -> None:
+    history = History(TASK).running()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    history.composed(Configuration(navigation().template, (Assignment(IRI("urn:r:position"), (ODOMETRY,)),)))
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    assert released(history.answer(ODOMETRY, Call.APPLY)) == [DRIVE]
+    assert set(released(history.hear(Stopped()))) == {DRIVE, ODOMETRY}
+    assert released(history.answer(ODOMETRY, Call.RELEASE)) == []
+    assert released(history.answer(DRIVE, Call.RELEASE)) == [CONTROL]
+
+
 @pytest.mark.parametrize("wanted", [False, True])
 def test_what_has_not_come_to_rest_as_another_configuration_is_looked_for_is_released_at_once(wanted: bool) -> None:
     """But for what that wants again, where it is known already."""
