@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -140,7 +141,7 @@ def run(given: argparse.Namespace) -> int:
         running.stop_on_signals()
         if running.task_name != running.wanted_name:
             complain(f"a task {running.wanted_name!r} lives already, so this one is {running.task_name!r}")
-        lines = TextLines(task, "" if site is None else site.ecology)
+        lines = TextLines(task, _log_options(given, site))
         report, stream = (json_lines, sys.stdout) if given.format == "json" else (lines, sys.stderr)
         printer = LinePrinter(report, stream, running.stop)
         with ProgressLine() as shown:
@@ -217,6 +218,15 @@ def _begun(given: argparse.Namespace, task: TaskSpecification) -> Iterator[tuple
         membership = Membership(site.ecology, tuple(site.endpoints), shown)
         running = Run(task, method, membership, options, given.wait, rests_on=site.running, described=described)
         yield stack.enter_context(running), site
+
+
+def _log_options(given: argparse.Namespace, site: SiteProcess | None) -> str:
+    """The options by which `selfconf log` finds the ecology: as they were typed, or the name of one of its own."""
+    if site is not None:
+        return f"--ecology {site.ecology}"
+    named = [("ecology", given.ecology), *(("connect", one) for one in given.connect), ("keys", given.keys)]
+    typed = [(name, value) for name, value in named if value is not None and name not in given.from_project]
+    return shlex.join(word for name, value in typed for word in (f"--{name}", str(value)))
 
 
 def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:

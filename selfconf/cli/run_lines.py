@@ -28,10 +28,9 @@ class TextLines:
     than before.
     """
 
-    def __init__(self, task: TaskSpecification, own_ecology: str = "") -> None:
-        """`own_ecology` is the name of an ecology that the command has begun itself; its log is kept by that name."""
-        self._names = task.names
-        self._log_options = f"--ecology {own_ecology}" if own_ecology else ""
+    def __init__(self, task: TaskSpecification, log_options: str = "") -> None:
+        """`log_options` are those by which `selfconf log` finds what the components of the task have printed."""
+        self._names, self._log_options = task.names, log_options
         self._began: float | None = None
         self.told: set[IRI] = set()
         """The components that were reported as lost, and why."""

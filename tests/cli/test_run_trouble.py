@@ -170,6 +170,20 @@ def test_a_component_that_cannot_begin_is_asked_for_a_few_times_told_of_once_and
     assert "out of control" not in said
 
 
+def test_the_log_of_what_crashes_is_named_with_the_options_by_which_the_ecology_was(home: Home) -> None:
+    """Logs of another ecology may be on this machine as well, and then `selfconf log` asks which is meant."""
+    (home.folder / "lamp.ttl").write_text(
+        f'{PREFIXES} :lamp a sc:Component, :Lamp ; sc:restarts 0 ; sc:grounding [ sc:command "false" ] .'
+    )
+    template = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :Lamp ."
+    (home.folder / "t.ttl").write_text(f"{PREFIXES} {template}")
+    home.site("a", "lamp.ttl")
+    run = home.selfconf("run", "t.ttl", "--ecology", home.ecology, "--connect", home.endpoint("a"))
+    assert run.ended() == 1
+    options = f"--ecology {home.ecology} --connect {home.endpoint('a')}"
+    assert f"`selfconf log lamp {options}` shows what it has printed\n" in run.complaints
+
+
 LONG = """
 :t a sc:Template ; sc:roles ( :r ) .
 :r a sc:Role ; sh:class sc:Component ; sh:sparql [ sh:select \"\"\"SELECT $this WHERE {
