@@ -148,10 +148,13 @@ def _appeared(state: State, event: Appeared) -> Reaction:
 
 
 def _stays_lost(component: IRI, loss: Loss, lives: Mapping[IRI, str]) -> bool:
-    """Whether a loss is not disproved by what has appeared: lives by component, or, without any, a site."""
+    """Whether a loss is not disproved by what has appeared: lives by component, or, without any, a site.
+
+    A life without a name is no life in which something was lost.
+    """
     if component not in lives:
         return loss.answered or bool(lives)
-    return loss.cause is not Cause.CRASH and loss.answered and lives[component] == loss.life
+    return loss.cause is not Cause.CRASH and loss.answered and lives[component] == loss.life != ""
 
 
 def _rewired(state: State, component: IRI, rests: bool) -> Reaction:

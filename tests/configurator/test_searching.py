@@ -17,7 +17,7 @@ from selfconf.configurator.events import (
     Stopped,
 )
 from selfconf.configurator.state import MOST_PUT_OFF, Phase
-from selfconf.protocol.messages import Cause
+from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
     CONTROL,
     DRIVE,
@@ -100,6 +100,17 @@ def test_patience_does_not_miss_what_appears_while_everything_is_taken_down() ->
     history.composed(REFUSAL)
     history.hear(Appeared({DRIVE: "2"}))
     assert history.all_answer() == [Discover()]
+
+
+def test_patience_tries_again_what_has_refused_a_call_without_saying_in_which_life() -> None:
+    """Such an answer is an error of the bus: the component knows no input of the name that is advertised by now."""
+    history = History(PATIENT).reserved()
+    history.answer(TRACKER, Call.APPLY, Verdict.REFUSED, life="")
+    history.composed(REFUSAL)
+    history.all_answer()
+    assert history.state.phase is Phase.REFUSED
+    assert history.hear(Appeared({TRACKER: ""})) == [Discover()]
+    assert history.hear(Discovered()) == [Compose(3, frozenset(), None)]
 
 
 def test_patience_ends_with_a_stop() -> None:
