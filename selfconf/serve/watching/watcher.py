@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from selfconf.bus.port import Bus, Undo
 from selfconf.discovery import Beliefs, Discovery, EcologyView, FoundAdvertisement
 from selfconf.model.term import IRI
+from selfconf.model.wording import one_line
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.rdf import turtle
 from selfconf.rdf.provenance import CONFIGURATION
@@ -88,6 +89,7 @@ class EcologyWatcher:
     def _discovered(self, discovery: Discovery) -> None:
         self._discovering = False
         self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
+        self._tell_left_out(discovery)
         before, self.view.discovery = self.view.discovery.found, discovery
         discovery.found.update(list(self._kept(before, discovery)))
         gone: dict[IRI, None] = {c: None for c in before if c not in discovery.found}
@@ -110,6 +112,12 @@ class EcologyWatcher:
             self._discover()
         elif discovery.missing:
             self._ask_again = self.bus.later(ASKED_AGAIN, self._discover)
+
+    def _tell_left_out(self, discovery: Discovery) -> None:
+        """Tell what was left out of what sites advertise, and why, unless it was the last time as well."""
+        for complaint in discovery.complaints:
+            if complaint not in self.view.discovery.complaints:
+                self._happened({"act": "complaint", "detail": one_line(complaint)})
 
     def _kept(
         self, before: Mapping[IRI, FoundAdvertisement], discovery: Discovery

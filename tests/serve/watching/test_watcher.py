@@ -89,6 +89,17 @@ def test_what_a_component_advertises_stands_in_no_graph_of_a_configurator(tmp_pa
     assert name not in seen.graphs
 
 
+def test_what_is_left_out_of_what_sites_advertise_is_told_once_as_an_event(lab: Lab) -> None:
+    lab.site("attic", "tracker")
+    seen = Seen(lab)
+    lab.let_pass(1.0)
+    left_out = [f"left out {iri('person-tracker')} of site living-room: site attic advertises it too"]
+    assert [event["detail"] for event in seen.acts("complaint")] == left_out
+    lab.network.node().publisher(lab.keys.changed("attic"), Urgency.EVENT).put(b"")
+    lab.let_pass(2.0)
+    assert len(seen.acts("complaint")) == 1
+
+
 def test_it_sees_a_configuration_change_when_something_fails_and_why(lab: Lab) -> None:
     seen = Seen(lab)
     agent = lab.agent()
