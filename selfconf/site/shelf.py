@@ -94,7 +94,7 @@ class Shelf:
                 component = advertisement.component
                 first, counting = found.setdefault(component, (name, advertisement))
                 if counting is not advertisement and not files.is_same(first, name):
-                    complaints.append(f"{name}: {component} is advertised twice; the first advertisement counts")
+                    complaints.append(f"{name}: left out {component}: it is advertised in {first} already")
         return {component: advertisement for component, (_, advertisement) in found.items()}
 
     def _tell(self, complaints: Sequence[str]) -> None:

@@ -203,8 +203,8 @@ def test_of_two_advertisements_of_one_component_the_first_counts_and_the_other_i
     shelf = Shelf([tmp_path], complaints.append)
     shelf.refresh()
     assert shelf.advertisements[iri("person-tracker")].profile.preference == 10
-    assert len(complaints) == 1
-    assert "b.ttl" in complaints[0]
+    first, other = tmp_path / "a.ttl", tmp_path / "b.ttl"
+    assert complaints == [f"{other}: left out {iri('person-tracker')}: it is advertised in {first} already"]
 
 
 def test_a_file_that_is_given_by_two_paths_advertises_once(tmp_path: Path) -> None:
