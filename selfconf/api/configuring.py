@@ -43,7 +43,7 @@ class Inquiry:
             raise ProgrammerError(
                 f"an ecology is what selfconf.read() or selfconf.join() gives, not {type(ecology).__name__}"
             )
-        self._texts = (self.task.text, *ecology.texts)
+        self._texts = (*self.task.texts, *ecology.texts)
         self.seconds: dict[str, float] = {}
         """How long each part took: load, partition, search."""
         began = time.perf_counter()
@@ -230,7 +230,7 @@ def refusal_with_places(
     method: Method,
     limit: TimeLimit,
     described: Mapping[IRI, Advertisement] | None = None,
-    texts: Sequence[str | None] = (),
+    texts: Sequence[str] = (),
 ) -> Refusal:
     """A refusal with all that the time allows to find out, and the place of each of its facts.
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from selfconf.api.arguments import answer_seconds, rows_limit
+from selfconf.api.places import with_lines
 from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
 from selfconf.model.hierarchy import Hierarchy
@@ -110,8 +111,6 @@ class Ecology(ABC):
 
         Each has its line where the file or text can be read again.
         """
-        from selfconf.api.places import with_lines  # it imports this module
-
         return tuple(with_lines(self._left_out, self.texts)) if self._left_out else ()
 
     @property

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from selfconf.api.arguments import Paths, listed_paths, option, seconds_limit, steps_limit
+from selfconf.api.document_texts import DocumentText
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
-from selfconf.api.reading import Text
 from selfconf.api.task import TaskSpecification
 from selfconf.composition import Composer, Strategy, TimeLimit
 from selfconf.model.hierarchy import Hierarchy, Reasoning
@@ -22,7 +22,7 @@ class Method:
 
     strategy: Strategy = Strategy.FIRST
     reasoning: Reasoning = Reasoning.SYNTACTIC
-    ontologies: tuple[Text, ...] = ()
+    ontologies: tuple[DocumentText, ...] = ()
     """What is in the ontologies: the files may change or go, and standard input can be read once."""
     steps: int | None = None
     seconds: float | None = None

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import entailment, files, library
-from selfconf.api.reading import Text, file_text
+from selfconf.api.document_texts import DocumentText, file_text
 from selfconf.model.hierarchy import Hierarchy, Reasoning
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
@@ -23,12 +23,12 @@ _RELEVANT = {Reasoning.SYNTACTIC: (), Reasoning.SUBCLASS: READ, Reasoning.OWL_RL
 """The predicates of which a mode looks at the statements; None for all."""
 
 
-def ontology_texts(paths: Iterable[Path]) -> tuple[Text, ...]:
+def ontology_texts(paths: Iterable[Path]) -> tuple[DocumentText, ...]:
     """What is in the ontologies that paths stand for. Raises AuthorError for what is not there or is no text."""
     return tuple(map(file_text, files.ontology_files(paths)))
 
 
-def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Text] = ()) -> Hierarchy:
+def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[DocumentText] = ()) -> Hierarchy:
     """The hierarchy that a reasoning mode lets the roles see, by the ontologies of selfconf and by others.
 
     Raises TurtleError for one that cannot be read, also in the mode `syntactic`, which uses none of it.
@@ -39,7 +39,7 @@ def hierarchy_of(reasoning: Reasoning, ontologies: Sequence[Text] = ()) -> Hiera
 
 # A caller that asks again and again under one large ontology waits for it once.
 @lru_cache(maxsize=2)
-def _of_texts(reasoning: Reasoning, texts: tuple[Text, ...]) -> Hierarchy:
+def _of_texts(reasoning: Reasoning, texts: tuple[DocumentText, ...]) -> Hierarchy:
     documents = [turtle.read_ontology(*text, _RELEVANT[reasoning]) for text in texts]
     return hierarchy(documents, reasoning, entailment.entailed_hierarchy)
 

@@ -13,7 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from selfconf.api.reading import GRAPH, KEPT_TEXTS
+from selfconf.api.document_texts import GRAPH, KEPT_TEXTS
 from selfconf.model.immutable import replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.partition import NearMiss
@@ -67,9 +67,7 @@ FilesRead = dict[str, _TextReadAgain | None]
 class Places:
     """The places of the roles of a template and of the components of an ecology."""
 
-    def __init__(
-        self, template: Template, ecology: Mapping[IRI, Advertisement], texts: Sequence[str | None] = ()
-    ) -> None:
+    def __init__(self, template: Template, ecology: Mapping[IRI, Advertisement], texts: Sequence[str] = ()) -> None:
         """`texts` are those that the template and the ecology were read from and that are in no file."""
         self._roles = {role.iri: role.place for role in template.roles}
         self._ecology = ecology
@@ -110,10 +108,9 @@ class Places:
         return replace(fact, place=self.of_role(fact.role) if component is None else self.of_component(component))
 
 
-def _read_texts(texts: Sequence[str | None]) -> list[_TextReadAgain]:
+def _read_texts(texts: Sequence[str]) -> list[_TextReadAgain]:
     """The texts that are not too long to be read again."""
-    kept = [text for text in texts if text is not None and len(text) <= LARGEST_REREAD]
-    return [_TextReadAgain(text, "", "file:///") for text in kept]
+    return [_TextReadAgain(text, "", "file:///") for text in texts if len(text) <= LARGEST_REREAD]
 
 
 def _line_in(texts: Sequence[_TextReadAgain], named: IRI | BlankNode) -> int | None:
@@ -124,7 +121,7 @@ def _line_in(texts: Sequence[_TextReadAgain], named: IRI | BlankNode) -> int | N
     return next((line for one in texts if (line := one.line_of(named)) is not None), None)
 
 
-def with_lines(left_out: Collection[LeftOut], texts: Sequence[str | None] = ()) -> Iterator[LeftOut]:
+def with_lines(left_out: Collection[LeftOut], texts: Sequence[str] = ()) -> Iterator[LeftOut]:
     """Yield what was left out of an ecology with the lines where it is described.
 
     `texts` are those that the ecology was read from and that are in no file.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf.api.arguments import checked_text
-from selfconf.api.reading import kept_text, text_of
+from selfconf.api.document_texts import text_of
 from selfconf.api.tables import Tabular
 from selfconf.errors import BindingError, ProgrammerError, TemplateError
 from selfconf.model.immutable import immutable, replace
@@ -45,8 +45,8 @@ class TaskSpecification(Tabular):
     """
 
     document: TaskDocument
-    text: str | None = field(default=None, repr=False, compare=False)
-    """What it was read from, if that is text in no file, in which lines are looked up."""
+    texts: tuple[str, ...] = field(default=(), repr=False, compare=False)
+    """What it was read from, if that is text in no file, in which lines are looked up; else none."""
 
     @property
     def iri(self) -> IRI:
@@ -129,7 +129,6 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
     ['source', 'screen']
     """
     read = text_of(source)
-    text, _, base = read
     document = turtle.parse(*read)
     wanted = None
     if name is not None:
@@ -139,9 +138,9 @@ def template(source: str | Path | rdflib.Graph, name: str | None = None) -> Task
             raise BindingError(f"a template is named by a CURIE or an <IRI>, not by {name!r}")
         wanted = term
     try:
-        return TaskSpecification(tasks.read_task(document, wanted), kept_text(read))
+        return TaskSpecification(tasks.read_task(document, wanted), read.in_no_file)
     except TemplateError as error:
-        raise tasks.placed(error, text.decode(), base or "file:///") from None
+        raise tasks.placed(error, read.octets.decode(), read.base or "file:///") from None
 
 
 def completed(task: object) -> TaskSpecification:

@@ -10,9 +10,10 @@ from selfconf import files, library
 from selfconf.api.answer import Answer
 from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
 from selfconf.api.configuring import refusal_with_places
+from selfconf.api.document_texts import text_of
 from selfconf.api.method import Method
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
-from selfconf.api.reading import gathered, text_of
+from selfconf.api.reading import gathered
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
 from selfconf.bus.memory import Faults, MemoryBus, Network
@@ -226,8 +227,7 @@ class MemoryEcology:
         """Advertise a component that no process runs; returns its IRI."""
         found = _advertisement(None, advertisement)
         if found.profile.inside is not None:
-            text, source, base = text_of(advertisement)
-            self._documents[found.component] = parse(text, source, base)
+            self._documents[found.component] = parse(*text_of(advertisement))
         self._shelf.put(found)
         return found.component
 

@@ -211,7 +211,7 @@ def test_a_text_that_only_speaks_of_a_component_is_not_where_it_is_described() -
     template = Template(IRI("urn:t"), (Role(IRI("urn:r"), place=Place("<text>")),))
     speaking, describing = "<urn:a> <urn:p> <urn:c> .", "\n<urn:c> a <urn:T> ."
     ecology = read(PREFIXES + "<urn:c> a sc:Component, :T .").advertisements()
-    assert Places(template, ecology, (speaking, None, describing)).of_component(IRI("urn:c")) == Place("<text>", 2)
+    assert Places(template, ecology, (speaking, describing)).of_component(IRI("urn:c")) == Place("<text>", 2)
     assert Places(template, ecology, (speaking,)).of_component(IRI("urn:c")) == Place("<text>", 1)
     assert Places(template, ecology, ("no Turtle", describing + "#" * LARGEST_REREAD)).of_component(
         IRI("urn:c")

@@ -15,7 +15,7 @@ import rdflib
 
 import selfconf as sc
 from selfconf import read
-from selfconf.api.reading import is_endpoint, is_turtle
+from selfconf.api.reading import is_endpoint
 from selfconf.errors import AuthorError, ProgrammerError, TurtleError
 from selfconf.model.profile import Place
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
@@ -155,24 +155,6 @@ def test_a_folder_stands_for_all_turtle_below_it(ads: Path) -> None:
 def test_files_and_folders_may_overlap_and_each_file_is_read_once(ads: Path) -> None:
     ecology = read(ads, ads / "deep", ads / "deep" / "drive.ttl")
     assert (len(ecology), ecology.left_out) == (len(ADVERTISEMENTS), ())
-
-
-@pytest.mark.parametrize(
-    ("source", "turtle"),
-    [
-        (LAMP, True),
-        ("@prefix : <urn:x:> . :a :b :c .", True),
-        ("PREFIX : <urn:x:> :a :b :c .", True),
-        ("  @base <urn:x:> .", True),
-        ("<urn:a> <urn:b>\n<urn:c> .", True),
-        ("examples/clock", False),
-        ("prefixes.ttl", False),
-        ("a file with blanks.ttl", False),
-        (Path("@prefix"), False),
-    ],
-)
-def test_a_string_is_turtle_or_a_path(source: object, turtle: bool) -> None:
-    assert is_turtle(source) is turtle
 
 
 def test_a_graph_of_rdflib_is_read_too() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from selfconf.api.arguments import checked_priority, checked_upgrade, option
 from selfconf.api.configuring import refusal_with_places
+from selfconf.api.document_texts import DocumentText
 from selfconf.api.method import Method
 from selfconf.api.task import TaskSpecification
 from selfconf.api.tasks.run_outcomes import composing, searched_ecology
@@ -66,8 +67,8 @@ def recorded_task(record: TaskRecord) -> tuple[TaskSpecification, Method, Compos
         steps=options.get("steps"),
         seconds=options.get("seconds"),
     )
-    texts = enumerate(record.ontologies)
-    method = replace(method, ontologies=tuple((text.encode(), f"ontology-{n}.ttl", None) for n, text in texts))
+    texts = (DocumentText(text.encode(), f"ontology-{n}.ttl", None) for n, text in enumerate(record.ontologies))
+    method = replace(method, ontologies=tuple(texts))
     document = tasks.read_task(turtle.parse(record.document.encode(), record.source), IRI.unchecked(record.wanted))
     task = TaskSpecification(tasks.bind(document, list(record.bindings.items()))).complete()
     return task, method, method.composer(task)

@@ -244,9 +244,7 @@ class Run:
         ecology = searched_ecology(refusal)
         if self._told is None or self._told[:2] != (refusal, ecology):
             described = self._described()
-            explained = refusal_with_places(
-                composer, ecology, refusal, self.method, limit, described, (self.task.text,)
-            )
+            explained = refusal_with_places(composer, ecology, refusal, self.method, limit, described, self.task.texts)
             self._told = refusal, ecology, explained
         return self._told[2]
 
@@ -291,7 +289,7 @@ class Run:
 
     def _with_places(self, refusal: Refusal) -> Refusal:
         """A refusal that says where its facts stand, which takes no time to find out."""
-        return Places(self.task.document.task.template, self._described(), (self.task.text,)).placed(refusal)
+        return Places(self.task.document.task.template, self._described(), self.task.texts).placed(refusal)
 
     def __repr__(self) -> str:
         phase = "not begun" if self._begun is None else self._begun.runner.state.phase_in_words
