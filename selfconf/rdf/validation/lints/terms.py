@@ -69,13 +69,8 @@ _SAID_OF: Mapping[IRI, tuple[IRI, ...]] = {
     _SC.value: (),
 }
 """What is passed over elsewhere than at an instance of some classes, with these; a value is that of what has none."""
-_OF_TEMPLATES: Mapping[IRI, frozenset[IRI]] = {
-    _SC.Template: frozenset((_SC.parameter,)),
-    _SC.Interaction: frozenset((_SC.output, _SC.input)),
-    _SC.Task: frozenset((_SC.template,)),
-    **dict.fromkeys((_SC.Role, _SC.Parameter), frozenset[IRI]()),
-}
-"""What templates and tasks are made of, each with what is said of it among that."""
+_OF_TEMPLATES = (_SC.Template, _SC.Interaction, _SC.Task, _SC.Role, _SC.Parameter)
+"""Templates and tasks, and what they are made of."""
 _WITH_VALUES = "a rate or a duration, of what a role sets, and of a binding"
 _INSTEAD: Mapping[tuple[str, IRI], str] = {
     (_SC.Role, _SC.optional): "A role that may stay unplayed has sc:minCount 0.",
@@ -319,8 +314,9 @@ def typed_operations(file: LintedFile) -> Iterator[Diagnostic]:
 def misplaced_terms(file: LintedFile) -> Iterator[Diagnostic]:
     """What is said of a component or a part of one, or of a template or a part, and is read of others alone."""
     foreign: dict[Node, frozenset[IRI]] = {}
-    for kind, own in _OF_TEMPLATES.items():
-        foreign |= dict.fromkeys(file.graph.subjects(RDF.type, URIRef(kind)), frozenset(_SAID_OF) - own)
+    for kind in _OF_TEMPLATES:
+        others = frozenset(said for said, owners in _SAID_OF.items() if kind not in owners)
+        foreign |= dict.fromkeys(file.graph.subjects(RDF.type, URIRef(kind)), others)
     components = file.graph.subjects(RDF.type, URIRef(_SC.Component))
     foreign |= dict.fromkeys(components, foreign_terms(COMPONENT).union(_OF_PARTS_OF_TEMPLATES))
     for link, subject in LINKED.items():
