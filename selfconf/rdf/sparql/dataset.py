@@ -1,8 +1,9 @@
 """The discovered ecology as an RDF dataset, one named graph per advertisement, for SPARQL.
 
 The name of an advertisement's graph is the component's IRI; the default graph is the union of all. The union is in the
-store as well: Oxigraph would find a triple as often as graphs have it, and the union has it once. Queries run on
-Oxigraph. They read the dataset and nothing else: SERVICE is refused, and FROM only chooses among the graphs there.
+store as well: Oxigraph would find a triple as often as graphs have it, and the union has it once; that of graphs which
+a query chooses is made for it. Queries run on Oxigraph. They read the dataset and nothing else: SERVICE is refused, and
+FROM only chooses among the graphs there.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import pyoxigraph as ox
 
 from selfconf.errors import QueryError
 from selfconf.model.term import IRI
+from selfconf.rdf.sparql.dataset_clauses import chosen_graphs
 from selfconf.rdf.sparql.mistakes import mistake
 from selfconf.rdf.sparql.read_only import only_reads
 from selfconf.rdf.turtle import Triple, ox_term
@@ -86,6 +88,15 @@ class Dataset:
             self._store.update("INSERT { ?s ?p ?o } WHERE { GRAPH ?g { ?s ?p ?o } }")
             self._merged = True
 
+    def _of_graphs(self, default: Iterable[str], named: Iterable[str]) -> ox.Store:
+        """A store with the union of some graphs as its default graph, and with some named graphs."""
+        store = ox.Store()
+        for name in default:
+            store.extend(map(_in_union, self._said_in(ox.NamedNode(name))))
+        for name in named:
+            store.extend(self._said_in(ox.NamedNode(name)))
+        return store
+
     def query(
         self,
         text: str,
@@ -101,16 +112,19 @@ class Dataset:
         """
         only_reads(text)
         lent = {**QUERY_PREFIXES, **(prefixes or {})}
-        self._merge()
+        default, named = default_graphs, named_graphs
+        if not (default or named):
+            default, named = chosen_graphs(text, lent, base)
         try:
-            if default_graphs or named_graphs:
-                return self._store.query(
+            if default or named:
+                return self._of_graphs(default, named).query(
                     text,
                     base_iri=base,
                     prefixes=lent,
-                    default_graph=[ox.NamedNode(name) for name in default_graphs],
-                    named_graphs=[ox.NamedNode(name) for name in named_graphs],
+                    default_graph=_UNION,
+                    named_graphs=[ox.NamedNode(name) for name in named],
                 )
+            self._merge()
             return self._store.query(text, base_iri=base, prefixes=lent)
         except (SyntaxError, ValueError, OSError) as error:
             raise QueryError(f"not a SPARQL query: {mistake(text, str(error), lent)}") from None

@@ -59,6 +59,22 @@ def test_from_chooses_among_the_graphs_that_are_there(dataset: Dataset) -> None:
     assert values(dataset, text) == [iri("pippi-drive")]
 
 
+def test_what_several_chosen_graphs_say_is_found_once() -> None:
+    dataset = Dataset()
+    for name in ("a", "b", "c"):
+        said = f"<urn:x> <urn:p> <urn:y> .\n<urn:x> <urn:p> <urn:{name}> .\n"
+        dataset.replace(iri(name), said.encode())
+    chosen = f"FROM <{iri('a')}> FROM <{iri('b')}>"
+    assert len(values(dataset, f"SELECT ?o {chosen} {{ <urn:x> <urn:p> ?o }}")) == 3
+    answer = dataset.query("SELECT ?o { <urn:x> <urn:p> ?o }", default_graphs=(iri("a"), iri("b")))
+    assert isinstance(answer, ox.QuerySolutions)
+    assert len(list(answer)) == 3
+    assert values(dataset, f"SELECT ?g {chosen} FROM NAMED <{iri('c')}> {{ GRAPH ?g {{ ?s ?p <urn:y> }} }}") == [
+        iri("c")
+    ]
+    assert values(dataset, f"SELECT ?o FROM NAMED <{iri('c')}> {{ <urn:x> <urn:p> ?o }}") == []
+
+
 def test_prefixes_of_ones_own_may_be_given(dataset: Dataset) -> None:
     answer = dataset.query("ASK { my:astrid-drive a rob:MotorDrive }", {"my": "https://example.org/peis-home#"})
     assert bool(answer)
