@@ -269,7 +269,11 @@ class ThingWatch:
         return None
 
     async def _begin(self, loop: asyncio.AbstractEventLoop) -> None:
-        code = ThingComponent(self.found, self._client, loop, self._settings.rate, self._lose, self._tell)
+        def lost(reason: str) -> None:
+            if self._code is code:  # of many outputs that find the thing gone at once the first one says so
+                self._lose(reason)
+
+        code = ThingComponent(self.found, self._client, loop, self._settings.rate, lost, self._tell)
         self._code, self._since = code, loop.time()  # before it lives: it may be held, and lost, at once
         trouble = await asyncio.wrap_future(self._bridge.begin_life(self._iri, code))
         self._tell(trouble or "")

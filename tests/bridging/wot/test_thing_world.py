@@ -169,6 +169,20 @@ def test_a_thing_lives_as_long_as_it_answers(
         assert until(lambda: found.lives("lamp"))
 
 
+def test_a_thing_of_many_outputs_that_has_gone_is_a_sentence_or_two(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server, names = thing_server(), [f"on{number}" for number in range(12)]
+    server.values.update({f"/{name}": True for name in names})
+    properties = {name: {"@type": "rob:Switch", "readOnly": True, "forms": [{"href": name}]} for name in names}
+    with bridging(living, tmp_path / "ads", written(tmp_path, server.describe(properties=properties))) as found:
+        active(found)
+        assert until(lambda: {one.path for one in server.received} == {f"/{name}" for name in names})
+        server.close()
+        assert until(lambda: not found.lives("lamp"))
+        assert 1 <= sum("does not answer" in one for one in found.complaints) <= 2, found.complaints
+
+
 def test_another_reason_for_which_a_thing_does_not_answer_is_news(
     thing_server: Callable[[int], ThingServer], living: LivingStage, tmp_path: Path
 ) -> None:
