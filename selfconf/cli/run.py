@@ -181,10 +181,10 @@ def _lives(given: argparse.Namespace) -> bool:
 
 def _tell_of_others(given: argparse.Namespace) -> None:
     """Tell a user that gives advertisements, and so begins an ecology, of one that runs on this machine already."""
-    from selfconf import this_machine
+    from selfconf import rendezvous, this_machine
 
     others = sorted({site.ecology for site in this_machine.local_sites()})
-    if given.ads is not None and given.ecology is None and others:
+    if given.ads is not None and rendezvous.asked_for(given.ecology, given.connect)[0] is None and others:
         complain(
             f"this run begins an ecology of its own, and {others[0]} runs here already; to run there,"
             f" give --ecology {others[0]} in place of --ads"

@@ -254,6 +254,10 @@ def test_a_refusal_points_to_the_advertisements_that_were_given_and_says_what_wo
     assert reason["place"].startswith("navigate.ttl:")
     assert written.ended() == 1
     assert f"an ecology of its own, and {home.ecology} runs here already" in written.complaints
+    home.environment["SELFCONF_ECOLOGY"] = home.ecology
+    there = home.selfconf(*arguments)
+    assert there.ended() == 1
+    assert "an ecology of its own" not in there.complaints
 
 
 def test_a_shape_that_cannot_be_judged_is_one_sentence_and_exit_code_2(inhabited: Home, tmp_path: Path) -> None:
