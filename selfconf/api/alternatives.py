@@ -45,7 +45,7 @@ def _of_role(
     taken: Collection[IRI],
     limit: TimeLimit,
 ) -> Iterator[Alternative]:
-    levels, hierarchy = inquiry.composer.task.task.template.cost, inquiry.composer.hierarchy
+    levels, hierarchy = inquiry.composer.task.template.cost, inquiry.composer.hierarchy
     chosen = _players(answer, role.iri)
     for number, candidate in enumerate(candidates):
         profile = candidate.profile

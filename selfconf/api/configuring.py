@@ -238,7 +238,7 @@ def refusal_with_places(
     `texts` are those that the task and the ecology were read from and that are in no file.
     """
     refusal = explained(composer, ecology, refusal, method.wider(), limit)
-    placed = Places(composer.task.task.template, ecology if described is None else described, texts).placed(refusal)
+    placed = Places(composer.task.template, ecology if described is None else described, texts).placed(refusal)
     return ExplainedRefusal.of(placed, composer.task)
 
 

@@ -51,17 +51,17 @@ class TaskSpecification(Tabular):
     @property
     def iri(self) -> IRI:
         """The name of the template."""
-        return self.document.task.template.iri
+        return self.document.template.iri
 
     @property
     def roles(self) -> tuple[Role, ...]:
         """The roles of the template, in its order."""
-        return self.document.task.template.roles
+        return self.document.template.roles
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters of the template, by name."""
-        return self.document.task.template.parameters
+        return self.document.template.parameters
 
     @property
     def bindings(self) -> dict[str, Term]:

@@ -217,7 +217,7 @@ def method_of(given: argparse.Namespace, task: TaskSpecification) -> Method:
 
 def complain_of_strategy(given: argparse.Namespace, task: TaskSpecification) -> None:
     """Say on stderr where the strategy has nothing to go by."""
-    if given.strategy == "best" and not task.document.task.template.cost:
+    if given.strategy == "best" and not task.document.template.cost:
         complain(
             f"the template {task.iri!r} states no sc:cost: every configuration costs the same, "
             "and best is the one that first finds"

@@ -76,14 +76,14 @@ class Composer:
 
         Where no cost is stated, every answer is `best`: the first is taken.
         """
-        if strategy is Strategy.BEST and not task.task.template.cost:
+        if strategy is Strategy.BEST and not task.template.cost:
             strategy = Strategy.FIRST
         self.task, self.hierarchy, self.steps = task, hierarchy, steps
         self.searches = Searches(strategy, steps)
         self.partitioner = Partitioner(task, hierarchy)
         self.outside = outside
         self._unfed: Set[str] = frozenset()
-        self._task = task.task if outside is None else with_outside(task.task, outside)
+        self._searched = task.task if outside is None else with_outside(task.task, outside)
         """The task as it is searched for: with what is outside, if it is the inside of a composite."""
         self._given: Mapping[IRI, Advertisement] | None = None
         self._ecology = AdvertisementIndex({})
@@ -107,7 +107,7 @@ class Composer:
             self._partition = self.partitioner.partition(self._ecology)
             if self.outside is not None:
                 self._partition = with_outside_candidate(
-                    self._partition, self._task, self.outside, self.hierarchy, self._unfed
+                    self._partition, self._searched, self.outside, self.hierarchy, self._unfed
                 )
             self._given = ecology if self._ecology is ecology else dict(ecology)
         return self._ecology
@@ -126,7 +126,7 @@ class Composer:
         roles: dict[IRI, tuple[IRI, ...]] = {}
         components -= {self.outside}  # that plays for its inside, whichever task holds it
         lacking = self._lacking(refusal)
-        for role, candidates in zip(self._task.template.roles, self._partition.candidates, strict=True):
+        for role, candidates in zip(self._searched.template.roles, self._partition.candidates, strict=True):
             for candidate in candidates if role.iri in lacking else ():
                 if (one := candidate.profile.component) in components:
                     roles[one] = (*roles.get(one, ()), role.iri)
@@ -139,7 +139,7 @@ class Composer:
 
     def _lacking(self, refusal: Refusal) -> set[IRI]:
         """The roles of which another candidate may help: those of the reasons, and those that feed these."""
-        template = self._task.template
+        template = self._searched.template
         if not refusal.reasons or any(isinstance(reason, ValueUnknown) for reason in refusal.reasons):
             return {role.iri for role in template.roles}  # any candidate may state a value
         few = {reason.role for reason in refusal.reasons if isinstance(reason, TooFewEligible)}
@@ -182,7 +182,7 @@ class Composer:
         for answer in self.searches.answers(problem, running):
             outcome = outcome_of(answer)
             if isinstance(outcome, Configuration):
-                wrong = broken_conditions(self._task, problem.partition, outcome, self.hierarchy)
+                wrong = broken_conditions(self._searched, problem.partition, outcome, self.hierarchy)
                 if wrong:
                     raise ProgrammerError(f"the search has made a mistake, please report it: {wrong[0]}")
                 yield answer if self.outside is None else inside_alone(outcome, self.outside)
@@ -200,9 +200,9 @@ class Composer:
         """What is to be searched: without what is left out, and with one player for a role where that is asked."""
         partition = partition.without(left_out) if left_out else partition
         if played is not None:
-            number = next(n for n, role in enumerate(self._task.template.roles) if role.iri == played[0])
+            number = next(n for n, role in enumerate(self._searched.template.roles) if role.iri == played[0])
             partition = partition.with_only(number, played[1])
-        return Problem(self._task, partition, self.hierarchy)
+        return Problem(self._searched, partition, self.hierarchy)
 
     def possible_under(self, ecology: Mapping[IRI, Advertisement], hierarchy: Hierarchy) -> bool:
         """Whether a configuration is found, where there is none now, if the roles see another hierarchy."""
@@ -230,7 +230,7 @@ class Composer:
         judged = self.partitioner.judged(self._admitting(near, ecology), self.gathered(ecology))
         candidates = tuple(
             tuple(candidate for candidate in some if (role.iri, candidate.profile.component) in eligible)
-            for role, some in zip(self.task.task.template.roles, judged.candidates, strict=True)
+            for role, some in zip(self.task.template.roles, judged.candidates, strict=True)
         )
         problem = Problem(self.task.task, replace(judged, candidates=candidates), self.hierarchy)
         found = self._by_role(judged)
@@ -238,13 +238,13 @@ class Composer:
 
     def _by_role(self, partition: Partition) -> dict[tuple[IRI, IRI], Candidate]:
         """The candidates of a partition by role and component."""
-        roles = zip(self.task.task.template.roles, partition.candidates, strict=True)
+        roles = zip(self.task.template.roles, partition.candidates, strict=True)
         return {(role.iri, candidate.profile.component): candidate for role, some in roles for candidate in some}
 
     def _admitting(self, near: Mapping[tuple[IRI, IRI], NearMiss], ecology: Mapping[IRI, Advertisement]) -> Partition:
         """The partition in which some near misses are the last candidates of their roles."""
         partition = self.partition(ecology)
-        more: dict[IRI, list[Candidate]] = {role.iri: [] for role in self.task.task.template.roles}
+        more: dict[IRI, list[Candidate]] = {role.iri: [] for role in self.task.template.roles}
         for (role, component), miss in near.items():
             more[role].append(Candidate(ecology[component].profile, _admitted(miss, partition.variables)))
         candidates = ((*some, *new) for some, new in zip(partition.candidates, more.values(), strict=True))
@@ -278,7 +278,7 @@ class Composer:
 
         At most `STANDBY` candidates for each role that feeds, none of them lost.
         """
-        problem = Problem(self._task, self._partition.without(lost), self.hierarchy)
+        problem = Problem(self._searched, self._partition.without(lost), self.hierarchy)
         role_of = {component: each.role for each in configuration.assignments for component in each.components}
         playing = {*role_of, self.outside}
         found: dict[IRI, dict[str, tuple[Wire, ...]]] = {}

@@ -62,7 +62,7 @@ class Inside:
 
         Raises SelfconfError.
         """
-        template = self.task.task.template
+        template = self.task.template
         for parameter in template.parameters:
             lacks = parameter.name in self.later and parameter.name not in values and parameter.default is None
             if lacks and parameter.is_set and not parameter.in_shape:
@@ -213,7 +213,7 @@ def _way_back(component: IRI, within: Mapping[IRI, set[IRI]]) -> list[IRI]:
 
 def _check_ports(profile: Profile, inside: TaskDocument) -> None:
     """Raise AuthorError where the ports of a composite are not those of its template."""
-    template = inside.task.template
+    template = inside.template
     for ports, is_input, word in ((profile.inputs, True, "input"), (profile.outputs, False, "output")):
         own = {port.name: port.port for port in template.ports if port.is_input is is_input}
         other = sorted({port.name for port in ports} ^ own.keys())
@@ -243,7 +243,7 @@ def _with_stated(profile: Profile, inside: TaskDocument) -> TaskDocument:
 
     What stands behind a port is connected with what is outside, which goes by what the composite states.
     """
-    template = inside.task.template
+    template = inside.template
     ports = tuple(replace(one, port=_stated(one.port, profile)) for one in template.ports)
     return replace(inside, task=replace(inside.task, template=replace(template, ports=ports)))
 
@@ -274,7 +274,7 @@ def _check_parameters(later: frozenset[str], inside: TaskDocument) -> None:
 
     And where a parameter of the template has no value, nor will get one.
     """
-    task, template = inside.task, inside.task.template
+    task, template = inside.task, inside.template
     known = {parameter.name: parameter for parameter in template.parameters}
     for name in sorted(later):
         if name not in known:

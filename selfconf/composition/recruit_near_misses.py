@@ -145,7 +145,7 @@ def recruiting_instead(
     composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal
 ) -> Iterator[LetRecruit]:
     """Of the roles with unfed inputs that do not recruit, each that makes the task possible if it recruits."""
-    template = composer.task.task.template
+    template = composer.task.template
     unfed = dict.fromkeys(r.role for one in refusal.reasons for r in one.requirements if isinstance(r, InputFed))
     for iri in [iri for iri in unfed if not template.role(iri).recruits][:RECRUITING_ROLES]:
         roles = tuple(replace(role, recruits=True) if role.iri == iri else role for role in template.roles)

@@ -51,9 +51,9 @@ def shape(given: TaskDocument, role: CompiledRole, hierarchy: Hierarchy) -> str:
 
     Raises AuthorError where a parameter in it is free: that any one value will do is not for a shape to say.
     """
-    loose = mentions(given.document, role.iri, free_parameters(given.task.template, given.task.bindings))
+    loose = mentions(given.document, role.iri, free_parameters(given.template, given.task.bindings))
     if loose:
-        names = " and ".join(sorted(p.name for p in given.task.template.parameters if p.iri in loose))
+        names = " and ".join(sorted(p.name for p in given.template.parameters if p.iri in loose))
         raise AuthorError(f"the role {role.iri!r} mentions the free parameter {names}; bind it to see the shape")
     triples = list(_reached(bound_shape(given.document, given.task.bindings), role.iri))
     for number, test in enumerate(test for test in role.tests if isinstance(test, ParameterTest)):

@@ -128,7 +128,7 @@ class MemoryRun:
         self._ecology.until(lambda: self.ended)
 
     def __repr__(self) -> str:
-        return f"<run of {self._task.task.template.iri.short}: {self.phase}>"
+        return f"<run of {self._task.template.iri.short}: {self.phase}>"
 
     def _explain(self, refusal: Refusal) -> Refusal:
         """A refusal with all that can be found out: no time passes in the ecology meanwhile."""

@@ -20,7 +20,7 @@ from tests.lab import PREFIXES
 
 
 def test_roles_and_components_have_file_and_line_and_others_have_no_place(clock: sc.TaskSpecification) -> None:
-    places = Places(clock.document.task.template, sc.read("examples/clock").advertisements())
+    places = Places(clock.document.template, sc.read("examples/clock").advertisements())
     home = "https://example.org/my-home#"
     assert str(places.of_role(sc.IRI(f"{home}screen"))) == "examples/clock/tell-the-time.ttl:15"
     assert str(places.of_component(sc.IRI(f"{home}display"))) == "examples/clock/display.ttl:5"

@@ -289,7 +289,7 @@ class Run:
 
     def _with_places(self, refusal: Refusal) -> Refusal:
         """A refusal that says where its facts stand, which takes no time to find out."""
-        return Places(self.task.document.task.template, self._described(), self.task.texts).placed(refusal)
+        return Places(self.task.document.template, self._described(), self.task.texts).placed(refusal)
 
     def __repr__(self) -> str:
         phase = "not begun" if self._begun is None else self._begun.runner.state.phase_in_words

@@ -97,9 +97,9 @@ class Partitioner:
         self.task, self.hierarchy = given.task, hierarchy
         self.document = substituted(with_named_suppliers(given.document), given.task.bindings)
         """The template, in the shapes of which only free parameters are left."""
-        self.free = free_parameters(given.task.template, given.task.bindings)
-        self._parameters = {parameter.iri: parameter for parameter in given.task.template.parameters}
-        self.roles = tuple(map(self._compiled, given.task.template.roles))
+        self.free = free_parameters(given.template, given.task.bindings)
+        self._parameters = {parameter.iri: parameter for parameter in given.template.parameters}
+        self.roles = tuple(map(self._compiled, given.template.roles))
         self.suppliers = self._compiled_suppliers()
         """For each role that recruits, by number, the tests of what may supply its players."""
         self._above = ClassClosure(hierarchy)

@@ -262,7 +262,7 @@ def _rigid(given: TaskDocument, parameter: Parameter) -> str | None:
     These are those properties of a role's shape that ask for a literal, paths, `sc:recruits`, the types of what roles
     set, and the properties that a cost counts; and those that ask for a name, where the parameter lists no values.
     """
-    document, template = given.document, given.task.template
+    document, template = given.document, given.template
     naming = frozenset[IRI]() if document.values(parameter.iri, SH["in"]) else _NAMING
     if any(term.property == parameter.iri for level in template.cost for term in level):
         return "sc:property"

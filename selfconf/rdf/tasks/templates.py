@@ -51,6 +51,11 @@ class TaskDocument:
     task: Task
     document: Document
 
+    @property
+    def template(self) -> Template:
+        """The template of the task."""
+        return self.task.template
+
 
 def read_task(document: Document, wanted: IRI | None = None) -> TaskDocument:
     """The task or template of a document; `wanted` names one where there are several. Raises TemplateError."""

@@ -352,10 +352,10 @@ SETTING = """
 
 def test_the_property_that_a_cost_counts_and_the_type_that_a_role_sets_are_replaced_by_their_values() -> None:
     counted = templates.read_task(turtle.parse(PREFIXES + PREFERRED, "t.ttl"))
-    template = bindings.complete(bindings.bind(counted, [("k", ":price")])).task.template
+    template = bindings.complete(bindings.bind(counted, [("k", ":price")])).template
     assert template.cost == ((CostTerm(iri("price")),),)
     sets = templates.read_task(turtle.parse(PREFIXES + SETTING, "t.ttl"))
-    (role,) = bindings.complete(bindings.bind(sets, [("k", ":H")])).task.template.roles
+    (role,) = bindings.complete(bindings.bind(sets, [("k", ":H")])).template.roles
     assert [setting.type for setting in role.settings] == [iri("H"), iri("G")]
 
 

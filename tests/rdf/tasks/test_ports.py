@@ -17,7 +17,7 @@ TEMPLATE = ":look a sc:Template ; sc:roles ( :eye )"
 
 def ports(said: str) -> tuple[TemplatePort, ...]:
     """The ports of a template that says something."""
-    return tasks.read_task(parse(f"{PREFIXES}{TEMPLATE} ; {said} . {EYE_ROLE}", "t.ttl")).task.template.ports
+    return tasks.read_task(parse(f"{PREFIXES}{TEMPLATE} ; {said} . {EYE_ROLE}", "t.ttl")).template.ports
 
 
 def test_ports_are_read_inputs_first() -> None:

@@ -23,7 +23,7 @@ DOCUMENT = parse(
 def role(text: str) -> Role:
     """The role `:r` of a template that has it alone, with what a text says of it."""
     template = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sh:class :L ."
-    (found,) = read_task(parse(f"{PREFIXES}{template} {text}", "t.ttl")).task.template.roles
+    (found,) = read_task(parse(f"{PREFIXES}{template} {text}", "t.ttl")).template.roles
     return found
 
 

@@ -162,7 +162,7 @@ def test_a_parameter_may_stand_wherever_its_value_will_stand() -> None:
 def test_every_example_that_holds_a_template_is_read(path: Path) -> None:
     document = turtle.parse(path.read_bytes(), path.name)
     if document.instances(SC.Template):
-        assert templates.read_task(document).task.template.roles
+        assert templates.read_task(document).template.roles
 
 
 # Costs.
