@@ -6,6 +6,7 @@ made of a source is named after its path below the folder that was given, so tha
 
 from __future__ import annotations
 
+import os
 import re
 from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator, Sequence
@@ -55,9 +56,11 @@ class SourceDocument:
 def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadable) -> Iterator[SourceDocument]:
     """The documents that some paths and URLs stand for: of a folder, all files below it that end so, sorted by name.
 
-    What an import has written is no source, so that the folder it goes to may lie in the folder that it comes from.
+    What is given twice, as a file and in its folder or by a link, is one document, under its first name. What an import
+    has written is no source, so that the folder it goes to may lie in the folder that it comes from.
     """
-    for one in given:
+    taken: set[str] = set()
+    for one in dict.fromkeys(given):
         if _URL.match(one):
             try:
                 yield _fetched(one)
@@ -69,6 +72,10 @@ def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadabl
             continue
         for path in files.within(Path(one), unreadable, endings):
             name = path.relative_to(one).as_posix() if path != Path(one) else path.name
+            place = os.path.realpath(path)
+            if place in taken:
+                continue
+            taken.add(place)
             try:
                 found = _read(path, name)
             except AuthorError as error:

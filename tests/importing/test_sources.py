@@ -83,6 +83,18 @@ def test_a_file_is_taken_whatever_its_name_ends_with(tmp_path: Path) -> None:
     assert (found.name, found.text()) == ("lamp", "{}")
 
 
+def test_what_is_given_twice_is_one_document(server: str, tmp_path: Path) -> None:
+    (tmp_path / "lamp.json").write_text("{}")
+    (tmp_path / "link.json").symlink_to("lamp.json")
+    (tmp_path / "other.json").write_text("{}")
+    url, lamp = f"{server}/lamp.json", str(tmp_path / "lamp.json")
+    found, errors = gathered(lamp, url, lamp, str(tmp_path / ".." / tmp_path.name), url)
+    assert ([one.shown for one in found], errors) == (
+        [lamp, url, str(tmp_path / ".." / tmp_path.name / "other.json")],
+        [],
+    )
+
+
 def test_what_is_not_there_is_named_and_the_rest_is_gathered(tmp_path: Path) -> None:
     (tmp_path / "lamp.json").write_text("{}")
     found, errors = gathered(str(tmp_path / "nowhere"), str(tmp_path / "lamp.json"))
