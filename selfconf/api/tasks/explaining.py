@@ -8,18 +8,13 @@ of why it has none.
 
 from __future__ import annotations
 
-import json
-import os
-import resource
-import sys
 from collections.abc import Collection, Mapping
+from typing import Any
 
 from selfconf.api.tasks.detached import recorded_task
-from selfconf.api.tasks.role_fits import JUDGING_MEMORY, JUDGING_NICENESS
+from selfconf.api.tasks.judging import answer_question
 from selfconf.composition import TimeLimit, composed, explained
-from selfconf.errors import SelfconfError
 from selfconf.model.refusal import Refusal
-from selfconf.model.setting_names import options_named
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import TaskRecord
@@ -43,24 +38,15 @@ def explained_refusal(
     return refusal_body(explained(composer, able, found, method.wider(), limit))
 
 
-@options_named()  # the reader of its texts is at the page of `selfconf serve`
-def main() -> None:
-    """Find out what stands on stdin."""
-    os.nice(JUDGING_NICENESS)
-    resource.setrlimit(resource.RLIMIT_AS, (JUDGING_MEMORY, JUDGING_MEMORY))
-    asked = json.load(sys.stdin)
+def _answer(question: Mapping[str, Any]) -> dict[str, object]:
+    """The explanation that a question asks for, in its form as JSON. Raises SelfconfError."""
     ecology: dict[IRI, Advertisement] = {}
-    try:
-        for text in asked["advertisements"]:
-            good, _ = read_advertisements(text.encode(), "")  # what does not conform plays in no task
-            ecology.update({one.component: one for one in good})
-        told = explained_refusal(
-            decode(asked["record"].encode(), TaskRecord), ecology, set(map(IRI.unchecked, asked["lost"]))
-        )
-    except (SelfconfError, MemoryError, RecursionError) as error:
-        told = {"detail": str(error) or type(error).__name__}
-    print(json.dumps(told))
+    for text in question["advertisements"]:
+        good, _ = read_advertisements(text.encode(), "")  # what does not conform plays in no task
+        ecology.update({one.component: one for one in good})
+    record = decode(question["record"].encode(), TaskRecord)
+    return explained_refusal(record, ecology, set(map(IRI.unchecked, question["lost"])))
 
 
 if __name__ == "__main__":
-    main()
+    answer_question(_answer)

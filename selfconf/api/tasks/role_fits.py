@@ -8,26 +8,18 @@ a failure.
 
 from __future__ import annotations
 
-import json
-import os
-import resource
-import sys
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from selfconf.api.tasks.detached import recorded_task
+from selfconf.api.tasks.judging import answer_question
 from selfconf.composition import ranked_exclusions
-from selfconf.errors import PeerError, SelfconfError
-from selfconf.model.setting_names import options_named
+from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.advertisements import Advertisement, read_advertisements
 from selfconf.rdf.eligibility import near_misses_by_type
-
-JUDGING_MEMORY = 1 << 30
-"""How many bytes of address space the process may take."""
-JUDGING_NICENESS = 5
-"""The process gives way to the programs of the ecology on the same processors."""
 
 
 class RoleFit(NamedTuple):
@@ -60,22 +52,13 @@ def role_fits(record: TaskRecord, advertisement: Advertisement) -> list[RoleFit]
     return found
 
 
-@options_named()  # the reader of its texts is at the page of `selfconf serve`
-def main() -> None:
-    """Judge what stands on stdin."""
-    os.nice(JUDGING_NICENESS)
-    resource.setrlimit(resource.RLIMIT_AS, (JUDGING_MEMORY, JUDGING_MEMORY))
-    asked = json.load(sys.stdin)
-    try:
-        good, bad = read_advertisements(asked["advertisement"].encode(), "")
-        if not good:
-            raise PeerError(f"no advertisement: {bad}")
-        fits = role_fits(decode(asked["record"].encode(), TaskRecord), good[0])
-    except (SelfconfError, MemoryError, RecursionError) as error:
-        print(json.dumps({"detail": str(error) or type(error).__name__}))
-    else:
-        print(json.dumps([fit.body() for fit in fits]))
+def _answer(question: Mapping[str, Any]) -> list[dict[str, object]]:
+    """The verdicts that a question asks for, in its form as JSON. Raises SelfconfError."""
+    good, bad = read_advertisements(question["advertisement"].encode(), "")
+    if not good:
+        raise PeerError(f"no advertisement: {bad}")
+    return [fit.body() for fit in role_fits(decode(question["record"].encode(), TaskRecord), good[0])]
 
 
 if __name__ == "__main__":
-    main()
+    answer_question(_answer)
