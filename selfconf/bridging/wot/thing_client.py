@@ -226,11 +226,13 @@ class ThingClient:
 
     async def _lines(self, form: ThingForm, answer: aiohttp.ClientResponse) -> AsyncIterator[bytes]:
         """The lines of an answer that has no end, each as it comes, without its end."""
-        rest = b""
+        rest = bytearray()  # to which a piece is added without a copy: a long line may come in many
         async for piece in answer.content.iter_any():
-            *lines, rest = (rest + piece).split(_LINE_END)
-            for line in lines:
-                yield line.removesuffix(b"\r")
+            begun, *others = piece.split(_LINE_END)
+            rest += begun
+            for other in others:
+                yield bytes(rest).removesuffix(b"\r")
+                rest = bytearray(other)
             if len(rest) > self._limits.size:
                 raise self._too_large(form)
             await asyncio.sleep(0)  # of a thing that sends without a pause, no piece would be waited for

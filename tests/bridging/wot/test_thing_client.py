@@ -7,7 +7,7 @@ import json
 import ssl
 import time
 from array import array
-from collections.abc import Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine
 from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 from typing import Any, TypeVar
@@ -371,6 +371,31 @@ def test_a_stream_without_end_of_line_or_of_event_is_bounded(thing_server: Start
 
     with pytest.raises(ThingError, match="more than 1 MiB"):
         asked(work, LIMITS)
+
+
+class InPieces:
+    """An answer of one line that comes in many pieces."""
+
+    def __init__(self, pieces: int) -> None:
+        self.content, self._pieces = self, pieces
+
+    async def iter_any(self) -> AsyncIterator[bytes]:
+        """The pieces."""
+        for _ in range(self._pieces):
+            yield b"x" * 500
+        yield b"\r\n"
+
+
+def test_a_long_line_that_comes_in_many_pieces_costs_no_time() -> None:
+    """As long as it took to copy what had come by each of them, a slow thing held up all others."""
+
+    async def work(client: ThingClient) -> list[int]:
+        answer: Any = InPieces(8_000)
+        return [len(line) async for line in client._lines(ThingForm("http://x/", "GET"), answer)]
+
+    began = time.process_time()
+    assert asked(work, ThingLimits(size=1 << 24)) == [4_000_000]
+    assert time.process_time() - began < 3.0
 
 
 def test_a_thing_that_streams_without_a_pause_is_read_as_fast_as_is_allowed_and_disturbs_no_other(
