@@ -53,7 +53,7 @@ def ranked_near_misses(
     slips: list[NearMiss] = []
     found: list[NearMiss] = []
     for number, role in enumerate(problem.roles):
-        question = _Question(composer, ecology, problem, number, signals)
+        near = _NearRole(composer, ecology, problem, number, signals)
         misses = [miss for miss in refusal.near_misses if miss.role == role.iri]
         if role.iri in short:
             compiled = composer.partitioner.roles[number]
@@ -61,9 +61,9 @@ def ranked_near_misses(
             slips += filter(_is_slip, by_type)
             misses += filterfalse(_is_slip, by_type)
         if role.iri in short or not short:
-            misses += question.kept_out()
-        misses += question.feeding_nothing([need for need in unfed if number in _sources(problem, need.role)])
-        found += question.ranked(misses)[:MOST_NEAR]
+            misses += near.kept_out()
+        misses += near.feeding_nothing([need for need in unfed if number in _sources(problem, need.role)])
+        found += near.ranked(misses)[:MOST_NEAR]
     return (*slips, *found)
 
 
@@ -100,7 +100,7 @@ def _sources(problem: Problem, sink: IRI) -> tuple[int, ...]:
     return problem.sources[next(number for number, role in enumerate(problem.roles) if role.iri == sink)]
 
 
-class _Question:
+class _NearRole:
     """What one role asks for, by its shape or along its interactions, and which components come near to it."""
 
     def __init__(

@@ -9,7 +9,7 @@ from selfconf.composition.near_misses import fault_of
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import replace
-from selfconf.model.nearness import Near, ranked
+from selfconf.model.nearness import ranked
 from selfconf.model.obstacle import NotFedItself, Obstacle
 from selfconf.model.partition import NearMiss, candidate_order
 from selfconf.model.port_likeness import PortLikeness, WantedPorts
@@ -39,71 +39,69 @@ def with_recruit_near_misses(
 ) -> Refusal:
     """A refusal that names, for each input that a recruit could have fed, the components nearest to it."""
     problem = Problem(composer.task.task, composer.partition(ecology), composer.hierarchy)
+    signals = SignalLikeness(known)
     near: list[NearMiss] = []
     reasons = []
     for reason in refusal.reasons:
         if isinstance(reason, InputUnfed) and reason.recruits:
-            few = list(_near_misses(composer, ecology, problem, reason, SignalLikeness(known)))[:RECRUITS_NAMED]
+            few = list(_NearInput(composer, ecology, problem, reason).near_misses(signals))[:RECRUITS_NAMED]
             reason = replace(reason, nearest=few[0] if few else None)
             near += few
         reasons.append(reason)
     return replace(refusal, reasons=tuple(reasons), near_misses=(*refusal.near_misses, *near))
 
 
-def _near_misses(
-    composer: Composer,
-    ecology: Mapping[IRI, Advertisement],
-    problem: Problem,
-    reason: InputUnfed,
-    signals: SignalLikeness,
-) -> Iterator[NearMiss]:
-    """Yield the components that could nearly be recruited for an input, the nearest first."""
-    number = next(number for number, role in enumerate(problem.roles) if role.iri == reason.role)
-    yield from _kept_out(composer, ecology, problem, reason, number)
-    profiles = [r.profile for r in problem.supply.recruits if number in r.roles and r.component != reason.component]
-    ports = PortLikeness([WantedPorts((reason.wanted.signals,))], signals)
-    question = [word for signal in reason.wanted.signals for word in words(signal.short)] + words(reason.input)
-    for near in ranked(profiles, ports, question):
-        if near.lacking is not None and near.lacking.issued[0].likeness:
-            obstacle = _obstacle(composer, ecology, problem, reason, near)
-            likeness = near.likeness
-            yield NearMiss(reason.role, near.profile.component, obstacle, likeness=likeness, recruit=True)
+class _NearInput:
+    """An input that no recruit feeds, and which components come near to being recruited for it."""
 
+    def __init__(
+        self, composer: Composer, ecology: Mapping[IRI, Advertisement], problem: Problem, reason: InputUnfed
+    ) -> None:
+        self._composer, self._ecology, self._problem, self._reason = composer, ecology, problem, reason
+        number = next(number for number, role in enumerate(problem.roles) if role.iri == reason.role)
+        self._role = number
+        self._recruits = [recruit for recruit in problem.supply.recruits if number in recruit.roles]
 
-def _kept_out(
-    composer: Composer, ecology: Mapping[IRI, Advertisement], problem: Problem, reason: InputUnfed, number: int
-) -> Iterator[NearMiss]:
-    """Yield the components that issue what an input wants, and that a role does not recruit for one thing alone."""
-    wanted = Input(reason.input, reason.wanted.signals, condition=reason.wanted.condition)
-    passed_over = {recruit.component for recruit in problem.supply.recruits if number in recruit.roles}
-    passed_over.add(reason.component)  # which is no recruit for itself
-    issuing = [
-        advertisement
-        for advertisement in ecology.values()
-        if advertisement.component not in passed_over
-        and any(problem.hierarchy.pairs(output, wanted) for output in advertisement.profile.outputs)
-    ]
-    for advertisement in sorted(issuing, key=lambda one: candidate_order(one.profile)):
-        faults = composer.partitioner.against_supplying(number, advertisement, composer.gathered(ecology))
-        if len(faults) == 1:
-            yield NearMiss(reason.role, advertisement.component, faults[0], likeness=1.0, recruit=True)
+    def near_misses(self, signals: SignalLikeness) -> Iterator[NearMiss]:
+        """Yield the components that could nearly be recruited for it, the nearest first."""
+        yield from self._kept_out()
+        reason, wanted = self._reason, self._reason.wanted.signals
+        profiles = [recruit.profile for recruit in self._recruits if recruit.component != reason.component]
+        question = [word for signal in wanted for word in words(signal.short)] + words(reason.input)
+        for near in ranked(profiles, PortLikeness([WantedPorts((wanted,))], signals), question):
+            if near.lacking is not None and near.lacking.issued[0].likeness:
+                obstacle, likeness = self._obstacle(near.profile) or near.lacking, near.likeness
+                yield NearMiss(reason.role, near.profile.component, obstacle, likeness=likeness, recruit=True)
 
+    def _kept_out(self) -> Iterator[NearMiss]:
+        """Yield the components that issue what it wants, and that the role does not recruit for one thing alone."""
+        reason = self._reason
+        wanted = Input(reason.input, reason.wanted.signals, condition=reason.wanted.condition)
+        passed_over = {recruit.component for recruit in self._recruits}
+        passed_over.add(reason.component)  # which is no recruit for itself
+        issuing = [
+            advertisement
+            for advertisement in self._ecology.values()
+            if advertisement.component not in passed_over
+            and any(self._problem.hierarchy.pairs(output, wanted) for output in advertisement.profile.outputs)
+        ]
+        index = self._composer.gathered(self._ecology)
+        for advertisement in sorted(issuing, key=lambda one: candidate_order(one.profile)):
+            faults = self._composer.partitioner.against_supplying(self._role, advertisement, index)
+            if len(faults) == 1:
+                yield NearMiss(reason.role, advertisement.component, faults[0], likeness=1.0, recruit=True)
 
-def _obstacle(
-    composer: Composer, ecology: Mapping[IRI, Advertisement], problem: Problem, reason: InputUnfed, near: Near
-) -> Obstacle:
-    """Why a component is not recruited for an input."""
-    wanted = reason.wanted
-    plain = Input(reason.input, wanted.signals)
-    matching = [output for output in near.profile.outputs if problem.hierarchy.pairs(output, plain)]
-    for output in matching:
-        if wanted.condition is not None:
-            fault = fault_of(composer, ecology, near.profile.component, output, wanted.condition)
+    def _obstacle(self, profile: Profile) -> Obstacle | None:
+        """Why a component that issues what it wants is not recruited; None where it lacks that, or nothing else."""
+        wanted = self._reason.wanted
+        plain, condition = Input(self._reason.input, wanted.signals), wanted.condition or Condition()
+        matching = [output for output in profile.outputs if self._problem.hierarchy.pairs(output, plain)]
+        for output in matching:
+            fault = fault_of(self._composer, self._ecology, profile.component, output, condition)
             if fault is not None:
                 return fault
-    unfed = _unfed(problem, near.profile) if matching else None
-    assert near.lacking is not None  # for ports are compared
-    return near.lacking if unfed is None else _not_fed(problem, near.profile, unfed)
+        unfed = _unfed(self._problem, profile) if matching else None
+        return None if unfed is None else _not_fed(self._problem, profile, unfed)
 
 
 def _not_fed(problem: Problem, profile: Profile, unfed: Input) -> NotFedItself:
