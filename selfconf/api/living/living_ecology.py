@@ -135,13 +135,13 @@ class LivingEcology(Ecology):
     def state(self, component: str) -> str:
         """`alive`; `dormant` if its site can start it; `absent` if it is advertised, but no process runs it.
 
-        As of the last discovery; what lives in a large ecology, as of the first question after it. What is no IRI is
-        looked up as by `component`, which raises AuthorError.
+        As of the last discovery, which is made where there was none; what lives in a large ecology, as of the first
+        question after it. What is no IRI is looked up as by `component`, which raises AuthorError.
         """
         one = component if isinstance(component, IRI) else self.component(component).advertisement.component
+        found = self._last_discovery().found.get(one)
         if self._life(one) is not None:
             return "alive"
-        found = self.discovery.found.get(one)
         return "dormant" if found is not None and found.startable else "absent"
 
     def component_states(self) -> tuple[ComponentState, ...]:
@@ -240,8 +240,12 @@ class LivingEcology(Ecology):
 
     @property
     def sites(self) -> tuple[str, ...]:
-        """The sites that were found by the last discovery, sorted."""
-        return self.discovery.sites
+        """The sites that were found by the last discovery, which is made where there was none; sorted."""
+        return self._last_discovery().sites
+
+    def _last_discovery(self) -> Discovery:
+        """The last discovery, or a first one; where no site was found, it is looked again."""
+        return self.discovery if self.discovery.sites else self.discover()
 
     @property
     def tasks(self) -> tuple[Status, ...]:

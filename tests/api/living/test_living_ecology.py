@@ -54,6 +54,13 @@ def test_components_are_looked_up_anew_each_time(served: Home) -> None:
         assert "lamp" in living._repr_html_()
 
 
+def test_an_ecology_that_was_only_joined_is_discovered_for_its_sites_and_for_a_state(served: Home) -> None:
+    with sc.join() as living:
+        assert living.state(sc.IRI("https://example.org/my-home#clock")) == "dormant"
+    with sc.join() as living:
+        assert living.sites == ("home",)
+
+
 def test_looking_and_configuring_start_nothing(served: Home, clock: sc.TaskSpecification) -> None:
     with sc.join() as living:
         answer = living.configure(clock, what_if=True)
