@@ -54,7 +54,7 @@ def _of_role(
             component=profile.component,
             preference=profile.preference,
             cost=tuple(price),
-            unknown=int(unknown),
+            unknown_terms=int(unknown),
             chosen=False,
             outcome="not tried",
         )
@@ -81,7 +81,9 @@ def _answer(
 
 def _with(one: Alternative, answer: Optimum | Outcome) -> Alternative:
     if isinstance(answer, Optimum):
-        return one._replace(outcome="possible", total=answer.cost, total_unknown=answer.unknown, proved=answer.proved)
+        return one._replace(
+            outcome="possible", total=answer.cost, total_unknown_terms=answer.unknown_terms, proved=answer.proved
+        )
     if isinstance(answer, Configuration):
         return one._replace(outcome="possible")
     return one._replace(outcome="impossible" if isinstance(answer, Refusal) else "undecided")

@@ -40,7 +40,7 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     task: TaskDocument = field(kw_only=True, repr=False, compare=False)
     optimum: Optimum | None = field(default=None, kw_only=True, repr=False, compare=False)
     """The cost with its proof, where the strategy is `best` and the template states a cost."""
-    unknown: tuple[IRI, ...] = field(default=(), kw_only=True, repr=False, compare=False)
+    unknown_properties: tuple[IRI, ...] = field(default=(), kw_only=True, repr=False, compare=False)
     """The properties of the cost for which no component of the ecology has a number."""
     what_if: tuple[Consequence, ...] | None = field(default=None, kw_only=True, repr=False, compare=False)
     """What would replace each component if it failed, where that was asked for and there was time."""
@@ -53,13 +53,21 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
         configuration: Configuration,
         task: TaskDocument,
         optimum: Optimum | None = None,
-        unknown: tuple[IRI, ...] = (),
+        unknown_properties: tuple[IRI, ...] = (),
         what_if: tuple[Consequence, ...] | None = None,
         left_out: tuple[LeftOut, ...] = (),
     ) -> Answer:
         """A configuration of a task as an answer to it."""
-        more = {"task": task, "optimum": optimum, "unknown": unknown, "what_if": what_if, "left_out": left_out}
-        return recast(configuration, cls, Configuration, **more)
+        return recast(
+            configuration,
+            cls,
+            Configuration,
+            task=task,
+            optimum=optimum,
+            unknown_properties=unknown_properties,
+            what_if=what_if,
+            left_out=left_out,
+        )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bindings", FrozenMapping(self.bindings))
@@ -109,7 +117,7 @@ class Answer(Configuration, Mapping[str, tuple[IRI, ...]]):
     def __str__(self) -> str:
         parts = [configuration_text(self, self.names)]
         if self.optimum is not None:
-            parts.append(cost_text(self.optimum, self.unknown, self.names))
+            parts.append(cost_text(self.optimum, self.unknown_properties, self.names))
         if self.what_if is not None:
             parts.append(consequences_text(self.what_if, self.names))
         return "\n".join(parts)

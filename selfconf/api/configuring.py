@@ -184,7 +184,7 @@ class Inquiry:
             plain,
             self.task.document,
             optimum,
-            unknown=() if optimum is None else self._unknown(optimum),
+            unknown_properties=() if optimum is None else self._unknown_properties(optimum),
             what_if=None if consequences is None else tuple(consequences),
             left_out=self.left_out,
         )
@@ -211,7 +211,7 @@ class Inquiry:
         named = usable or self.holders.keys() & set(wanted.components)
         return tuple((component, self.holders[component]) for component in sorted(named))
 
-    def _unknown(self, optimum: Optimum) -> tuple[IRI, ...]:
+    def _unknown_properties(self, optimum: Optimum) -> tuple[IRI, ...]:
         """The properties of unknown terms that no component in the ecology has a number for."""
         wanted = {one for _, one in optimum.missing}
         for advertisement in self.ecology.values():

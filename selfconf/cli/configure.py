@@ -141,7 +141,7 @@ def _body(inquiry: Inquiry, answer: Answer | Refusal | Undecided) -> dict[str, A
     else:
         body = {"status": "configured", **body, **configuration_body(answer)}
         if answer.optimum is not None:
-            body["cost"] = cost_body(answer.optimum, answer.unknown)
+            body["cost"] = cost_body(answer.optimum, answer.unknown_properties)
         if answer.what_if is not None:
             body["what_if"] = consequences_body(answer.what_if)
         inside = {component: _inside_body(one) for component, one in inquiry.insides(answer)}

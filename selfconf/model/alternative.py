@@ -16,7 +16,7 @@ class Alternative(NamedTuple):
     preference: Decimal
     cost: tuple[Fraction, ...]
     """What it costs in the role, by level; empty where the template states no cost."""
-    unknown: int
+    unknown_terms: int
     """How many terms of the cost are over a property that it does not have."""
     chosen: bool
     """Whether it plays the role in the answer."""
@@ -24,7 +24,7 @@ class Alternative(NamedTuple):
     """`possible` with it, `impossible`, `undecided` within the time, or `not tried`."""
     total: tuple[Fraction, ...] = ()
     """What the cheapest configuration with it costs, by level; empty where no cost is stated, or there is none."""
-    total_unknown: int = 0
+    total_unknown_terms: int = 0
     """How many terms of that cost are unknown."""
     proved: bool = True
     """Whether nothing with it costs less for sure."""

@@ -25,7 +25,7 @@ class Optimum:
     """Whether none that costs as little comes before it for sure."""
 
     @property
-    def unknown(self) -> int:
+    def unknown_terms(self) -> int:
         """How many terms of the cost are over a property that a component does not have."""
         return len(self.missing)
 

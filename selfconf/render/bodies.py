@@ -61,7 +61,7 @@ def alternative_body(one: Alternative) -> dict[str, Any]:
     """A candidate of a role with what would come of it; costs only where the template states some."""
     costs = {
         "cost": [double(amount) for amount in one.cost],
-        "unknown_terms": one.unknown,
+        "unknown_terms": one.unknown_terms,
         **({"total": [double(amount) for amount in one.total], "total_proved": one.proved} if one.total else {}),
     }
     return {
@@ -90,7 +90,7 @@ def cost_body(optimum: Optimum, unknown: Iterable[IRI]) -> dict[str, Any]:
         "levels": [double(amount) for amount in optimum.cost],
         "bound": [double(amount) for amount in optimum.bound],
         "proved": optimum.proved,
-        "unknown": optimum.unknown,
+        "unknown": optimum.unknown_terms,
         "missing": [{"component": component, "property": wanted} for component, wanted in optimum.missing],
         "nobody_has": sorted(unknown),
     }

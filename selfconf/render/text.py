@@ -79,7 +79,7 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
         lines.append(f"  level {number}  {_decimal(spent)}{bound}")
     lines.append("  proved: nothing costs less" if optimum.proved else "  not proved: there may be something better")
     if optimum.missing:
-        terms = "1 term is" if optimum.unknown == 1 else f"{optimum.unknown} terms are"
+        terms = "1 term is" if optimum.unknown_terms == 1 else f"{optimum.unknown_terms} terms are"
         lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")
     unstated = set(unknown)
     lines += [f"    no component of the ecology has a number for {name(one)}" for one in sorted(unstated)]
@@ -96,8 +96,8 @@ def alternative_text(one: Alternative, chosen: Alternative | None, some_held: bo
     said = [f"preference {one.preference:g}" if one.preference else "no preference"]
     if one.cost:
         said.append(f"cost {_amounts(one.cost)}")
-    if one.unknown:
-        said.append(f"{one.unknown} {'term' if one.unknown == 1 else 'terms'} of the cost unknown")
+    if one.unknown_terms:
+        said.append(f"{one.unknown_terms} {'term' if one.unknown_terms == 1 else 'terms'} of the cost unknown")
     return f"{', '.join(said)}; {_outcome(one, chosen, some_held)}"
 
 
@@ -123,7 +123,7 @@ def _beside(one: Alternative, chosen: Alternative | None) -> str:
     if more > 0:
         return f", {_decimal(more)} more{where}"
     # With as few components of optional roles, and as few unknown terms, as the answer has, nothing costs less.
-    known = one.proved and chosen.proved and one.total_unknown == chosen.total_unknown
+    known = one.proved and chosen.proved and one.total_unknown_terms == chosen.total_unknown_terms
     return f", {_decimal(-more)} less{where}{', but with more of the optional roles' if known else ''}"
 
 

@@ -56,7 +56,7 @@ def test_each_candidate_is_told_with_its_cost_and_that_of_the_cheapest_configura
     assert one["a1"].extra(one["a2"]) == (Fraction(3),)
     assert one["b1"].total == (Fraction(6),)
     assert (one["a3"].outcome, one["a3"].total) == ("impossible", ())
-    assert (one["b3"].unknown, one["b3"].total_unknown, one["b3"].total) == (1, 1, (Fraction(1),))
+    assert (one["b3"].unknown_terms, one["b3"].total_unknown_terms, one["b3"].total) == (1, 1, (Fraction(1),))
 
 
 def test_without_a_cost_it_is_told_whether_there_is_a_configuration_with_it() -> None:

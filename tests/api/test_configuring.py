@@ -262,14 +262,14 @@ def test_the_best_answer_has_its_cost_and_what_is_not_known_of_it() -> None:
     assert best["r"] == (iri("cheap"),)
     assert best.optimum is not None
     assert [float(level) for level in best.optimum.cost] == [2.0]
-    assert best.unknown == (iri("weight"),)
+    assert best.unknown_properties == (iri("weight"),)
     assert "no component of the ecology has a number for :weight" in str(best)
 
 
 def test_a_property_that_another_component_has_is_not_unknown_to_the_ecology() -> None:
     best = configure(template(PRICED), read(LAMPS + ":oven a sc:Component, :Oven ; :weight 3 ."), strategy="best")
     assert isinstance(best, Answer)
-    assert best.unknown == ()
+    assert best.unknown_properties == ()
     assert best.optimum is not None
     assert best.optimum.missing == ((iri("cheap"), iri("weight")),)
 

@@ -129,7 +129,7 @@ def test_everything_at_once_is_answered_as_enumeration_does(problem: Problem, da
     assert isinstance(best, Optimum)
     assert best.proved
     least = min(found, key=lambda one: world.total(*one))
-    assert (best.unknown, *best.cost) == world.total(*least)
+    assert (best.unknown_terms, *best.cost) == world.total(*least)
     holds(problem, asked, best.configuration, least)
     if first.components:
         after_failure(problem, first, data)

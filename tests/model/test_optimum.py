@@ -12,6 +12,6 @@ from selfconf.model.term import IRI
 def test_each_term_without_a_number_is_unknown() -> None:
     lamp, price, weight = IRI("urn:lamp"), IRI("urn:price"), IRI("urn:weight")
     none = Optimum(Configuration(IRI("urn:t"), ()), (Fraction(1),), (Fraction(1),), (), proved=True)
-    assert none.unknown == 0
+    assert none.unknown_terms == 0
     two = Optimum(none.configuration, none.cost, none.bound, ((lamp, price), (lamp, weight)), proved=True)
-    assert two.unknown == 2
+    assert two.unknown_terms == 2

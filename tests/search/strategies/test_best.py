@@ -97,7 +97,7 @@ def test_the_best_is_the_first_of_least_cost(problem: Problem) -> None:
     least = min(solutions, key=lambda players: _total(world, players))
     assert isinstance(answer, Optimum)
     assert answer.proved
-    assert (answer.unknown, *answer.cost) == _total(world, least)
+    assert (answer.unknown_terms, *answer.cost) == _total(world, least)
     assert answer.configuration == world.configuration(least)
 
 
@@ -123,7 +123,7 @@ def test_the_best_after_a_failure_is_the_cheapest_of_the_nearest(drawn: tuple[Pr
     if isinstance(answer, Optimum):
         nearest = min(solutions, key=lambda players: (newcomers(players), *_total(world, players)))
         assert answer.proved
-        assert (answer.unknown, *answer.cost) == _total(world, nearest)
+        assert (answer.unknown_terms, *answer.cost) == _total(world, nearest)
         assert answer.configuration == solved(left, nearest, running)
 
 
@@ -166,7 +166,7 @@ def test_what_is_found_in_few_steps_has_a_true_bound(
             if isinstance(answer, Refusal):
                 assert least is None
             elif isinstance(answer, Optimum):
-                found = (answer.unknown, *answer.cost)
+                found = (answer.unknown_terms, *answer.cost)
                 assert least is not None
                 assert found >= least
                 assert answer.bound <= min(answer.cost, least[1:])
@@ -201,7 +201,7 @@ def test_a_cost_over_a_property_that_no_component_has_changes_nothing_and_is_cou
     answer = best.best_configuration(given_)
     assert isinstance(answer, Optimum)
     assert answer.configuration.components[0].short == "a"
-    assert answer.unknown == 1
+    assert answer.unknown_terms == 1
 
 
 def test_a_known_cost_is_better_than_an_unknown_one() -> None:

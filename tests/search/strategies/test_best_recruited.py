@@ -122,7 +122,7 @@ def test_the_best_with_recruits_is_the_first_of_least_cost(problem: Problem, dat
         return
     least = min(solutions, key=lambda one: world.total(*one))
     assert answer.proved
-    assert (answer.unknown, *answer.cost) == world.total(*least)
+    assert (answer.unknown_terms, *answer.cost) == world.total(*least)
     is_solution(answer.configuration, least)
     assert not broken_conditions(problem.task, problem.partition, answer.configuration, problem.hierarchy)
     if not answer.configuration.components:
@@ -136,7 +136,7 @@ def test_the_best_with_recruits_is_the_first_of_least_cost(problem: Problem, dat
         running = answer.configuration
         nearest = min(remaining, key=lambda one: (other.newcomers(running, *one), *other.total(*one)))
         assert after.proved
-        assert (after.unknown, *after.cost) == other.total(*nearest)
+        assert (after.unknown_terms, *after.cost) == other.total(*nearest)
         # Of equally many, recruits that run come before others, which enumeration does not know.
         assert [a.components for a in after.configuration.assignments] == [
             tuple(c.profile.component for c in some) for some in nearest[0]
@@ -177,7 +177,7 @@ def test_without_a_solver_a_bound_holds_though_recruits_are_of_unknown_cost() ->
     with without_solvers():
         answer = best.best_configuration(Problem(replace(helped.task, template=template), helped.partition))
     assert isinstance(answer, Optimum)
-    assert (answer.cost, answer.unknown, answer.proved) == ((Fraction(2),), 1, False)
+    assert (answer.cost, answer.unknown_terms, answer.proved) == ((Fraction(2),), 1, False)
     # The other user, whose latency is not known either, needs no recruit: with it the level is 0.
     assert answer.bound == (Fraction(0),)
 
