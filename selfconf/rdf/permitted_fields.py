@@ -74,7 +74,7 @@ COMMAND_LINE = ValueKind(
     literal=lambda lexical, datatype: datatype == STRING and lexical.strip() != "",
 )
 NUMBER = ValueKind(
-    "one number",
+    "a finite number",
     r"([+-]?[0-9]{1,9}(?:\.[0-9]{1,9})?)",
     literal=lambda lexical, datatype: number_of(lexical, datatype) is not None,
 )

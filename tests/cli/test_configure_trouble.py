@@ -269,7 +269,7 @@ def source(name: str, wanted: str, issued: str) -> str:
                 "s": ':s a sc:Component, :Source ; sc:hasOutput [ sc:name "o" ; sc:signalType :S ] .',
             },
             1,
-            "left out https://example.org/peis-home#u: the sc:unit of 'i' is an IRI, if it is there at all",
+            "left out https://example.org/peis-home#u: 'i' has at most one sc:unit, an IRI",
         ),
         (
             SUPPLIED.replace("sc:feeds :user", "").replace(":source :user", ":user") + USER,

@@ -246,7 +246,7 @@ class _Reader:
             return None
         value = self._required(node, field)
         if value is None:
-            self._problem(f"the {_word(field.predicate)} of {name!r} is {field.kind.words}, if it is there at all")
+            self._problem(f"{name!r} has at most one {_word(field.predicate)}, {field.kind.words}")
         return value
 
     def _accepts(self, node: Term, name: str) -> str | None:
@@ -297,7 +297,7 @@ class _Reader:
         value = self._required(self.component, field)
         if isinstance(value, Literal):
             return value
-        self._problem(f"{_word(field.predicate)} is {field.kind.words}, if it is there at all")
+        self._problem(f"a component has at most one {_word(field.predicate)}, {field.kind.words}")
         return None
 
     def _quantity(self, node: Term, field: Field, what: str) -> Literal | None:
