@@ -106,19 +106,28 @@ def log_reader(
             ecology = ecology or names_of_log(paths[0])[0]
         if living is None and folder is None and local_sites(ecology):
             living = _joined(ecology, endpoints, keys, stack)
-        sources, asked = _sources(paths, living, complain)
+        sources, asked = _sources(paths, living, folder is not None, complain)
         look_up = living.component if isinstance(living, LivingEcology) else None
         yield LogReader(sources, component, ASK_AGAIN if asked else FOLLOW_PAUSE, look_up)
 
 
 def _sources(
-    paths: list[Path] | NetworkError, living: LivingEcology | NetworkError | None, complain: Callable[[str], None]
+    paths: list[Path] | NetworkError,
+    living: LivingEcology | NetworkError | None,
+    are_meant: bool,
+    complain: Callable[[str], None],
 ) -> tuple[list[LogSource], bool]:
-    """The logs that can be read, and whether sites are asked for some. Raises NetworkError where there are none."""
+    """The logs that can be read, and whether sites are asked for some. Raises NetworkError where there are none.
+
+    A site that lives is asked for its log unless that is here. What is here of a site of that name which does not run
+    on this machine was kept by one of before, unless `are_meant` says that these logs, wherever they are from, are.
+    """
     here = [] if isinstance(paths, NetworkError) else paths
     others: list[LogSource] = []
     if isinstance(living, LivingEcology):
-        others = living.other_logs([names_of_log(path)[1] for path in here], complain)
+        names = {names_of_log(path)[1] for path in here}
+        known = names if are_meant else names.intersection(site.site for site in local_sites(living.name))
+        others = living.other_logs(known, complain)
     elif living is not None:
         if not here:
             raise living

@@ -122,3 +122,19 @@ def test_the_ecology_is_that_of_the_endpoint_where_logs_of_others_are_kept_here(
         with log_reader(None, [far.endpoint()], keys, None, "", complaints.append) as lines:
             assert [line.text for line in lines.latest(9)] == ["far away"]
     assert complaints == []
+
+
+@pytest.mark.process
+def test_a_site_that_lives_elsewhere_is_asked_though_a_former_one_of_its_name_has_kept_a_log_here(
+    far: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for folder, text in ((far.folder / "kept", said(2, "far away")), (tmp_path / "here" / "log", said(1, "once here"))):
+        folder.mkdir(parents=True)
+        (folder / f"{far.ecology}@far.log").write_text(text)
+    far.site("far", "ads", options=("--log", "kept"))
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "here"))
+    keys = None if far.authority is None else far.authority.path
+    with log_reader(far.ecology, [far.endpoint()], keys, None, "", lambda _: None) as lines:
+        assert [line.text for line in lines.latest(9)] == ["once here", "far away"]
+    with log_reader(far.ecology, [far.endpoint()], keys, far.folder / "kept", "", lambda _: None) as lines:
+        assert [line.text for line in lines.latest(9)] == ["far away"]
