@@ -73,6 +73,18 @@ def _is_slip(miss: NearMiss) -> bool:
 
 
 def fault_of(
+    composer: Composer,
+    ecology: Mapping[IRI, Advertisement],
+    component: IRI,
+    outputs: Iterable[Output],
+    wanted: Condition,
+) -> UnfitOutput | None:
+    """In what the first of some outputs differs from what an input asks for besides the type; None if one does not."""
+    faults = [_fault_of(composer, ecology, component, output, wanted) for output in outputs]
+    return None if None in faults else next(iter(faults), None)
+
+
+def _fault_of(
     composer: Composer, ecology: Mapping[IRI, Advertisement], component: IRI, output: Output, wanted: Condition
 ) -> UnfitOutput | None:
     """In what an output differs from what an input asks for besides the type; None if in nothing."""
@@ -154,13 +166,25 @@ class _NearRole:
         return self._problem.hierarchy.matches(match.offered, match.wanted)
 
     def _unfit(self, profile: Profile, unfed: Sequence[InputFed]) -> UnfitOutput | None:
-        """What is wrong with the first output that an unfed input would take by its type."""
+        """What is wrong with the first output that an unfed input would take by its type, where it takes no other."""
         for need in unfed:
-            plain = Input("", need.wanted.signals)
-            for output in profile.outputs:
-                if need.wanted.condition is not None and self._problem.hierarchy.pairs(output, plain):
-                    return fault_of(self._composer, self._ecology, profile.component, output, need.wanted.condition)
+            wanted = need.wanted.condition
+            if wanted is not None:
+                taken = self._taken_by_type(profile, need)
+                fault = fault_of(self._composer, self._ecology, profile.component, taken, wanted)
+                if fault is not None:
+                    return fault
         return None
+
+    def _taken_by_type(self, profile: Profile, need: InputFed) -> Iterator[Output]:
+        """Yield the outputs that an interaction leads to an input and that the input would take by its type."""
+        problem, plain = self._problem, Input("", need.wanted.signals)
+        sink = next(number for number, role in enumerate(problem.roles) if role.iri == need.role)
+        links = [link for link in problem.links[sink] if link.source == self._number]
+        for output in profile.outputs:
+            led = any(link.output in (None, output.name) and link.input in (None, need.input) for link in links)
+            if led and problem.hierarchy.pairs(output, plain):
+                yield output
 
     def ranked(self, misses: Iterable[NearMiss]) -> list[NearMiss]:
         """Near misses of the role, the nearest first; of several of one component the last."""

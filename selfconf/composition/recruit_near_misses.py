@@ -96,10 +96,9 @@ class _NearInput:
         wanted = self._reason.wanted
         plain, condition = Input(self._reason.input, wanted.signals), wanted.condition or Condition()
         matching = [output for output in profile.outputs if self._problem.hierarchy.pairs(output, plain)]
-        for output in matching:
-            fault = fault_of(self._composer, self._ecology, profile.component, output, condition)
-            if fault is not None:
-                return fault
+        fault = fault_of(self._composer, self._ecology, profile.component, matching, condition)
+        if fault is not None:
+            return fault
         unfed = _unfed(self._problem, profile) if matching else None
         return None if unfed is None else _not_fed(self._problem, profile, unfed)
 

@@ -146,6 +146,22 @@ def test_another_unit_of_one_dimension_is_near_and_one_of_another_dimension_is_l
     ]
 
 
+def test_a_component_that_feeds_an_input_as_it_asks_is_told_of_no_other_output() -> None:
+    ads = QUDT + ':k a sc:Component , :Client ; sc:hasInput [ sc:name "x" ; sc:signalType :Price ; sc:unit unit:M ] ,'
+    ads += ' [ sc:name "y" ; sc:signalType :Fee ] .\n'
+    ads += issuing("a", "Price", ' ; sc:unit unit:MilliM ] , [ sc:name "p" ; sc:signalType :Price ; sc:unit unit:M')
+    found = near(PREFIXES + FEED, ads + issuing("b", "Fee"))
+    assert [str(miss) for miss in found] == ["it issues no Fee", "it issues no Price"]
+
+
+def test_an_output_to_which_no_interaction_leads_is_not_told_of() -> None:
+    template = PREFIXES + FEED.replace(" ; sc:feeds :c", "")
+    template += '[] a sc:Interaction ; sc:from :p ; sc:to :c ; sc:output "%s" .'
+    ads = QUDT + CLIENT % " ; sc:unit unit:M" + issuing("a", "Price", " ; sc:unit unit:MilliM")
+    assert [miss.component.short for miss in near(template % "o", ads)] == ["a"]
+    assert near(template % "other", ads) == []
+
+
 @pytest.mark.parametrize(
     ("shape", "said"),
     [

@@ -107,6 +107,13 @@ def test_a_recruit_in_another_unit_or_that_is_not_accepted_is_named_with_that() 
     assert said == "lidar, which issues what is not accepted: it has no frame (output 'o')"
 
 
+def test_a_recruit_that_issues_the_signal_as_asked_is_told_of_no_other_output() -> None:
+    other = ' ; sc:unit unit:MilliM ] , [ sc:name "p" ; sc:signalType :Scan ; sc:unit unit:M'
+    unfed = source("a", "Scan", other).replace(" .", ' ; sc:hasInput [ sc:name "i" ; sc:signalType :Raw ] .')
+    said, _ = nearest(unfed, wanting=" ; sc:unit unit:M")
+    assert said == "a, which is not fed itself: no component that can be recruited issues a Raw for its input 'i'"
+
+
 def test_where_nobody_is_near_nobody_is_named() -> None:
     assert nearest(source("camera", "Image")) == ("", [])
 
