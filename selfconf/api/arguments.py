@@ -87,12 +87,12 @@ def checked_priority(priority: int) -> int:
     return int(priority)
 
 
-def steps_limit(steps: int | None) -> int | None:
+def checked_steps(steps: int | None) -> int | None:
     """The steps that a search may take, or None. Raises ProgrammerError for what is no number of steps."""
     return None if steps is None else _count(steps, "steps are a whole number above zero, or None for no limit")
 
 
-def rows_limit(rows: int) -> int:
+def checked_rows(rows: int) -> int:
     """The rows that an answer may have. Raises ProgrammerError for what is no number of rows."""
     return _count(rows, "rows are a whole number above zero")
 
@@ -104,7 +104,7 @@ def _count(number: int, asked: str) -> int:
     return int(number)
 
 
-def answer_seconds(seconds: float) -> float:
+def checked_seconds(seconds: float) -> float:
     """The seconds that an answer may take. Raises ProgrammerError for what is no time, and for None."""
     return _seconds(seconds, _SECONDS_ASKED)
 
@@ -123,7 +123,7 @@ def checked_moment(moment: float | None) -> float | None:
     return None if moment is None else float(moment)
 
 
-def seconds_limit(seconds: float | None) -> float | None:
+def checked_seconds_limit(seconds: float | None) -> float | None:
     """The seconds that a search may take, or None. Raises ProgrammerError for what is no time."""
     return None if seconds is None else _seconds(seconds, f"{_SECONDS_ASKED}, or None for no limit")
 
@@ -137,14 +137,14 @@ def checked_upgrade(seconds: float | None) -> float | None:
     return float(seconds)
 
 
-def passing_seconds(seconds: float) -> float:
+def checked_delay(seconds: float) -> float:
     """The simulated seconds that are to pass. Raises ProgrammerError for what is no time."""
     if not is_delay(seconds):
         raise ProgrammerError(f"simulated seconds are a number from 0 to {LONGEST_SECONDS:,.0f}, not {seconds!r}")
     return float(seconds)
 
 
-def option(kind: type[Choice], name: str, word: str) -> Choice:
+def checked_choice(kind: type[Choice], name: str, word: str) -> Choice:
     """The choice that a word stands for. Raises ProgrammerError, which names the words that there are."""
     try:
         return kind(word)

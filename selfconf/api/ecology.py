@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from selfconf.api.arguments import answer_seconds, rows_limit
+from selfconf.api.arguments import checked_rows, checked_seconds
 from selfconf.api.places import with_lines
 from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
@@ -164,7 +164,7 @@ class Ecology(ABC):
 
         if not isinstance(sparql, str):
             raise ProgrammerError(f"a query is the text of one, not {type(sparql).__name__}")
-        question = Question(sparql, "json", rows_limit(rows), seconds=answer_seconds(seconds))
+        question = Question(sparql, "json", checked_rows(rows), seconds=checked_seconds(seconds))
         shown = self.asked(question)
         body = json.loads(shown.text)
         if not isinstance(body, dict) or "head" not in body:  # the JSON-LD of triples

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from selfconf.api.arguments import Paths, listed_paths, option, seconds_limit, steps_limit
+from selfconf.api.arguments import Paths, checked_choice, checked_seconds_limit, checked_steps, listed_paths
 from selfconf.api.document_texts import DocumentText
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.task import TaskSpecification
@@ -40,8 +40,8 @@ class Method:
 
         The limits, if there are any, are numbers above zero. Raises AuthorError for ontologies that are not there.
         """
-        chosen, mode = option(Strategy, "strategy", strategy), option(Reasoning, "reasoning", reasoning)
-        limits = steps_limit(steps), seconds_limit(seconds)
+        chosen, mode = checked_choice(Strategy, "strategy", strategy), checked_choice(Reasoning, "reasoning", reasoning)
+        limits = checked_steps(steps), checked_seconds_limit(seconds)
         return cls(chosen, mode, ontology_texts(map(Path, listed_paths(ontologies))), *limits)
 
     def composer(self, task: TaskSpecification) -> Composer:

@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from selfconf.api.arguments import Paths, passing_seconds
+from selfconf.api.arguments import Paths, checked_delay
 from selfconf.api.task import template
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import CALL_MARK, Input, Output, Profile
@@ -186,7 +186,7 @@ class ComponentBench:
         Raises ProgrammerError for an operation that it does not offer, for what is no number of seconds, and where the
         component does not act.
         """
-        within = passing_seconds(seconds)
+        within = checked_delay(seconds)
         caller = self._callers.get(f"{operation}{CALL_MARK}")
         if caller is None:
             raise ProgrammerError(f"{self.profile.component.short} advertises no operation {operation!r}")

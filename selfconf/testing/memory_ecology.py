@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from selfconf import files, library
 from selfconf.api.answer import Answer
-from selfconf.api.arguments import Paths, checked_flag, listed_paths, option, passing_seconds
+from selfconf.api.arguments import Paths, checked_choice, checked_delay, checked_flag, listed_paths
 from selfconf.api.configuring import refusal_with_places
 from selfconf.api.document_texts import text_of
 from selfconf.api.method import Method
@@ -245,7 +245,7 @@ class MemoryEcology:
         Its roles see the ontologies of selfconf and those of the ecology in the mode `reasoning`. Raises BindingError,
         and ProgrammerError for a task or word that is none.
         """
-        complete, chosen = completed(task), option(Policy, "policy", policy)
+        complete, chosen = completed(task), checked_choice(Policy, "policy", policy)
         method = Method.of(strategy, reasoning, self._ontologies)
         self.advance(1.5)  # the site looks at its shelf once a second
         return MemoryRun(self, complete, method, chosen, checked_flag(wait, "wait"))
@@ -274,14 +274,14 @@ class MemoryEcology:
 
     def advance(self, seconds: float) -> None:
         """Let simulated time pass. Raises ProgrammerError for what is no number of seconds, from zero on."""
-        self.network.run(lambda: False, passing_seconds(seconds))
+        self.network.run(lambda: False, checked_delay(seconds))
 
     def until(self, condition: Callable[[], bool], seconds: float = UNTIL_SECONDS) -> bool:
         """Let simulated time pass until something holds, or that many seconds are over; returns whether it holds.
 
         Raises ProgrammerError for what is no number of seconds, from zero on.
         """
-        return self.network.run(condition, passing_seconds(seconds))
+        return self.network.run(condition, checked_delay(seconds))
 
     def __repr__(self) -> str:
         return f"<ecology in memory of {count(len(self.advertisements), 'component')} after {self.time:.1f} s>"

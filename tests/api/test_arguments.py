@@ -11,20 +11,20 @@ from typing import Any
 import pytest
 
 from selfconf.api.arguments import (
-    answer_seconds,
+    checked_choice,
+    checked_delay,
     checked_flag,
     checked_moment,
     checked_path,
     checked_priority,
+    checked_rows,
+    checked_seconds,
+    checked_seconds_limit,
+    checked_steps,
     checked_text,
     checked_upgrade,
     listed_endpoints,
     listed_paths,
-    option,
-    passing_seconds,
-    rows_limit,
-    seconds_limit,
-    steps_limit,
 )
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.seconds import LONGEST_SECONDS
@@ -60,9 +60,9 @@ def test_an_upgrade_comes_after_some_seconds_or_never() -> None:
 
 
 def test_a_word_is_an_option_or_is_answered_with_the_options() -> None:
-    assert option(Colour, "colour", "red") is Colour.RED
+    assert checked_choice(Colour, "colour", "red") is Colour.RED
     with pytest.raises(ProgrammerError) as error:
-        option(Colour, "colour", "green")
+        checked_choice(Colour, "colour", "green")
     assert str(error.value) == "there is no colour 'green'; choose one of 'red', 'blue'"
 
 
@@ -90,16 +90,16 @@ def test_texts_and_flags_are_what_they_are_called() -> None:
 
 @pytest.mark.parametrize("rows", [0, -1, 1.5, True, "x", None])
 def test_rows_are_a_number_above_zero(rows: Any) -> None:
-    assert rows_limit(1) == 1
+    assert checked_rows(1) == 1
     with pytest.raises(ProgrammerError, match=r"^rows are a whole number above zero, not "):
-        rows_limit(rows)
+        checked_rows(rows)
 
 
 @pytest.mark.parametrize("seconds", [0, float("nan"), "x", None])
 def test_an_answer_has_a_limit_of_seconds(seconds: Any) -> None:
-    assert answer_seconds(0.5) == 0.5
+    assert checked_seconds(0.5) == 0.5
     with pytest.raises(ProgrammerError, match=r"^seconds are a number above zero and at most 1,000,000, not "):
-        answer_seconds(seconds)
+        checked_seconds(seconds)
 
 
 @pytest.mark.parametrize("moment", ["x", float("nan"), float("inf"), True])
@@ -116,16 +116,16 @@ def test_what_is_no_path_is_refused_in_a_sentence(paths: Any) -> None:
 
 
 def test_limits_are_numbers_above_zero_or_none() -> None:
-    assert (steps_limit(None), steps_limit(1)) == (None, 1)
-    assert (seconds_limit(None), seconds_limit(1), seconds_limit(0.5)) == (None, 1.0, 0.5)
-    assert seconds_limit(Fraction(1, 4)) == 0.25  # type: ignore[arg-type]  # a number too, when it runs
-    assert seconds_limit(LONGEST_SECONDS) == LONGEST_SECONDS
+    assert (checked_steps(None), checked_steps(1)) == (None, 1)
+    assert (checked_seconds_limit(None), checked_seconds_limit(1), checked_seconds_limit(0.5)) == (None, 1.0, 0.5)
+    assert checked_seconds_limit(Fraction(1, 4)) == 0.25  # type: ignore[arg-type]  # a number too, when it runs
+    assert checked_seconds_limit(LONGEST_SECONDS) == LONGEST_SECONDS
 
 
 @pytest.mark.parametrize("steps", [0, -1, 1.5, 1.0, True, "5"])
 def test_what_is_no_number_of_steps_is_refused_in_a_sentence(steps: Any) -> None:
     with pytest.raises(ProgrammerError, match=r"^steps are a whole number above zero, or None for no limit, not "):
-        steps_limit(steps)
+        checked_steps(steps)
 
 
 @pytest.mark.parametrize("priority", [10**6 + 1, -(10**23), 1.0, True, "5", None])
@@ -136,12 +136,12 @@ def test_what_is_no_priority_is_refused_in_a_sentence(priority: Any) -> None:
 
 
 def test_simulated_seconds_are_none_or_more() -> None:
-    assert (passing_seconds(0), passing_seconds(0.5)) == (0.0, 0.5)
+    assert (checked_delay(0), checked_delay(0.5)) == (0.0, 0.5)
     with pytest.raises(ProgrammerError, match=r"^simulated seconds are a number from 0 to 1,000,000, not nan$"):
-        passing_seconds(float("nan"))
+        checked_delay(float("nan"))
 
 
 @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf"), 1e300, True, "5"])
 def test_what_is_no_time_is_refused_in_a_sentence(seconds: Any) -> None:
     with pytest.raises(ProgrammerError, match=r"^seconds are a number above zero and at most 1,000,000, or None "):
-        seconds_limit(seconds)
+        checked_seconds_limit(seconds)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import files, rendezvous, this_machine
-from selfconf.api.arguments import option
+from selfconf.api.arguments import checked_choice
 from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import described_in
 from selfconf.api.sites.joining import Joining
@@ -103,7 +103,9 @@ class _SiteProgram:
         """Raises AuthorError for options with which there can be no site."""
         self._options, self._complain, ontologies = options, complain, options.ontologies
         _check_readable(options.paths, ontologies)
-        self._hierarchy = hierarchy_of(option(Reasoning, "reasoning", options.reasoning), ontology_texts(ontologies))
+        self._hierarchy = hierarchy_of(
+            checked_choice(Reasoning, "reasoning", options.reasoning), ontology_texts(ontologies)
+        )
         ecology, self._connect = rendezvous.asked_for(options.ecology, options.connect)
         if ecology is None:
             which = f"{setting('ecology', 'NAME')}, or set {rendezvous.ECOLOGY_VARIABLE}"

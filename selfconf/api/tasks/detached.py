@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from selfconf.api.arguments import checked_priority, checked_upgrade, option
+from selfconf.api.arguments import checked_choice, checked_priority, checked_upgrade
 from selfconf.api.configuring import refusal_with_places
 from selfconf.api.document_texts import DocumentText
 from selfconf.api.method import Method
@@ -104,7 +104,7 @@ def request_of(
 
     return replace(
         RunRequest.of(composer, composing(composer, method.seconds)),
-        policy=option(Policy, "policy", options.get("policy") or "repair"),
+        policy=checked_choice(Policy, "policy", options.get("policy") or "repair"),
         patient=True,
         priority=record.priority,
         upgrade=_upgrade(options),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.api.arguments import checked_text, option
+from selfconf.api.arguments import checked_choice, checked_text
 from selfconf.configurator import Policy
 from selfconf.model.immutable import immutable
 
@@ -25,7 +25,9 @@ class TaskOptions:
 
         The priority and the seconds are checked by `task_record`.
         """
-        return cls(option(Policy, "policy", policy), checked_text(name, "the name of a task"), priority, upgrade)
+        return cls(
+            checked_choice(Policy, "policy", policy), checked_text(name, "the name of a task"), priority, upgrade
+        )
 
 
 AS_USUAL = TaskOptions()
