@@ -186,7 +186,7 @@ def _reconnected(state: State) -> Reaction:
     if state.phase in (Phase.IDLE, Phase.DISMANTLING) or state.ended:
         return state, ()
     unsure = {component: replace(held, acts=False, confirmed=False) for component, held in state.held.items()}
-    return phases.discover(replace(state.unchanged, held=unsure))
+    return phases.discover(replace(state.unchanged, held=unsure, awaited_since=0))
 
 
 def _ranked(state: State, priority: int) -> Reaction:

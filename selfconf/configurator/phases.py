@@ -70,8 +70,11 @@ def begin_search(state: State, running: Configuration | None, avoided: Avoided) 
 
 
 def await_return(state: State) -> Reaction:
-    """Wait a moment before a search that has found nothing counts (`State.may_await_return`)."""
-    return replace(state, awaits_return=True, put_off=state.put_off + 1), (AwaitReturn(state.attempt),)
+    """Wait a moment before a search that has found nothing counts (`State.may_await_return`): once for all of them."""
+    awaiting = replace(state, awaits_return=True)
+    if state.awaited_since:
+        return awaiting, ()
+    return replace(awaiting, awaited_since=state.attempt), (AwaitReturn(state.attempt),)
 
 
 def refuse(state: State) -> Reaction:

@@ -76,9 +76,8 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
         if state.contested(event.outcome):
             fewer, avoided = _avoid(state, event.outcome)
             return phases.compose(fewer, avoided=avoided)
-        return deploying.deploy(
-            replace(state, target=event.outcome, plan=event.plan, refusal=None, put_off=0, has_waited=False)
-        )
+        found = replace(state, target=event.outcome, plan=event.plan, refusal=None)
+        return deploying.deploy(replace(found, put_off=0, awaited_since=0, has_waited=False))
     if state.avoided:
         return phases.compose(_avoided_in_vain(state))
     if any(loss.startable for loss in state.lost.values()):
@@ -88,12 +87,15 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
 
 
 def heed_absence(state: State, event: StayedAway) -> Reaction:
-    """What was lost has not come back while a search that found nothing waited for it."""
-    if state.phase is not Phase.COMPOSING or not state.awaits_return or event.attempt != state.attempt:
+    """What was lost has not come back while searches that found nothing waited for it."""
+    if event.attempt != state.awaited_since:
         return state, ()
+    waited = replace(state, awaited_since=0, has_waited=True)
+    if state.phase is not Phase.COMPOSING or not state.awaits_return:
+        return replace(waited, news=True), ()  # what is being asked may be answered as it was before
     if state.heeds_others:  # they may have let go of what they held meanwhile
-        return phases.discover(replace(state, has_waited=True))
-    return _refused(state)
+        return phases.discover(waited)
+    return _refused(waited)
 
 
 def _refused(state: State) -> Reaction:

@@ -17,7 +17,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.protocol.messages import Cause, Wires
 
 MOST_PUT_OFF = 10
-"""How many searches in a row may find nothing and not count, for what has appeared meanwhile or may come back."""
+"""How many searches in a row may find nothing and not count, for what has appeared meanwhile."""
 
 
 class Phase(str, Enum):
@@ -189,10 +189,12 @@ class State:
     """The components that had appeared just before that, which are not changed to before they have stayed."""
     awaits_return: bool = False
     """Whether the last search has found nothing, and waits for what was lost before it counts."""
+    awaited_since: int = 0
+    """The number of the search since which that is waited for, through others that have found nothing; 0: it is not."""
     has_waited: bool = False
     """Whether that was in vain since the last configuration was found: then no search waits again."""
     put_off: int = 0
-    """How many searches in a row have found nothing and did not count, for what had appeared or might come back."""
+    """How many searches in a row have found nothing and did not count, for what had appeared meanwhile."""
 
     def contested(self, configuration: Configuration) -> dict[IRI, Holder]:
         """The components of a configuration that others hold and would share, but want something else of.
@@ -245,7 +247,7 @@ class State:
         Or for a task of higher priority that has asked for something: a change for the better holds two for a moment.
         """
         gone = self.unseen or any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
-        waits = not (self.patient or self.inside or self.has_waited) and self.put_off < MOST_PUT_OFF
+        waits = not (self.patient or self.inside or self.has_waited)
         return waits and (gone or self.has_yielded)
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from selfconf.configurator.effects import AwaitReturn, Compose, Discover, Finish, ReleaseFrom, WakeUp
-from selfconf.configurator.events import Answered, Appeared, Call, Discovered, Failed, Reconnected, StayedAway
+from selfconf.configurator.events import Answered, Appeared, Call, Discovered, Event, Failed, Reconnected, StayedAway
 from selfconf.configurator.state import MOST_PUT_OFF, Phase, State
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
@@ -101,7 +101,8 @@ def test_what_no_site_can_start_may_have_been_cut_off_and_back_in_a_moment() -> 
     history = out_of_sight()
     assert history.hear(Appeared({TRACKER: "1"}))[-1] == Discover()
     assert history.hear(Discovered())[-1] == Compose(history.state.attempt, frozenset(), history.state.target)
-    history.hear(StayedAway(history.state.attempt - 1))
+    history.hear(StayedAway(history.state.attempt - 2))
+    assert not history.state.has_waited
     history.composed(navigation())
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
@@ -112,9 +113,10 @@ def test_what_no_site_can_start_may_have_been_cut_off_and_back_in_a_moment() -> 
 @pytest.mark.parametrize("found", [True, False])
 def test_others_may_have_let_go_of_something_while_what_was_lost_stayed_away(found: bool) -> None:
     history = out_of_sight()
+    since = history.state.attempt
     history.hear(Appeared({}), Discovered({ODOMETRY: OTHERS}))
-    assert history.composed(REFUSAL)[-1] == AwaitReturn(history.state.attempt)
-    assert history.hear(StayedAway(history.state.attempt)) == [Discover()]
+    assert history.composed(REFUSAL) == []
+    assert history.hear(StayedAway(since)) == [Discover()]
     history.hear(Discovered({} if found else {ODOMETRY: OTHERS}))
     history.composed(navigation(ODOMETRY) if found else REFUSAL)
     if not found:  # it is not waited for any longer
@@ -125,9 +127,10 @@ def test_others_may_have_let_go_of_something_while_what_was_lost_stayed_away(fou
 
 def test_what_comes_after_a_wait_in_vain_while_the_ecology_is_asked_once_more_counts() -> None:
     history = out_of_sight()
+    since = history.state.attempt
     history.hear(Appeared({}), Discovered({ODOMETRY: OTHERS}))
     history.composed(REFUSAL)
-    history.hear(StayedAway(history.state.attempt), Appeared({}), Discovered({ODOMETRY: OTHERS}))
+    history.hear(StayedAway(since), Appeared({}), Discovered({ODOMETRY: OTHERS}))
     history.hear(Appeared({TRACKER: "2"}))
     assert history.composed(REFUSAL) == [Discover()]
     history.hear(Discovered({ODOMETRY: OTHERS}))
@@ -155,12 +158,44 @@ def test_what_is_held_and_not_advertised_any_more_may_be_out_of_sight_for_a_mome
     assert history.state.phase is Phase.RUNNING
 
 
-def test_what_comes_and_goes_is_not_waited_for_for_ever() -> None:
+@pytest.mark.parametrize("is_asked", [False, True])
+def test_what_was_lost_is_waited_for_as_long_whatever_comes_and_goes(is_asked: bool) -> None:
     history = out_of_sight()
-    for _ in range(MOST_PUT_OFF):
+    since = history.state.attempt
+    for _ in range(2 * MOST_PUT_OFF):
         history.hear(Appeared({ODOMETRY: "1"}), Discovered())
+        assert history.composed(REFUSAL) == []
+    if is_asked:
+        history.hear(Appeared({ODOMETRY: "1"}))
+        assert history.hear(StayedAway(since)) == []
+        history.hear(Discovered())
+        assert history.composed(REFUSAL) == [Discover()]  # what was asked meanwhile may have been answered before
+        history.hear(Discovered())
         history.composed(REFUSAL)
+    else:
+        history.hear(StayedAway(since))
     assert history.state.phase is Phase.DISMANTLING
+
+
+def test_what_was_lost_is_waited_for_though_very_much_has_appeared_at_once() -> None:
+    history = lost(startable=False)
+    for _ in range(MOST_PUT_OFF):
+        history.hear(Appeared({ODOMETRY: "1"}))
+        assert history.composed(REFUSAL) == [Discover()]
+        history.hear(Discovered())
+    assert history.composed(REFUSAL) == [AwaitReturn(history.state.attempt)]
+
+
+@pytest.mark.parametrize("event", [Failed(CONTROL, "1", Cause.CRASH), Reconnected()])
+def test_the_wait_for_what_was_lost_begins_anew_with_another_loss_and_after_this_node_was_cut_off(event: Event) -> None:
+    history = out_of_sight()
+    since = history.state.attempt
+    history.hear(event)
+    if history.state.phase is Phase.DISCOVERING:
+        history.hear(Discovered())
+    assert history.composed(REFUSAL) == [AwaitReturn(history.state.attempt)]
+    assert history.hear(StayedAway(since)) == []
+    assert history.state.phase is Phase.COMPOSING
 
 
 @pytest.mark.parametrize("state", [State(patient=True), State(inside=True)])

@@ -11,7 +11,7 @@ from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies
 from selfconf.configurator.events import Failed
 from selfconf.configurator.state import Loss, Phase, Policy
-from selfconf.deployment.runner import LOSSES_TOLD
+from selfconf.deployment.runner import LOSSES_TOLD, RETURN
 from selfconf.model.refusal import TooFewEligible
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Release, Status, TaskRecord, Verdict
@@ -261,3 +261,16 @@ def test_why_a_component_was_lost_is_its_cause_where_nothing_else_is_known(lab: 
     lab.components["tracker"].fail("")
     lab.let_pass(1.0)
     assert agent.losses == {iri("person-tracker"): "fail"}
+
+
+def test_what_has_gone_without_a_word_is_waited_for_as_long_whatever_comes_meanwhile(lab: Lab) -> None:
+    agent = lab.agent()
+    assert lab.running(agent)
+    lab.crash("drive")
+    for number in range(50):
+        leave = lab.network.node().announce(lab.keys.life(iri("stranger"), str(number)))
+        lab.let_pass(0.9 * RETURN / 50)
+        leave()
+    assert not agent.state.ended
+    lab.component("drive")
+    assert lab.running(agent)
