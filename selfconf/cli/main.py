@@ -107,7 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     settings, broken = found_settings(complain)
     given, unknown = parser(typed[:1], settings).parse_known_args(typed)
     if unknown:
-        given.misused(f"unrecognized arguments: {' '.join(unknown)}{_advice(unknown)}")
+        given.misused(f"unrecognized arguments: {' '.join(unknown)}{_advice(typed, unknown)}")
     if getattr(given, "format", "text") not in FOR_PEOPLE:
         for_programs()
     told = AsideHandler("%(name)s: %(message)s")
@@ -152,9 +152,9 @@ def _exit_code(given: argparse.Namespace, settings: Settings, broken: SelfconfEr
         return INTERRUPTED
 
 
-def _advice(unknown: Sequence[str]) -> str:
-    """What to try where words are left over that are no options."""
-    left_over = all(not word.startswith("-") for word in unknown)
+def _advice(typed: Sequence[str], unknown: Sequence[str]) -> str:
+    """What to try where words are left over that are no options, and some option may have been given them."""
+    left_over = all(not word.startswith("-") for word in unknown) and any(word.startswith("--") for word in typed)
     return "; an option takes one value, repeat it for each: --ads A --ads B" if left_over else ""
 
 

@@ -54,6 +54,7 @@ def test_of_what_a_command_takes_several_some_may_stand_after_its_options(
         (["validate", "a", "--cache", "b", "--formt", "json"], "unrecognized arguments: b --formt json;"),
         (["bridge", "wot", "--rate", "2"], "required: SOURCE"),
         (["configure", "--ads", "A", "B", "--ontology", "O", "T"], "repeat it for each: --ads A --ads B"),
+        (["stop", "a", "b"], "unrecognized arguments: b; see `selfconf stop --help`"),  # no option was given
     ],
 )
 def test_a_word_too_many_is_refused_where_a_command_takes_no_more(
