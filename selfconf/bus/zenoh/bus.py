@@ -109,9 +109,13 @@ class ZenohBus(Loop):
         """The threads that read channels; none may be left when Python ends, or it ends with a crash."""
         self._roll_calls = RollCalls(self, session, self._readers, lambda: bool(self.link))
         self._open = True
+        self._hubs = set[str]()
+        """The hubs that this bus is a client of, by Zenoh's events: its own list still has a hub that it calls lost.
+        """
         self._turns = 0
         """How often this bus has gained or lost a hub: of a hub that was away for a moment the name is the same."""
-        self._declared.add(session.info.declare_transport_events_listener(callback(self._turned)))
+        self._link_watchers: list[Callable[[], None]] = []
+        self._declared.add(session.info.declare_transport_events_listener(callback(self._turned), history=True))
         _OPEN.add(self)
 
     def relay(self, hub: Hub, connect: Sequence[str]) -> None:
@@ -131,18 +135,25 @@ class ZenohBus(Loop):
 
     def watch_link(self, changed: Callable[[], None]) -> Callable[[], None]:
         """Call `changed` whenever this bus has gained or lost its hub, on the bus's thread."""
-        receiver = Receiver(self, lambda _: changed())
-        heard = callback(receiver.received)
-        return receiver.until(self._keep(self._session.info.declare_transport_events_listener(heard)))
+        receiver = Receiver(self, changed)
+        self._link_watchers.append(receiver.received)
+        return receiver.until(lambda: self._link_watchers.remove(receiver.received))
 
     @property
     def link(self) -> str:
         """The hub that this bus is a client of, and how often it has gained or lost one."""
-        hubs = ",".join(sorted(map(str, self._session.info.routers_zid()))) if self._open else ""
+        hubs = ",".join(sorted(self._hubs)) if self._open else ""
         return hubs and f"{hubs} {self._turns}"
 
-    def _turned(self, _: Any) -> None:
+    def _turned(self, event: zenoh.TransportEvent) -> None:
+        """Called by Zenoh, at once for the hub that there is, then on a thread of its own."""
+        if event.transport.whatami != zenoh.WhatAmI.ROUTER:
+            return
+        change = self._hubs.add if event.kind == zenoh.SampleKind.PUT else self._hubs.discard
+        change(str(event.transport.zid))
         self._turns += 1
+        for tell in tuple(self._link_watchers):
+            tell()
 
     def publisher(
         self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None, *, kept: int = 0

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.ros2.ros_world import RosWorld
-from selfconf.bus.zenoh import client, router
+from selfconf.bus.zenoh import client
 from selfconf.errors import NetworkError
 from selfconf.protocol.messages import Release
 from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node
 from tests.sdk.living import LivingStage, until
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
+ROUTER = Path(__file__).resolve().parents[3] / "examples" / "ros2" / "router.py"
 
 
 def test_nodes_come_and_go(living: LivingStage, tmp_path: Path) -> None:
@@ -150,21 +155,41 @@ def test_humble_and_what_is_no_token_are_named_and_hinder_nothing(living: Living
         assert "_tool" not in found.advertised()
 
 
-@pytest.mark.slow
+def free_port() -> int:
+    """A port of loopback on which nothing listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def router_process(port: int) -> Iterator[None]:
+    """A router of the examples, killed in the end: what is closed in this process may keep a client's link for good."""
+    words = [sys.executable, str(ROUTER), "--port", str(port)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == f"relaying on tcp/127.0.0.1:{port}\n"
+            yield
+        finally:
+            process.kill()
+
+
+@pytest.mark.process
 def test_a_router_that_goes_and_comes_is_named_though_no_task_holds_a_node(living: LivingStage, tmp_path: Path) -> None:
     lost = "the router of ROS 2 cannot be reached any more; its nodes are gone until it is there again"
     back = "the router of ROS 2 is reached again"
     complaints: list[str] = []
-    bridge, hub = Bridge(tmp_path, complaints.append), router()
-    world = RosWorld(lambda: client([hub.endpoint]), DOMAIN)
-    with bridge.living(world, living.ecology, living.node):
-        hub.close()
-        assert until(lambda: complaints and complaints[-1] == lost)
-        again = router(hub.endpoint)
-        assert until(lambda: complaints[-1] == back)
-    again.close()
-    # A router that closes may let its clients in once more, and one that opens may have to be greeted twice.
-    assert all(words == (lost, back)[number % 2] for number, words in enumerate(complaints))
+    bridge, port = Bridge(tmp_path, complaints.append), free_port()
+    world = RosWorld(lambda: client([f"tcp/127.0.0.1:{port}"]), DOMAIN)
+    with ExitStack() as ecology:
+        with router_process(port):
+            ecology.enter_context(bridge.living(world, living.ecology, living.node))
+        assert until(lambda: complaints == [lost]), complaints
+        with router_process(port):
+            assert until(lambda: complaints == [lost, back]), complaints
+            ecology.close()
 
 
 @pytest.mark.slow

@@ -8,8 +8,10 @@ import socket
 import threading
 import time
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import pytest
+from zenoh import SampleKind, WhatAmI
 
 from selfconf.bus.port import Replies, Request, Sample, Urgency
 from selfconf.bus.zenoh import ZenohBus, client, router
@@ -257,6 +259,23 @@ class Cable:
         self._server.shutdown(socket.SHUT_RDWR)
         self._server.close()
         self.cut()
+
+
+def test_a_hub_that_is_told_to_be_lost_is_no_link_any_more(zenoh_router: ZenohBus) -> None:
+    """Zenoh tells so a moment before it forgets the hub: who asked it again just then took the hub to be there."""
+    bus = client([zenoh_router.endpoint])
+    (hub,) = bus._session.info.routers_zid()
+    links: list[str] = []
+    forget = bus.watch_link(lambda: links.append(bus.link))
+    bus._turned(SimpleNamespace(kind=SampleKind.DELETE, transport=SimpleNamespace(zid=hub, whatami=WhatAmI.ROUTER)))
+    assert until(lambda: links == [""], bus)
+    assert bus._session.info.routers_zid() == [hub]
+    forget()
+    bus._turned(SimpleNamespace(kind=SampleKind.PUT, transport=SimpleNamespace(zid=hub, whatami=WhatAmI.ROUTER)))
+    assert bus.link.startswith(str(hub))
+    bus.poll()
+    assert links == [""]
+    bus.close()
 
 
 def test_a_router_that_was_lost_and_found_again_is_another_link(zenoh_router: ZenohBus) -> None:
