@@ -23,7 +23,7 @@ from selfconf.rdf.tasks.parameters import misfits
 from selfconf.rdf.tasks.roles import mentions, shape_statements, shape_triples, substituted
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import Document, Node, Triple
-from selfconf.rdf.vocabulary import SC, SH, XSD
+from selfconf.rdf.vocabulary import RDF, SC, SH, XSD
 
 _LOCAL_PART = re.compile(r"[^\s\"'<>()]*")
 _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
@@ -311,11 +311,14 @@ def _check(parameter: Parameter, value: Term, document: Document) -> None:
 
 
 def _meant(parameter: Parameter, value: Term, document: Document) -> Literal | None:
-    """The literal of the datatype that a parameter asks for, if it would do instead of one of another."""
+    """The literal of the datatype that a parameter asks for, if it would do instead of one of another.
+
+    What asks for a language is shown English.
+    """
     datatype = document.value(parameter.iri, SH.datatype)
     if not isinstance(value, Literal) or not isinstance(datatype, IRI) or value.datatype in (datatype, XSD.double):
         return None
-    meant = _written_as(value, datatype)
+    meant = Literal(value.lexical, datatype, "en") if datatype == RDF.langString else _written_as(value, datatype)
     return None if misfits(parameter, (meant,), document) else meant
 
 

@@ -10,7 +10,7 @@ from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.vocabulary import XSD
+from selfconf.rdf.vocabulary import RDF, XSD
 from tests.lab import PREFIXES, iri
 
 KNOWN = {"": "https://example.org/peis-home#", "rob": "https://w3id.org/selfconf/robotics#"}
@@ -204,6 +204,15 @@ def test_a_value_of_another_datatype_is_shown_as_it_is_with_what_would_do(
         completed(*dict([("goal", "x"), bound]).items())
     assert str(told.value).startswith(shown)
     assert str(told.value).endswith(hint) if hint else "; write" not in str(told.value)
+
+
+def test_a_text_that_needs_a_language_is_shown_with_one() -> None:
+    task = templates.read_task(turtle.parse(PREFIXES + TEMPLATE.replace("xsd:string", f"<{RDF.langString}>"), "t.ttl"))
+    with pytest.raises(BindingError) as told:
+        bindings.complete(bindings.bind(task, [("goal", "north hall")]))
+    advice = str(told.value).partition("; write ")[2]
+    assert advice == "bind(goal='\"north hall\"@en')"
+    bindings.complete(bindings.bind(task, [("goal", '"north hall"@en')]))
 
 
 @pytest.mark.parametrize(
