@@ -89,47 +89,52 @@ def serve(
     `complain` hears what is left out, and where the site listens. `beside` is what lives with the site, from when it
     listens to when it ends. Raises AuthorError and NetworkError.
     """
-    program = _SiteProgram(options, complain)
+    checked = _CheckedOptions(options)
     with this_machine.turn():  # one site at a time looks which others there are, or two would miss each other
-        program.open()
+        program = _SiteProgram(checked, complain)
     program.tell_what_is_served()
     program.run(beside)
 
 
-class _SiteProgram:
-    """A site as a program: its bus, what it serves, the tasks that it keeps, and the work that takes long."""
+class _CheckedOptions:
+    """What a site begins with, once it is known that there can be such a site."""
 
-    def __init__(self, options: SiteOptions, complain: Callable[[str], None]) -> None:
+    def __init__(self, options: SiteOptions) -> None:
         """Raises AuthorError for options with which there can be no site."""
-        self._options, self._complain, ontologies = options, complain, options.ontologies
+        self.given, ontologies = options, options.ontologies
         _check_readable(options.paths, ontologies)
-        self._hierarchy = hierarchy_of(
-            checked_choice(Reasoning, "reasoning", options.reasoning), ontology_texts(ontologies)
-        )
-        ecology, self._connect = rendezvous.asked_for(options.ecology, options.connect)
+        reasoning = checked_choice(Reasoning, "reasoning", options.reasoning)
+        self.hierarchy = hierarchy_of(reasoning, ontology_texts(ontologies))
+        ecology, self.connect = rendezvous.asked_for(options.ecology, options.connect)
         if ecology is None:
             which = f"{setting('ecology', 'NAME')}, or set {rendezvous.ECOLOGY_VARIABLE}"
             raise AuthorError(f"a site is part of an ecology; give {which}")
         checked_name(ecology, "an ecology")
-        self._ecology = ecology
-        self._secured, self._name = _named(rendezvous.keys_folder(options.keys), options.name)
-        self._believed = None if self._secured is None else self._secured.believed
-        self._was_revoked = False
-        self._is_open_to_all = self._secured is None and _beyond_loopback(options.listen)
-        if self._is_open_to_all and not options.insecure:
+        self.ecology = ecology
+        self.secured, self.name = _named(rendezvous.keys_folder(options.keys), options.name)
+        self.is_open_to_all = self.secured is None and _beyond_loopback(options.listen)
+        if self.is_open_to_all and not options.insecure:
             raise AuthorError(
                 f"{options.listen} can be reached from other hosts, and without keys by everybody there: give"
                 f" {setting('keys', 'DIR')} (see `selfconf keys --help`), or {setting('insecure')} if that is what you"
                 " want"
             )
 
-    def open(self) -> None:
-        """Join the ecology, and begin to serve. Raises NetworkError."""
-        options, ecology, name, secured = self._options, self._ecology, self._name, self._secured
-        shelf = Shelf(options.paths, self._complain)
+
+class _SiteProgram:
+    """A site as a program: its bus, what it serves, the tasks that it keeps, and the work that takes long."""
+
+    def __init__(self, checked: _CheckedOptions, complain: Callable[[str], None]) -> None:
+        """Joins the ecology, and begins to serve. Raises NetworkError."""
+        options, ecology, name, secured = checked.given, checked.ecology, checked.name, checked.secured
+        self._ecology, self._name, self._complain = ecology, name, complain
+        self._hierarchy, self._is_open_to_all = checked.hierarchy, checked.is_open_to_all
+        self._believed = None if secured is None else secured.believed
+        self._was_revoked = False
+        shelf = Shelf(options.paths, complain)
         security = None if secured is None else secured.first(ecology, name, shelf)
         self._credentials = None if security is None else security.credentials
-        self._joining = Joining(ecology, name, options.listen, self._connect, security)
+        self._joining = Joining(ecology, name, options.listen, checked.connect, security)
         self._bus = self._joining.bus
         if secured is not None and not self._bus.endpoint:
             secured.introduce(self._bus, ecology)  # the hub of another site has to know this one
