@@ -162,6 +162,8 @@ class TaskWatcher:
             self._happened(event)
             if event["act"] == "waiting":  # what was deployed is taken down, which no configuration tells
                 self._put_graph(task.configurator, b"")
+                # Where this comes late, the configuration that was deployed after it is known already, and counts anew.
+                self._deployed_text.pop(task.configurator, None)
         if notice.event.get("act") == "running":
             self._ask(self.keys.configuration(task.configurator), self._take_deployed)
 

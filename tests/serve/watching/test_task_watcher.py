@@ -188,6 +188,22 @@ def test_a_configuration_that_is_told_late_takes_the_place_of_no_later_one(lab: 
     assert iri("absolute-odometry") in str(body["configuration"])
 
 
+def test_of_a_task_that_has_waited_before_the_watcher_came_and_runs_now_the_configuration_is_known(lab: Lab) -> None:
+    """It asks for the events of before and for the configuration of now at once, and may hear of the latter first."""
+    agent = lab.agent(patient=True)
+    lab.running(agent)
+    lab.crash("drive")
+    lab.let_pass(4.0)
+    lab.component("drive")
+    lab.let_pass(6.0)
+    tasks = Tasks(lab)
+    lab.let_pass(3.0)
+    assert {"waiting", "running"} <= {event["act"] for event in tasks.events}
+    ((_, body),) = tasks.watcher.bodies()
+    assert iri("drive") in str(body["configuration"])
+    assert iri("drive").encode() in next(iter(tasks.watcher.take_graphs()[-1].values()))
+
+
 def test_what_a_configurator_tells_of_its_task_is_handed_on_once_the_identity_is_known(lab: Lab) -> None:
     watcher = Tasks(lab).watcher
     record, key = TaskRecord("tidy~1", 1), lab.keys.configurator_call("c1", "task")
