@@ -6,12 +6,11 @@ from collections.abc import Mapping
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.near_misses import ranked_near_misses
-from selfconf.composition.recruit_near_misses import recruiting_instead, with_recruit_near_misses
+from selfconf.composition.recruit_near_misses import with_recruit_near_misses, with_recruiting_instead
 from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal
-from selfconf.model.relaxation import LetRecruit
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
@@ -35,9 +34,8 @@ def explained(
     refusal = limit.within(lambda: with_recruit_near_misses(composer, ecology, refusal, known), refusal)
     stopped = replace(refusal, repairs_stopped=True)
     refusal = limit.within(lambda: composer.with_relaxations(ecology, refusal), stopped)
-    none_found: tuple[LetRecruit, ...] = ()
-    recruiting = limit.within(lambda: tuple(recruiting_instead(composer, ecology, refusal)), none_found)
-    refusal = replace(refusal, repairs=(*recruiting, *refusal.repairs))
+    stopped = replace(refusal, repairs_stopped=True)
+    refusal = limit.within(lambda: with_recruiting_instead(composer, ecology, refusal), stopped)
     if wider is not None and limit.within(lambda: composer.possible_under(ecology, wider), False):
         return replace(refusal, hint=f"with {setting('reasoning', 'subclass')} there is a configuration")
     return refusal

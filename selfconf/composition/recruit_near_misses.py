@@ -14,7 +14,7 @@ from selfconf.model.obstacle import NotFedItself, Obstacle
 from selfconf.model.partition import NearMiss, candidate_order
 from selfconf.model.port_likeness import PortLikeness, WantedPorts
 from selfconf.model.profile import Condition, Input, Profile
-from selfconf.model.refusal import InputUnfed, Refusal
+from selfconf.model.refusal import InputUnfed, Refusal, Undecided
 from selfconf.model.relaxation import LetRecruit
 from selfconf.model.requirement import InputFed
 from selfconf.model.signal_likeness import SignalLikeness
@@ -138,18 +138,24 @@ def _unfed(problem: Problem, profile: Profile) -> Input | None:
     return next((port for port in profile.required if not issued.serves(port.wanted)), None)
 
 
-def recruiting_instead(
-    composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal
-) -> Iterator[LetRecruit]:
-    """Of the roles with unfed inputs that do not recruit, each that makes the task possible if it recruits."""
+def with_recruiting_instead(composer: Composer, ecology: Mapping[IRI, Advertisement], refusal: Refusal) -> Refusal:
+    """A refusal that first proposes to let a role with unfed inputs recruit, for each of which that alone helps."""
     template = composer.task.template
     unfed = dict.fromkeys(r.role for one in refusal.reasons for r in one.requirements if isinstance(r, InputFed))
-    for iri in [iri for iri in unfed if not template.role(iri).recruits][:RECRUITING_ROLES]:
+    asked = [iri for iri in unfed if not template.role(iri).recruits]
+    found: list[LetRecruit] = []
+    stopped = len(asked) > RECRUITING_ROLES
+    for iri in asked[:RECRUITING_ROLES]:
         roles = tuple(replace(role, recruits=True) if role.iri == iri else role for role in template.roles)
         task = replace(composer.task.task, template=replace(template, roles=roles))
         changed = Composer(replace(composer.task, task=task), composer.hierarchy, steps=composer.steps)
         problem = Problem(task, changed.partition(ecology), changed.hierarchy)
-        if possible(with_optional_slots(problem), Budget(RECRUITING_STEPS)):
-            found = changed.compose(ecology, frozenset(), None)
-            if isinstance(found, Configuration):
-                yield LetRecruit(iri, found.recruits)
+        budget = Budget(RECRUITING_STEPS)
+        outcome = (
+            changed.compose(ecology, frozenset(), None) if possible(with_optional_slots(problem), budget) else None
+        )
+        if isinstance(outcome, Configuration):
+            found.append(LetRecruit(iri, outcome.recruits))
+        elif isinstance(outcome, Undecided) or not budget.steps:
+            stopped = True
+    return replace(refusal, repairs=(*found, *refusal.repairs), repairs_stopped=refusal.repairs_stopped or stopped)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 import pytest
 
@@ -17,6 +18,7 @@ from selfconf.rdf.turtle import parse
 from tests.lab import PREFIXES, iri
 
 UNLIMITED = TimeLimit(None)
+Result = TypeVar("Result")
 EYE = ":watch a sc:Template ; sc:roles ( :eye ) .\n:eye a sc:Role ; sh:class :Camera ."
 TEAM = f":team a sc:Template ; sc:roles ( {' '.join(f':r{k}' for k in range(7))} ) .\n" + "\n".join(
     f":r{k} a sc:Role ; sh:class :Worker ." for k in range(7)
@@ -135,3 +137,26 @@ def test_without_time_a_refusal_stays_as_it_is() -> None:
     composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :CeilingCamera .")
     told = explained(composer, ecology, refusal, BELOW, TimeLimit(1e-9))
     assert (told.reasons, told.repairs, told.hint) == (refusal.reasons, (), None)
+
+
+class Ending(TimeLimit):
+    """The time is up after a number of questions."""
+
+    def __init__(self, questions: int) -> None:
+        super().__init__(None)
+        self.left = questions
+
+    def within(self, ask: Callable[[], Result], otherwise: Result) -> Result:
+        self.left -= 1
+        return otherwise if self.left < 0 else ask()
+
+
+def test_that_the_time_ended_before_all_relaxations_were_tried_is_told() -> None:
+    seeing = ':eye a sc:Component, :Camera ; sc:hasInput [ sc:name "light" ; sc:signalType :Light ] .'
+    lamp = ':lamp a sc:Component, :Lamp ; sc:hasOutput [ sc:name "light" ; sc:signalType :Light ] .'
+    composer, ecology, refusal = refused(EYE, f"{seeing}\n{lamp}")
+    whole = explained(composer, ecology, refusal, None, UNLIMITED)
+    assert {one.code for one in whole.repairs} > {"let-recruit"}
+    told = [explained(composer, ecology, refusal, None, Ending(questions)) for questions in range(5)]
+    assert [one.repairs == whole.repairs for one in told] == [False] * 4 + [True]
+    assert [one.repairs_stopped for one in told] == [True] * 4 + [False]

@@ -6,6 +6,7 @@ import pytest
 
 from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
+from selfconf.composition.recruit_near_misses import RECRUITING_ROLES
 from selfconf.composition.time_limit import TimeLimit
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
@@ -143,3 +144,20 @@ def test_that_a_role_recruits_is_advised_where_it_helps() -> None:
 def test_that_a_role_recruits_is_not_advised_where_it_does_not_help(signal: str) -> None:
     refusal = refused("", NEEDY.format(""), source("other", signal))
     assert not [one for one in refusal.repairs if isinstance(one, LetRecruit)]
+
+
+def test_roles_of_which_it_is_not_tried_whether_they_would_better_recruit_are_told_of() -> None:
+    numbers = range(RECRUITING_ROLES + 1)
+    roles = "".join(f":r{k} a sc:Role ; sh:class :K{k} . :s sc:feeds :r{k} .\n" for k in numbers)
+    listed = " ".join(f":r{k}" for k in numbers)
+    text = f"{PREFIXES} :t a sc:Template ; sc:roles ( :s {listed} ) . :s a sc:Role ; sh:class :Source .\n{roles}"
+    issued = [[f'[ sc:name "o{k}" ; sc:signalType :S{k} ]' for k in numbers if k != lacking] for lacking in numbers]
+    ads = [f":a{k} a sc:Component , :Source ; sc:hasOutput {' , '.join(some)} ." for k, some in enumerate(issued)]
+    ads += [f':c{k} a sc:Component , :K{k} ; sc:hasInput [ sc:name "i" ; sc:signalType :S{k} ] .' for k in numbers]
+    asked = Composer(bindings.complete(templates.read_task(turtle.parse(text, "t.ttl"))))
+    ecology = {one.component: one for one in read(ads)}
+    answer = asked.compose(ecology, frozenset(), None)
+    assert isinstance(answer, Refusal)
+    told = explained(asked, ecology, answer, None, TimeLimit(None))
+    assert len([one for one in told.repairs if isinstance(one, LetRecruit)]) == RECRUITING_ROLES
+    assert told.repairs_stopped

@@ -15,6 +15,7 @@ from selfconf.model.profile import Output, Ports, Profile
 from selfconf.model.relaxation import Addition, AddRecruits
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
+from selfconf.search.relaxations.relaxation_effort import RelaxationEffort
 from selfconf.search.relaxations.supposed_outputs import supposed
 
 MOST_LACKING = 24
@@ -23,14 +24,17 @@ NEWCOMER = "urn:selfconf:recruit:"
 """What the names of added recruits begin with, which do not exist yet."""
 
 
-def recruits_to_add(problem: Problem, possible: Callable[[AddRecruits], bool]) -> AddRecruits | None:
+def recruits_to_add(
+    problem: Problem, effort: RelaxationEffort, possible: Callable[[AddRecruits], bool]
+) -> AddRecruits | None:
     """Return recruits that make a problem possible, none of whose outputs can be spared; None if there are none.
 
     `possible` says whether the problem with them has a solution.
     """
     issued = {number: _wanted(problem, number) for number, role in enumerate(problem.roles) if role.recruits}
-    looked_at = [(number, output) for number, outputs in issued.items() for output in outputs]
-    if not 0 < len(looked_at) <= MOST_LACKING or not possible(_asked(problem, issued)):
+    every = [(number, output) for number, outputs in issued.items() for output in outputs]
+    looked_at = list(effort.first_of(every, MOST_LACKING))
+    if not looked_at or len(looked_at) < len(every) or not possible(_asked(problem, issued)):
         return None
     for number, output in looked_at:
         fewer = {**issued, number: tuple(other for other in issued[number] if other is not output)}

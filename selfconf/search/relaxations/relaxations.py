@@ -109,7 +109,7 @@ def _possible_relaxations(
         return effort.possible(relaxed_by(small, one))
 
     yield from filter(possible, itertools.starmap(AcceptNearMiss, near_misses))
-    recruits = recruits_to_add(small, lambda one: possible(one) and works(one))
+    recruits = recruits_to_add(small, effort, lambda one: possible(one) and works(one))
     added = components_to_add(small, effort, works)
     yield from (one for one in (recruits, added) if one is not None)
     interactions = effort.first_of(_interactions(small, refused), TRIALS)

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from selfconf.model.profile import Condition, Ports
+from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AddRecruits
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting.recruiting import possible_with_recruits
 from selfconf.search.relaxations.recruits_to_add import MOST_LACKING, recruits_to_add, with_more_recruits
+from selfconf.search.relaxations.relaxation_effort import RelaxationEffort
+from selfconf.search.relaxations.relaxations import with_relaxations
+from selfconf.search.strategies import first
 from tests.search.recruiting.test_recruiting import with_recruits
 from tests.search.worlds import component, iri, problem
 
@@ -22,7 +26,7 @@ def possible(changed: Problem) -> bool:
 
 def advice(given: Problem) -> AddRecruits | None:
     """What to add, seen to be enough."""
-    found = recruits_to_add(given, lambda one: possible(with_more_recruits(given, one)))
+    found = recruits_to_add(given, RelaxationEffort(None), lambda one: possible(with_more_recruits(given, one)))
     if found is not None:
         assert possible(with_more_recruits(given, found))
     return found
@@ -64,7 +68,11 @@ def test_there_is_no_advice_where_recruits_do_not_help() -> None:
     fixed = problem({"user": [component("user", "s:S")]})
     assert advice(fixed) is None
     many = " ".join(f"p{k}:S{k}" for k in range(MOST_LACKING + 1))
-    assert advice(with_recruits(problem({"user": [component("user", many)]}))) is None
+    given = with_recruits(problem({"user": [component("user", many)]}))
+    assert advice(given) is None
+    refused = first.search(given)
+    assert isinstance(refused, Refusal)
+    assert with_relaxations(given, refused).repairs_stopped
 
 
 def test_what_has_to_conform_to_a_shape_is_not_taken_to_have_a_unit() -> None:
