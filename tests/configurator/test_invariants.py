@@ -123,6 +123,10 @@ class Ledger:
         self.watched = set(state.watched)
         self.maybe_active = {*state.held, *state.owed}
         self.finished = 0
+        self.awaited: set[int] = set()
+        """The numbers of the searches whose wait for what was lost has not ended yet."""
+        self.freed: set[IRI] = set()
+        """The components that were kept for the task: these are reserved out of turn, while others are woken."""
 
     def hear(self, event: Event) -> None:
         """One step, with everything that must hold."""
@@ -134,6 +138,10 @@ class Ledger:
         assert self.state.attempt >= before.attempt
         asked = [effect for effect in effects if isinstance(effect, WakeUp | ReserveOf | ApplyTo)]
         assert len({(type(effect), effect.component) for effect in asked}) == len(asked)
+        if isinstance(event, Freed):
+            self.freed.add(event.component)
+        if isinstance(event, StayedAway):
+            self.awaited.discard(event.attempt)
         for effect in effects:
             self._account(effect, before)
         self._order_of_releases(effects, before)
@@ -172,13 +180,15 @@ class Ledger:
             assert not state.pending
         assert state.pending or not state.unreleased
         reserved = [one for one, call in state.pending if call is Call.RESERVE and not state.held[one].is_adopted]
-        assert len(reserved) <= 1
+        assert len(set(reserved) - self.freed) <= 1
         assert {component for component, _ in state.pending} <= state.held.keys() | state.owed.keys()
         for held in state.held.values():
             assert held.reserved >= held.acts or state.phase is Phase.DISMANTLING
             assert held.active >= held.acts >= held.confirmed
         assert not any(component in state.lost for component in state.held) or state.phase is Phase.DISMANTLING
         assert not state.ended or not state.queued
+        waits = state.phase is Phase.COMPOSING and state.awaits_return
+        assert not waits or state.awaited_since in self.awaited, "nothing would end the wait"
 
     def _check_running(self) -> None:
         """All that is wanted is held, and has confirmed that it acts with the wanted inputs and values."""
@@ -233,6 +243,7 @@ class Ledger:
                 assert component not in state.held
             case AwaitReturn(attempt):
                 assert (state.phase, state.patient, attempt) == (Phase.COMPOSING, False, state.attempt)
+                self.awaited.add(attempt)
             case Compose(_, lost, _):
                 taken = frozenset() if state.ignores_holders else frozenset(state.taken)
                 assert lost == frozenset(state.lost) | taken
@@ -307,8 +318,13 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
         return Answered(component, call, state.epoch, verdict, str(which % 2), newest, holder=holder)
     if kind < 32:
         taken = {component: HOLDERS[when % len(HOLDERS)]} if which % 2 else {}
-        choices: list[Event] = [Accepted(when), Discovered(taken), Composed(state.attempt, _found(state, how))]
-        return choices[how % 3]
+        choices: list[Event] = [
+            Accepted(when),
+            Discovered(taken, unseen=bool(who % 2)),
+            Composed(state.attempt, _found(state, how)),
+            StayedAway(state.awaited_since or when),
+        ]
+        return choices[how % len(choices)]
     if kind < 38:
         return Composed(state.attempt, _found(state, how))
     if kind < 41:
@@ -395,6 +411,8 @@ def test_from_every_state_a_search_that_finds_something_and_components_that_obey
             ledger.hear(Appeared(dict.fromkeys(EVERYBODY, "7")))
         elif state.phase is Phase.DISCOVERING:
             ledger.hear(Discovered())
+        elif state.phase is Phase.COMPOSING and state.awaits_return:
+            ledger.hear(StayedAway(state.awaited_since))
         elif state.phase is Phase.COMPOSING:
             ledger.hear(Composed(state.attempt, _found(state, 1)))
         else:
