@@ -41,7 +41,7 @@ class _PortReader(DocumentReader):
                     raise self.mistake(problem, node, SC.name, name)
                 if name.lexical in names:
                     problem = f"{what} is called {name.lexical!r}, and another one as well"
-                    raise self.mistake(problem, template, link, node)
+                    raise self.mistake(problem, node, SC.name, name)
                 names.add(name.lexical)
                 role = self.only(node, SC.of, f"{what} is that of exactly one role, sc:of")
                 if role not in roles or not isinstance(role, IRI):

@@ -58,6 +58,9 @@ class _RoleReader(DocumentReader):
         """What a role sets, each once; two values for one type of parameter are a mistake."""
         nodes: dict[Setting, Term] = {}
         for node in self.document.values(role, SC.sets):
+            if node in self._variables:
+                problem = f"what {worded(role)} sets is {worded(node)} itself, not a node with a type and a value"
+                raise self.mistake(problem, role, SC.sets, node)
             kind = self.iri(node, SC.parameterType, f"what {worded(role)} sets needs one sc:parameterType, an IRI")
             value = self.only(node, SC.value, f"what {worded(role)} sets needs exactly one sc:value")
             nodes.setdefault(Setting(kind, value), node)

@@ -109,6 +109,9 @@ class _Reader(DocumentReader):
         known = {parameter.iri: parameter for parameter in template.parameters}
         bindings: dict[IRI, Term] = {}
         for binding in self.document.values(task, SC.binding):
+            if binding in known:
+                problem = f"the task has the binding {worded(binding)}, which is no node with a parameter and a value"
+                raise self.mistake(problem, task, SC.binding, binding)
             parameter = self.only(binding, SC.parameter, "a binding names exactly one sc:parameter")
             value = self.only(binding, SC.value, "a binding has exactly one sc:value")
             if parameter not in known or not isinstance(parameter, IRI):
