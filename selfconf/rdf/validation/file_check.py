@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from rdflib import Graph
 
-from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.deadline import TimeUp, processor_limit
 from selfconf.rdf.positions import NotTurtleError, Positions, parse_with_positions
 from selfconf.rdf.validation.checking import UnclearedFile
@@ -23,6 +23,9 @@ from selfconf.rdf.validation.well_formedness import endless_lists, malformed_rol
 
 FILE_SECONDS = 120.0
 """Processor time that the check of one file may take: the last resort, for what its size does not show."""
+
+_OF_SHAPES = frozenset(("SC-A20", "SC-T03", "SC-T09", "SC-T13"))
+"""The codes of what may keep parameters, and shapes beside them, from being shapes by which values can be judged."""
 
 
 @lru_cache(maxsize=2)
@@ -65,7 +68,7 @@ def _problems_of(uncleared: UnclearedFile, beside: Graph, shapes: Shapes, index:
             *malformed_roles(graph, positions),
             *unaccepted_shapes(graph, positions),
         ]
-        if not any(each.severity is Severity.ERROR for each in violations):  # else a parameter may be no shape
+        if _OF_SHAPES.isdisjoint(each.code for each in violations):
             violations += unfit_values(graph, positions)
     file = LintedFile(graph, positions, index, uncleared.elsewhere, shapes.all)
     return violations + lint(file, conforms=not violations)

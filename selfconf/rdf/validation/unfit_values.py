@@ -31,7 +31,7 @@ class _GivenValue(NamedTuple):
 def unfit_values(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     """Defaults of parameters, and values in bindings of tasks and composites, that their parameters do not allow.
 
-    Only parameters of this file are looked at, which conforms to all shapes.
+    Only parameters of this file are looked at, in which all shapes are well-formed, and each parameter has one name.
     """
     by_parameter = _given(graph)
     document = to_document(graph if by_parameter else (), positions.file)
@@ -56,8 +56,9 @@ def _given(graph: Graph) -> dict[Node, list[_GivenValue]]:
     for parameter in graph.subjects(RDF.type, URIRef(SC.Parameter)):
         given = [_GivenValue(parameter, default, value, "SC-T09") for value in graph.objects(parameter, default)]
         for node in graph.subjects(binding, parameter):
-            if (None, URIRef(SC.binding), node) in graph:
-                given += [_GivenValue(node, bound, value, "SC-K02") for value in graph.objects(node, bound)]
+            values, parameters = list(graph.objects(node, bound)), list(graph.objects(node, binding))
+            if (None, URIRef(SC.binding), node) in graph and len(values) == len(parameters) == 1:
+                given.append(_GivenValue(node, bound, values[0], "SC-K02"))
         if given:
             found[parameter] = given
     return found

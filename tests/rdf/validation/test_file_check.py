@@ -23,6 +23,12 @@ from tests.shipped import shipped_shapes
 HEAD = PREFIXES.count("\n")
 INDEX = index_of([prefilter(path.read_bytes()) for path in library.ontologies()])
 LAMP = ":lamp a sc:Component, :Lamp .\n"
+TASK = (
+    ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :p .\n"
+    ':p a sc:Parameter ; sc:name "p" ; sh:nodeKind sh:IRI .\n'
+    ":r a sc:Role ; sh:class :Lamp ; sh:property [ sh:path :in ; sh:in ( :p ) ] {} .\n"
+    ":k a sc:Task ; sc:template :t ; sc:binding [ sc:parameter :p ; sc:value {} ] ."
+)
 
 
 def found(text: str, prefixes: str = PREFIXES, elsewhere: dict[str, str] | None = None) -> list[Diagnostic]:
@@ -52,6 +58,17 @@ def test_violations_of_shapes_and_of_words_are_both_told() -> None:
     assert [code for code, _, _ in told(f'{LAMP}:lamp sc:preference "high" ; sc:preferense 1 .')] == [
         "SC-A04",
         "SC-L01",
+    ]
+
+
+def test_an_unfit_value_of_a_task_is_told_beside_other_mistakes() -> None:
+    text = TASK.format("; sc:minCount 2 ; sc:maxCount 1", '"kitchen"')
+    assert [code for code, _, _ in told(text)] == ["SC-K02", "SC-T12"]
+
+
+def test_of_a_binding_of_several_values_none_is_told_to_be_unfit() -> None:
+    assert [each.message for each in found(TASK.format("", '"kitchen" , :hall'))] == [
+        "A binding has exactly one sc:value."
     ]
 
 

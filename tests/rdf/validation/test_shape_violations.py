@@ -107,6 +107,20 @@ def test_one_mistake_is_one_violation(text: str, only: tuple[int, int, str]) -> 
     assert told(text) == [only]
 
 
+@pytest.mark.parametrize("roles", [":r , :q", "( )", ":r"])
+@pytest.mark.parametrize(
+    "said",
+    [
+        "[] a sc:Interaction ; sc:from :r ; sc:to :q",
+        ":t sc:cost ( [ sc:term [ sc:property :p ; sc:ofRole :q ] ] )",
+        ':t sc:hasInput [ sc:name "i" ; sc:signalType :S ; sc:of :q ]',
+    ],
+)
+def test_where_the_roles_are_no_list_only_that_is_told(roles: str, said: str) -> None:
+    found = told(f":t a sc:Template ; sc:roles {roles} . :r a sc:Role . :q a sc:Role .\n{said} .")
+    assert [line for line, _, _ in found] == [1]
+
+
 @pytest.mark.parametrize(
     "said", [":lamp sc:tolerates ( 5 )", ":r a sc:Role ; sc:sets ( [ ] )", ":lamp sc:hasParameter ( [ ] )"]
 )
