@@ -1,4 +1,4 @@
-"""What the actions of harsh scripts do in a history; each says whether it was possible, as those of `History` do."""
+"""What the actions of harsh scripts do in a history; each says whether it was possible."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial, wraps
+from functools import wraps
 from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
@@ -26,7 +26,6 @@ from unittest import mock
 
 from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.composites import InsideOfComposite
-from selfconf.configurator.state import Policy
 from selfconf.deployment import TaskRunner
 from selfconf.deployment.retries import LONGEST_PAUSE
 from selfconf.discovery import ecology_view
@@ -34,11 +33,11 @@ from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
 from selfconf.protocol.activation import Activation
 from selfconf.protocol.messages import Wire
-from selfconf.sdk.component import Refused
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
 from selfconf.sdk.runtime import ComponentRuntime, call_answers
 from selfconf.site import Site
+from tests.faults.actions import Actions
 from tests.faults.harsh import KINDS as HARSH
 from tests.faults.harsh import calm, promising
 from tests.faults.script import Action, Script
@@ -183,18 +182,20 @@ class History:
         self.agents: list[TaskRunner] = []
         """Every configurator there has been, the dead ones too."""
         self._nodes: dict[str, MemoryBus] = {}
-        self._isolated: set[str] = set()
-        self._powerless: list[MemoryBus] = []
+        self.isolated: set[str] = set()
+        """The components, sites and tasks that are cut off from all others."""
+        self.powerless: list[MemoryBus] = []
+        """The nodes of hosts that have lost their power, which others notice later."""
         self.done: Counter[str] = Counter()
         """How many actions of each kind were possible."""
-        self._harsh = HarshActions(self)
+        self._actions, self._harsh = Actions(self), HarshActions(self)
         self.known: dict[Callable[[History], object], Any] | None = None
         """What was looked up while the history stands still; None while it goes on."""
         for name in ecology.sites:
-            self._begin_site(name)
+            self.begin_site(name)
         for name in ecology.processes:
             if name not in script.startable:
-                self._begin_life(name)
+                self.begin_life(name)
         self.watch = Watch(self)
         self.network.stepped = self.watch.look
 
@@ -270,7 +271,7 @@ class History:
         self.told.append(f"{self.network.time:8.3f}  everything is mended")
         for name in self.script.ecology.sites:
             if self.node(name) is None:
-                self._begin_site(name)
+                self.begin_site(name)
         for life in self.processes:
             lost = any(life.component in agent.state.lost for agent in self.agents if self.lab.is_open(agent))
             if lost and not life.runtime.active:
@@ -278,7 +279,7 @@ class History:
             life.recorder.refusal, life.recorder.slow, life.recorder.hushed = None, 0.0, False
         for name in self.script.ecology.processes:
             if name not in self.script.startable and not self.lives_of(name):
-                self._begin_life(name)
+                self.begin_life(name)
 
     def _speak(self) -> None:
         """Let every source that acts say something, unless it has said all as it was started."""
@@ -299,15 +300,14 @@ class History:
         """Do what an action says, if that is possible; whether it was."""
         if action.kind in HARSH:
             return self._harsh.perform(action)
-        done: bool = getattr(self, f"_{action.kind}")(action)
-        return done
+        return self._actions.perform(action)
 
     def _cease(self) -> None:
         """Undo what is wrong with the network, and let everybody go on."""
         self.told.append(f"{self.network.time:8.3f}  the faults cease")
         self._harsh.cease()
         self.network.faults = Faults()
-        for node in self._powerless:
+        for node in self.powerless:
             node.close()
         nodes = [node for node in self.network.nodes if node.open]
         for node in nodes:
@@ -315,7 +315,7 @@ class History:
         for number, left in enumerate(nodes):
             for right in nodes[:number]:
                 self.network.reconnect(left, right)
-        self._isolated.clear()
+        self.isolated.clear()
 
     # What there is.
 
@@ -361,7 +361,7 @@ class History:
 
     def lives_of(self, name: str) -> list[Life]:
         """All lives of a component that have not ended, the latest last."""
-        on = (life for life in self.processes if life.node.open and life.node not in self._powerless)
+        on = (life for life in self.processes if life.node.open and life.node not in self.powerless)
         return [life for life in on if life.name == name]
 
     def node(self, who: str) -> MemoryBus | None:
@@ -369,10 +369,11 @@ class History:
         node = self._nodes.get(who)
         return node if node is not None and node.open else None
 
-    def _joined(self, who: str, node: MemoryBus) -> None:
+    def joined(self, who: str, node: MemoryBus) -> None:
+        """The node of a component, a site or a task has come: it does not reach what is cut off."""
         self._nodes[who] = node
-        self._isolated.discard(who)
-        for other in self._isolated:
+        self.isolated.discard(who)
+        for other in self.isolated:
             lone = self.node(other)
             if lone is not None:
                 self.network.cut(node, lone)
@@ -382,16 +383,17 @@ class History:
         """Have what is done to a task from now on be done to another one of its name, and not to this one."""
         del self._nodes[who]
 
-    def _begin_site(self, name: str) -> None:
+    def begin_site(self, name: str) -> None:
+        """Let a site live, on a node of its own."""
         site = self.lab.site(name, *self.script.ecology.sites[name])
         self.sites[name] = site
         assert isinstance(site.bus, MemoryBus)
         names = {self.lab.profile(one).component: one for one in self.script.ecology.processes}
         processes: Any = SimulatedProcesses(self, site.bus, names)
         site.processes = processes
-        self._joined(name, site.bus)
+        self.joined(name, site.bus)
 
-    def _begin_life(self, name: str) -> Life:
+    def begin_life(self, name: str) -> Life:
         """Let a component live, on a node of its own; one that has to leave later leaves with its node."""
         node = self.network.node()
         recorder = Speaker(self.script.period, self.script.ecology.latched)
@@ -418,24 +420,24 @@ class History:
         SimulatedComponentCode.simulate(runtime.code, node, thread)
         recorder.served = lambda operation, caller: self.watch.served(runtime, operation, caller)
         self.processes.append(Life(name, runtime, recorder, node, thread))
-        self._joined(name, node)
+        self.joined(name, node)
         return self.processes[-1]
 
     def begin_process(self, name: str, begun: Callable[[MemoryBus | None], None]) -> None:
         """Start a process of a component; it ends at once if it sees another one. `begun` hears of its node, if any."""
         scout = self.network.node()
-        for other in self._isolated:
+        for other in self.isolated:
             lone = self.node(other)
             if lone is not None:
                 self.network.cut(scout, lone)
 
         def called(lives: tuple[str, ...]) -> None:
             scout.close()
-            begun(None if lives else self._begin_life(name).node)
+            begun(None if lives else self.begin_life(name).node)
 
         scout.roll_call(self.lab.keys.lives(self.lab.profile(name).component), 1.0, called)
 
-    def _try_to_begin(self, name: str, attempts: int = 8) -> None:
+    def try_to_begin(self, name: str, attempts: int = 8) -> None:
         """Start a process of a component, and again if another one seems to live, but does not."""
 
         def begun(node: MemoryBus | None) -> None:
@@ -444,197 +446,6 @@ class History:
                 and attempts > 1
                 and all(not life.node.open for life in self.processes if life.name == name)
             ):
-                self.network.after(1.0, lambda: self._try_to_begin(name, attempts - 1))
+                self.network.after(1.0, lambda: self.try_to_begin(name, attempts - 1))
 
         self.begin_process(name, begun)
-
-    # What is done. Each action says whether it was possible.
-
-    def _fail(self, action: Action) -> bool:
-        life = self.life(action.who)
-        if life is None or not life.awake:
-            return False
-        life.recorder.fail("scripted")
-        return True
-
-    def _emit(self, action: Action) -> bool:
-        life = self.life(action.who)
-        if life is None or not life.awake:
-            return False
-        if self.script.ecology.latched:
-            life.recorder.say_last()
-            return True
-        for output in life.runtime.profile.signal_outputs:
-            life.recorder.emit(output.name, self.network.time)
-        return True
-
-    def _ask(self, action: Action) -> bool:
-        life = self.life(action.who)
-        if life is None or not life.awake:
-            return False
-        for needed in life.runtime.profile.needed_operations:
-            life.recorder.ask(needed.name.removesuffix(CALL_MARK))
-        return True
-
-    def _crash(self, action: Action) -> bool:
-        lives = self.lives_of(action.who)
-        for life in lives:
-            life.node.close()
-        return bool(lives)
-
-    def _start(self, action: Action) -> bool:
-        if self.life(action.who) is not None or action.who in self.script.startable:
-            return False
-        self._try_to_begin(action.who)
-        return True
-
-    def _duplicate(self, action: Action) -> bool:
-        """A second process of a component that lives is started."""
-        if self.life(action.who) is None:
-            return False
-        self._try_to_begin(action.who, 1)
-        return True
-
-    def _twins(self, action: Action) -> bool:
-        """Two processes of a component begin at once."""
-        if self.life(action.who) is not None:
-            return False
-        self._begin_life(action.who)
-        self._begin_life(action.who)
-        return True
-
-    def _lose_power(self, action: Action) -> bool:
-        """Others notice after the lease only."""
-        life = self.life(action.who)
-        if life is None:
-            return False
-        self.network.pause(life.node)
-        self._powerless.append(life.node)
-        return True
-
-    def _refuse(self, action: Action) -> bool:
-        life = self.life(action.who)
-        if life is None:
-            return False
-        life.recorder.refusal = None if life.recorder.refusal else Refused("scripted")
-        return True
-
-    def _hush(self, action: Action) -> bool:
-        """A component issues nothing any more, or again."""
-        life = self.life(action.who)
-        if life is None:
-            return False
-        life.recorder.hushed = not life.recorder.hushed
-        return True
-
-    def _slow(self, action: Action) -> bool:
-        life = self.life(action.who)
-        if life is None:
-            return False
-        life.recorder.slow = action.seconds
-        return True
-
-    def _busy(self, action: Action) -> bool:
-        """The code of a component is busy with a timer of its own, if it acts."""
-        life = self.life(action.who)
-        if life is None or not life.awake:
-            return False
-        life.runtime.code.tick(partial(life.thread.spend, action.seconds))
-        return True
-
-    def _crash_site(self, action: Action) -> bool:
-        node = self.node(action.who)
-        if node is not None:
-            node.close()
-            processes: Any = self.sites[action.who].processes
-            self.network.after(0.2, processes.ended_with_the_site)
-        return node is not None
-
-    def _start_site(self, action: Action) -> bool:
-        if self.node(action.who) is not None:
-            return False
-        self._begin_site(action.who)
-        return True
-
-    def _begin(self, action: Action) -> bool:
-        if self.node(action.who) is not None:
-            return False
-        plan, ecology = self.script.tasks[action.who], self.script.ecology
-        agent = self.lab.agent(
-            ecology.whole if plan.drives else ecology.part,
-            tuple((name, value.format(task=action.who)) for name, value in ecology.bindings),
-            policy=Policy.DISMANTLE if plan.dismantles else Policy.REPAIR,
-            patient=plan.patient,
-            name=action.who,
-            priority=plan.priority,
-            upgrade=plan.upgrade,
-            clock=self.script.clocks.get(action.who, 0.0),
-        )
-        self.tasks[action.who] = agent
-        self.agents.append(agent)
-        assert isinstance(agent.bus, MemoryBus)
-        self._joined(action.who, agent.bus)
-        return True
-
-    def _crash_task(self, action: Action) -> bool:
-        node = self.node(action.who)
-        if node is not None:
-            node.close()
-        return node is not None
-
-    def _stop_task(self, action: Action) -> bool:
-        node = self.node(action.who)
-        if node is None or node.paused:
-            return False
-        self.tasks[action.who].stop()
-        return True
-
-    def _isolate(self, action: Action) -> bool:
-        node = self.node(action.who)
-        if node is None or action.who in self._isolated:
-            return False
-        self._isolated.add(action.who)
-        for other in self.network.nodes:
-            if other is not node and other.open:
-                self.network.cut(node, other)
-        return True
-
-    def _rejoin(self, action: Action) -> bool:
-        node = self.node(action.who)
-        if node is None or action.who not in self._isolated:
-            return False
-        self._isolated.discard(action.who)
-        for other in self.network.nodes:
-            if other is not node and other.open:
-                self.network.reconnect(node, other)
-        return True
-
-    def _link(self, action: Action) -> tuple[MemoryBus, MemoryBus] | None:
-        left, right = self.node(action.who), self.node(action.other)
-        return (left, right) if left is not None and right is not None else None
-
-    def _cut(self, action: Action) -> bool:
-        link = self._link(action)
-        if link is not None:
-            self.network.cut(*link)
-        return link is not None
-
-    def _mute(self, action: Action) -> bool:
-        link = self._link(action)
-        if link is not None:
-            self.network.mute(*link)
-        return link is not None
-
-    def _mend(self, action: Action) -> bool:
-        link = self._link(action)
-        if link is not None:
-            self.network.reconnect(*link)
-        return link is not None
-
-    def _pause(self, action: Action) -> bool:
-        node = self.node(action.who)
-        if node is None or node.paused:
-            return False
-        self.network.pause(node)
-        self.network.after(action.seconds, lambda: None if node in self._powerless else self.network.resume(node))
-        return True

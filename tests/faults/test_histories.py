@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.faults.actions import Actions
 from tests.faults.ecologies import COMPOSED, PAPER, FaultyEcology
 from tests.faults.histories import SETTLED, History
 from tests.faults.replay import account, played, shrink, told
@@ -106,7 +107,7 @@ def test_a_history_lasts_until_all_that_waits_has_come_and_each_fifth_to_the_end
 def test_every_kind_of_action_can_be_done_and_some_of_them_are_in_the_first_scripts(folder: Path) -> None:
     written = {action.kind for seed in range(300) for action in write(seed, ecology=COMPOSED).actions}
     assert written == set(KINDS)
-    assert all(callable(getattr(History, f"_{kind}")) for kind in KINDS)
+    assert all(callable(getattr(Actions, f"_{kind}")) for kind in KINDS)
 
 
 def test_an_action_that_is_not_possible_does_nothing(folder: Path) -> None:
