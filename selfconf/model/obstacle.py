@@ -11,10 +11,11 @@ from enum import Enum
 from typing import ClassVar
 
 from selfconf.model.immutable import immutable
+from selfconf.model.literal_values import DATATYPES
 from selfconf.model.profile import CALL_MARK, Operation, WantedSignal, port_in_words
 from selfconf.model.setting_names import setting
 from selfconf.model.signal_likeness import Degree, SignalMatch
-from selfconf.model.term import IRI, Term
+from selfconf.model.term import IRI, Literal, Term
 from selfconf.model.unit_dimension import differ_in_dimension
 from selfconf.model.wording import in_full, in_words, term_in_words
 
@@ -148,7 +149,20 @@ class ConstraintFailed:
 
     def said(self, name: str) -> str:
         """The fault of the property of that name."""
-        return f"{name} is {in_words(self.values)}, not {self._wanted}"
+        return f"{name} is {in_words(self.values)}{self._number}, not {self._wanted}"
+
+    @property
+    def _number(self) -> str:
+        """Which datatype numbers have where another is asked for: 5 is an integer, 5.0 a decimal and 5e0 a double."""
+        kinds = {value.datatype for value in self.values if isinstance(value, Literal)}
+        if (
+            self.constraint.short != "datatype"
+            or len(kinds) != 1
+            or self.wanted in kinds
+            or kinds.isdisjoint(DATATYPES)
+        ):
+            return ""
+        return f", {_with_article(kinds.pop().short)}"
 
     @property
     def _wanted(self) -> str:
@@ -160,8 +174,12 @@ class ConstraintFailed:
             return f"{_LENGTHS[constraint]} {wanted} characters long"
         if constraint in _PAIRS:
             return f"{_PAIRS[constraint]} its {wanted}"
-        article = "an" if wanted[:1] in tuple("AEIOaeiou") else "a"  # a datatype or a kind of node: an integer, an IRI
-        return f"like /{wanted}/" if constraint == "pattern" else f"{article} {wanted}"
+        return f"like /{wanted}/" if constraint == "pattern" else _with_article(wanted)
+
+
+def _with_article(kind: str) -> str:
+    """A datatype or a kind of node with its article: an integer, an IRI."""
+    return f"{'an' if kind[:1] in tuple('AEIOaeiou') else 'a'} {kind}"
 
 
 @immutable

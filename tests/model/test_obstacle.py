@@ -65,6 +65,18 @@ WORDED: list[tuple[Obstacle, str, str]] = [
     ),
     (unmet(failed("minInclusive")), "place is hall, not at least 5", "its place is hall, not at least 5"),
     (
+        unmet(ConstraintFailed(frozenset((FIVE,)), IRI(SH + "datatype"), IRI(XSD_NAMESPACE + "double"))),
+        "place is 5, an integer, not a double",
+        "its place is 5, an integer, not a double",
+    ),
+    (
+        unmet(
+            ConstraintFailed(frozenset((FIVE, Literal("x", FIVE.datatype))), IRI(SH + "datatype"), FIVE.datatype),
+        ),
+        'place is "x"^^integer or 5, not an integer',
+        'its place is "x"^^integer or 5, not an integer',
+    ),
+    (
         unmet(Ambiguous(IRI("urn:room"))),
         "place has several values, so that no one room fits",
         "its place has several values, so that no one room fits",

@@ -56,7 +56,7 @@ def test_a_default_that_keeps_to_datatype_and_kind_is_read(stated: str) -> None:
     [
         ("sh:nodeKind sh:IRI ; sh:defaultValue 5", "it is 5, not an IRI"),
         ("sh:nodeKind sh:Literal ; sh:defaultValue :kitchen", "it is kitchen, not a Literal"),
-        ("sh:datatype xsd:decimal ; sh:defaultValue 5", "it is 5, not a decimal"),
+        ("sh:datatype xsd:decimal ; sh:defaultValue 5", "it is 5, an integer, not a decimal"),
         ("sh:datatype xsd:string ; sh:defaultValue :kitchen", "it is kitchen, not a string"),
         ("sh:minInclusive 7 ; sh:defaultValue 5", "it is 5, not at least 7"),
         ("sh:in ( 1 2 ) ; sh:defaultValue 5", "it is 5, not 1 or 2"),
@@ -127,7 +127,7 @@ def test_a_parameter_that_asks_for_nothing_takes_anything() -> None:
     ("asked", "reason"),
     [
         ("sh:minInclusive 5", "it is 3, not at least 5"),
-        ("sh:datatype xsd:string", "it is 3, not a string"),
+        ("sh:datatype xsd:string", "it is 3, an integer, not a string"),
         ("sh:nodeKind sh:IRI", "it is 3, not an IRI"),
         ("sh:pattern '^a'", "it is 3, not like /^a/"),
         ("sh:in ( :a 4 'x' )", 'it is 3, not "x" or 4 or a'),

@@ -248,7 +248,7 @@ def test_a_value_of_a_task_that_cannot_stand_for_its_parameter_is_told_where_it_
         ":k a sc:Task ; sc:template :t ; sc:binding [ sc:parameter :p ; sc:value {} ] ."
     )
     with pytest.raises(
-        TemplateError, match=r": 5 cannot stand for the parameter 'p': it is 5, not a decimal"
+        TemplateError, match=r": 5 cannot stand for the parameter 'p': it is 5, an integer, not a decimal"
     ) as raised:
         read(text.replace("{}", "5"))
     assert raised.value.subject == iri("k")
