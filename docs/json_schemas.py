@@ -31,13 +31,18 @@ COMMANDS = (
 INTRODUCTION = """\
 # What the commands print as JSON
 
-Every command that prints results takes `--format json`. What it prints then is a contract, written down as
-[JSON Schema](https://json-schema.org) (draft 2020-12) in [`docs/schemas`](schemas) and shipped with the package, where
-`selfconf.library.schemas()` lists the files. A member that is not listed here does not occur; one that is optional says
-so. Sentences (`message`, `obstacle`, `hint`) are for people and may be reworded; programs go by `status`, `act` and
-`code`. The text is UTF-8, in which letters of every script stand as they are.
+Every command that prints results takes `--format json`. Its output is a contract:
 
-A schema refers to others by relative references, so a validator needs all of them at hand:
+* [JSON Schemas](https://json-schema.org) (draft 2020-12) describe it, in [`docs/schemas`](schemas) and in the package,
+  where `selfconf.library.schemas()` lists the files.
+* No other members occur than those listed here. A member that may be absent is marked as optional.
+* Programs should use `status`, `act` and `code`. Sentences (`message`, `obstacle`, `hint`) are for people and may be
+  reworded.
+* The text is UTF-8, and letters of all scripts are not escaped.
+
+The commands: COMMANDS
+
+A schema refers to others by relative references, so a validator needs all of them:
 
 ```python
 import json
@@ -57,7 +62,9 @@ WIDTH = 118
 
 def page() -> str:
     """The page in Markdown, without the note that it is made from something else."""
-    return "\n".join([INTRODUCTION, *(line for name in COMMANDS for line in _section(name))])
+    links = ", ".join(f"[{name}](#selfconf-{name})" for name in COMMANDS)
+    introduction = INTRODUCTION.replace("COMMANDS", f"{links}.")
+    return "\n".join([introduction, *(line for name in COMMANDS for line in _section(name))])
 
 
 @cache
@@ -109,7 +116,8 @@ def _members(name: str, part: dict[str, Any], shared: Collection[str]) -> Iterat
 def _listed(name: str, members: Mapping[str, dict[str, Any]], required: Collection[str]) -> Iterator[str]:
     for key, member in members.items():
         found = referred(name, member)[1]
-        said = f"`{found['const']}`" if "const" in found else found["description"]
+        constant = found.get("const")
+        said = f"`{constant}`" if isinstance(constant, str) else found["description"]
         yield f"* `{key}`{'' if key in required else ' (optional)'}: {said}"
     if members:
         yield ""
