@@ -200,7 +200,7 @@ MUTATIONS = {
     ),
     "an upgrade starves nobody": Mutation({f"{INPUTS}.follow": follows_new_sources_late}, BETTER, upgrades=True),
     "what is new delivers first": Mutation(
-        {f"{INPUTS}._fed": lambda self: {}},
+        {"selfconf.sdk.inputs.signal_input.SignalInput._fed_by": lambda self: frozenset()},
         (*BETTER, Action(5.5, "hush", "tracker"), LATER),
         upgrades=True,
     ),
