@@ -26,7 +26,7 @@ from selfconf.termination import alive_since, start_time, stopped
 CLAIMED = "names"
 """The folder of the files that are locked: `tasks` is where sites keep tasks, and a site may be called like a task."""
 PROCESSES_ASKED_AGAIN = 1.0
-"""Seconds after which it is looked again whether the processes of sites are there, where no file has changed."""
+"""Seconds after which it is checked again whether the processes of sites are there, where no file has changed."""
 _TEMPORARY = "/tmp"
 """The folder for temporary files where there is none that this program can write in."""
 TURN = 5.0

@@ -38,7 +38,7 @@ from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
 
 LOOK = 1.0
-"""How often, in seconds, it is looked whether the folder of keys has changed, and what was refused."""
+"""How often, in seconds, it is checked whether the folder of keys has changed, and what was refused."""
 LOOK_AT_ALL = 10.0
 """After how many seconds at most the rules are made anew, and certificates renewed, though nothing seems to change."""
 RAREST_RETRY = 30.0

@@ -1,7 +1,7 @@
 """The full checks of `validate` over many files: shared among processes, and remembered from one run to the next.
 
 Processes are forked, so that what is loaded is loaded once; but not where the program has other threads. What these
-hold at that moment, such as a lock of a library, would be held for ever in a forked process, which then never ends.
+hold at that moment, such as a lock of a library, would be held forever in a forked process, which then never ends.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ from selfconf.rdf.advertisements import Advertisement
 OF_ITS_SITE = " from what its site advertises"
 """Where the parts of a composite come from, in words: what fits better may be at another site."""
 LOOK_AT_REFUSED = 10.0
-"""After how many seconds it is looked again whether an inside that was refused can be configured. The pause doubles
+"""After how many seconds it is checked again whether an inside that was refused can be configured. The pause doubles
 with each life in which it does not run: perhaps the task that holds the composite holds what the inside lacks."""
 LONGEST_LOOK = 320.0
 """The longest such pause, in seconds."""
@@ -182,7 +182,7 @@ class Composites:
             self._looking[component] = self._bus.later(self._pause(composite), partial(self._look_again, component))
 
     def _pause(self, composite: InsideOfComposite) -> float:
-        """After how many seconds it is looked again whether the inside of a composite can be configured."""
+        """After how many seconds it is checked again whether the inside of a composite can be configured."""
         return LOOK_AT_REFUSED if composite.has_run else self._pauses.get(composite.profile.component, LOOK_AT_REFUSED)
 
     def _look_again(self, component: IRI) -> None:

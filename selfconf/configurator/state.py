@@ -257,5 +257,5 @@ class State:
 
     @property
     def asks_again(self) -> bool:
-        """Whether the ecology is asked again before a refusal; where something appears all the time, not for ever."""
+        """Whether the ecology is asked again before a refusal; where something appears all the time, not forever."""
         return self.news and self.put_off < MOST_PUT_OFF

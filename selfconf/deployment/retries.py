@@ -48,7 +48,7 @@ class Retries:
         """When lost components are tried again, which may be overdue; None: no time is set."""
         self._improve: Undo = lambda: None
         self._improve_by: float | None = None
-        """When it is looked at the latest whether what has appeared would be rather had; None: it is not planned."""
+        """When it is checked at the latest whether what has appeared would be rather had; None: it is not planned."""
         self._unsettled: dict[IRI, float] = {}
         """The components that have appeared of late, each with when it will have been there for long enough."""
         self._improve_later: Undo = lambda: None
@@ -71,7 +71,7 @@ class Retries:
     def settle(self, appeared: Iterable[IRI] = ()) -> None:
         """Look, after a while, whether what has appeared would be rather had; each time anew, so that it settles.
 
-        Not for ever: in a large ecology there is always something that comes.
+        Not forever: in a large ecology there is always something that comes.
         """
         if self._upgrade is None:
             return

@@ -93,7 +93,7 @@ class TaskSearch:
                 trouble = error
                 self._bus.wake_up(lambda: self._give_up(trouble))
                 return
-            except Exception as error:  # nothing may wait for ever for a search that broke
+            except Exception as error:  # nothing may wait forever for a search that broke
                 log.exception("the search broke")
                 broken = ProgrammerError(f"the search broke: {type(error).__name__}: {error}")
                 self._bus.wake_up(lambda: self._give_up(broken))

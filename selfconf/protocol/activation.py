@@ -287,7 +287,7 @@ def _wish(activation: Activation, own: Hold | None, call: Reserve | Apply) -> Ac
     """Note what a task wants of a component that acts for it, but that it shares with one that disagrees.
 
     Once all that share it wish the same, the one that asks last is served. A task for which it does not act holds it no
-    more: two that are to wait until the other changes would do so for ever.
+    more: two that are to wait until the other changes would do so forever.
     """
     if own is None or (isinstance(call, Reserve) and call.waits):
         return activation

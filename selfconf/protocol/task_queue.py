@@ -4,7 +4,7 @@ Higher priority comes first, then the earlier beginning. Once the component is f
 waits, and kept for it; until that one has reserved it or the offer is over, tasks that come later have to wait. To one
 of higher priority that begins to wait meanwhile it is offered instead, which else would have to have it yielded. An
 offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot come for
-it, as each waits for the other, would have it offered to them for ever. A task that has not come for it waits on, but
+it, as each waits for the other, would have it offered to them forever. A task that has not come for it waits on, but
 no task is asked to yield for its sake until it asks again: its configurator may be gone.
 """
 

@@ -29,7 +29,7 @@ from selfconf.sdk.component import Component
 from selfconf.sdk.runtime import ComponentRuntime
 
 CODE_CHECK = 0.1
-"""How often, in seconds, it is looked whether the code that runs is within its deadline."""
+"""How often, in seconds, it is checked whether the code that runs is within its deadline."""
 STOOD_STILL = 0.5
 """Seconds by which such a look comes late, without this process having used the time, after which it stood still."""
 JOINING = 1.0

@@ -1,4 +1,4 @@
-"""Connections of HTTP that cannot be held for ever: bounds on how many there are, and how long a request takes.
+"""Connections of HTTP that cannot be held forever: bounds on how many there are, and how long a request takes.
 
 A client that sends a byte now and then, in the head of a request or in its body, would otherwise keep a connection for
 as long as it likes, and some hundreds of them all that a process can have ("slowloris"); so would one that takes

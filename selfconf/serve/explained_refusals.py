@@ -30,7 +30,7 @@ EXPLAINED_WITHIN = 20.0
 TOLD_WITHIN = 3.0
 """Seconds within which the configurator of a task that waits has mostly told its near misses and relaxations."""
 TOLD_CHECK = 0.1
-"""How often, in seconds, it is looked whether it has."""
+"""How often, in seconds, it is checked whether it has."""
 
 
 class ExplainedRefusals:

@@ -5,7 +5,7 @@
 
 A process that ends with 0 has wanted to, and one that ends with 2 has said why it cannot run (its component lives
 already, for one); every other end is a crash. So is each end after which a task that held a component of the process
-has it started again, and each before any of its components has lived: both would go on for ever. After a crash the
+has it started again, and each before any of its components has lived: both would go on forever. After a crash the
 program is started again with a pause, until it has crashed too often (`selfconf.site.restart_limit`); after an end by 0
 or 2 only when it is asked for, and then not before the pause is over. The pause after a first crash ends when the
 program is asked for, as a task may stand still without it; further ones do not, else a task that asks at once would
@@ -41,7 +41,7 @@ from selfconf.termination import parent_environment
 log = logging.getLogger(__name__)
 
 PROCESS_CHECK = 0.5
-"""How often, in seconds, it is looked whether a started process still runs; its end is heard of by its pipes."""
+"""How often, in seconds, it is checked whether a started process still runs; its end is heard of by its pipes."""
 ENDING_CHECK = 0.02
 """After how many seconds it is first looked whether a process has ended that is to end, with all that it has started.
 So it is looked at one whose pipes have ended, as they may end a moment before it.

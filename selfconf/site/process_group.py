@@ -36,7 +36,7 @@ _PROCESSES = Path("/proc")
 _BEGINNING = 0.05
 """For how many seconds at most a process may be on its way into a program (execve), where it shows no environment."""
 _FIRST_LOOK = 0.02
-"""Seconds after which it is looked again whether what a program has left behind has ended; then twice as many."""
+"""Seconds after which it is checked again whether what a program has left behind has ended; then twice as many."""
 
 
 class ProcessGroup:
@@ -77,7 +77,7 @@ class ProcessGroup:
         """Whether the program has ended, and all that it started.
 
         What has ended and not been waited for by its parent (a zombie) is over: where process 1 does not wait for what
-        it inherits, as in some containers, it stays so for ever.
+        it inherits, as in some containers, it stays so forever.
         """
         return self.code() is not None and not (self._is_in_group() or any(self._outside()))
 

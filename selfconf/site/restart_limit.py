@@ -1,4 +1,4 @@
-"""How often a program that crashes is started again: soon at first, then later and later, and not for ever.
+"""How often a program that crashes is started again: soon at first, then later and later, and not forever.
 
 The scheme is that of OTP's supervisors (restart intensity): more crashes within a window of time than are allowed, and
 the program is given up, until so much time has passed that the window holds no more than allowed.

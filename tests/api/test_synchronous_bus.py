@@ -55,7 +55,7 @@ def test_several_questions_are_asked_at_once_and_answered_in_order(network: Netw
 
 @pytest.fixture
 def links(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The links that a bus has, one each time that it is asked, the last one for ever; at first it has the first."""
+    """The links that a bus has, one each time that it is asked, the last one forever; at first it has the first."""
     links = ["hub 1"]
     monkeypatch.setattr(MemoryBus, "link", property(lambda _: links.pop(0) if len(links) > 1 else links[0]))
     return links

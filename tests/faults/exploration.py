@@ -4,7 +4,7 @@ What is found wrong, by name:
 
     acts on part    an actuator acts although a part of its configuration is not held for the same task
     deadlock        nothing can happen any more, and a configurator waits for components that it could have
-    livelock        a cycle of messages: it may go on for ever
+    livelock        a cycle of messages: it may go on forever
     nobody wins     without any fault, in the end no task runs
 """
 

@@ -138,7 +138,7 @@ def test_no_further_test_is_begun_after_as_many_failures_as_are_allowed(tmp_path
 
 
 def test_what_runs_when_no_further_test_is_begun_leaves_its_fixtures(tmp_path: Path) -> None:
-    """It may have begun programs, which else would run for ever."""
+    """It may have begun programs, which else would run forever."""
     ended = outcome(tmp_path, INTERRUPTED, "-x", "--basetemp", str(tmp_path / "temporary"))
     assert "1 failed" in ended.stdout
     assert [*(tmp_path / "temporary").rglob("left")]

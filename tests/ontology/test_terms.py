@@ -45,7 +45,7 @@ PROMISED = re.findall(
     input sets value minCount maxCount
     """,
 )
-"""The terms that selfconf began with, which keep their names for ever."""
+"""The terms that selfconf began with, which keep their names forever."""
 NO_TERMS = {"hasOuput", "mass"}
 """What the manual names as a mistake, and as a term that somebody adds."""
 

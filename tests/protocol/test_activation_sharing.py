@@ -193,7 +193,7 @@ def test_a_task_that_wants_again_what_it_has_wishes_nothing_any_more() -> None:
 
 
 def test_a_task_that_only_reserves_a_component_gives_that_up_for_another_wish() -> None:
-    """Else two that share it, and for neither of which it acts, would wait for each other for ever."""
+    """Else two that share it, and for neither of which it acts, would wait for each other forever."""
     reserved = Activation()
     for task in (A, B):
         reserved, _, _ = obey(reserved, call_of(Reserve, task, inputs=INPUTS), shareable=True)

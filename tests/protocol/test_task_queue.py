@@ -174,7 +174,7 @@ def test_no_task_yields_to_one_that_follows_nothing_for_now() -> None:
 
 
 def test_nobody_is_asked_to_yield_for_a_task_that_did_not_come_until_it_asks_again() -> None:
-    """Its configurator may be gone: else every task of lower priority would yield to it for ever."""
+    """Its configurator may be gone: else every task of lower priority would yield to it forever."""
     activation = withdraw(offered(B, priorities={B: 9}), B)
     activation, _, _ = obey(activation, call_of(Apply, C))
     assert (outranked(activation), waiting_for(activation)) == ((), [B])

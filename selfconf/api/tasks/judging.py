@@ -1,6 +1,6 @@
 """How a program answers a question about a task: JSON from stdin to stdout, in a process that can be ended.
 
-A template that a stranger has written may ask what takes for ever, or more memory than there is. What asks is
+A template that a stranger has written may ask what takes forever, or more memory than there is. What asks is
 `selfconf.serve.judging_process`.
 """
 

@@ -1,7 +1,7 @@
 """Which roles of a task one component could play, and what keeps it out of those that it nearly fits.
 
 `python -m selfconf.api.tasks.role_fits` judges it in a process of its own, which can be ended: a template that a
-stranger has written may ask what takes for ever. It reads a JSON object with the texts `record` (a message of the kind
+stranger has written may ask what takes forever. It reads a JSON object with the texts `record` (a message of the kind
 `task`) and `advertisement` (Turtle) from stdin, and writes a list of `RoleFit.body`, or an object with the `detail` of
 a failure.
 """

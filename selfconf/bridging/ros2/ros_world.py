@@ -44,9 +44,9 @@ from selfconf.model.term import IRI
 TOKENS_COMPLETE = 0.3
 """Seconds without a new token after which those of a node are complete."""
 LOOK_WHETHER_FREE = 1.0
-"""Seconds after which it is looked again whether a node may be advertised anew."""
+"""Seconds after which it is checked again whether a node may be advertised anew."""
 LOOK_WHETHER_IT_LIVES = 2.0
-"""Seconds after which it is looked again whether a node lives, or may live by now: another bridge may have ended."""
+"""Seconds after which it is checked again whether a node lives, or may live by now: another bridge may have ended."""
 RELEASING = 0.5
 """Seconds from the FAIL of a node that has gone to the end of its life, in which it can still be released."""
 MOST_NODES = 2000

@@ -121,7 +121,7 @@ def open_session(
 
     It names what is `wanted` at the endpoints of a client. It is raised as well where this program may not open enough
     files, and ProgrammerError in a process that was forked from one that had opened a session: Zenoh's threads are
-    missing there, and it would wait for them for ever.
+    missing there, and it would wait for them forever.
 
     With `connect_seconds` a client tries for that long, otherwise each endpoint once. A router does not wait for those
     that it connects to. With `shared_memory` large payloads go through that to others on this machine that have it too.

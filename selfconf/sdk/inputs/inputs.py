@@ -22,7 +22,7 @@ from selfconf.sdk.inputs.signal_input import InputEvents, SignalInput
 HANDOVER_PATIENCE = 30.0
 """Seconds for which the caller may wait for an input to be handed over: the longest handover, and what comes of it."""
 HANDOVER_CHECK = 0.01
-"""How often, in seconds, it is looked whether the new output has issued one."""
+"""How often, in seconds, it is checked whether the new output has issued one."""
 
 
 class InputFollower(Protocol):
@@ -103,7 +103,7 @@ class Inputs:
             for port in sorted(profile.signal_inputs, key=lambda port: port.name)
         }
         self._when_settled: list[Callable[[], None]] = []
-        """What is to be done once no input is handed over any more; while there is any, it is looked whether it is so.
+        """What is to be done once no input is handed over any more; while there is any, it is checked whether it is so.
         """
 
     def follow(self, message: Apply) -> None:

@@ -78,7 +78,7 @@ class SourceWatch:
     def _end_life(self, heard: float) -> None:
         """The output is lost, unless a signal has come after that time; its component may be in sight again.
 
-        Such a signal may have been on its way when that life ended, and be the last for ever.
+        Such a signal may have been on its way when that life ended, and be the last forever.
         """
         self.lose(heard)
         if self._output.heard_at > heard:

@@ -14,7 +14,7 @@ from selfconf.protocol.keys import life_of
 from selfconf.sdk.outputs import SIGNALS_FIRST
 
 LOOKS_FOR_OTHERS = (0.0, 1.0)
-"""Seconds after the beginning of a life at which it is looked whether another process is the same component."""
+"""Seconds after the beginning of a life at which it is checked whether another process is the same component."""
 LIVES_CALL = 3.0
 """Seconds that this may take."""
 

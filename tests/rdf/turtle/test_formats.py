@@ -177,7 +177,7 @@ def test_turtle_is_taken_for_nothing_else(text: str) -> None:
     ids=["comment", "blank lines", "spaces", "names"],
 )
 def test_the_format_of_no_text_takes_long_to_tell(text: bytes) -> None:
-    """Each of these took minutes, or for ever, where white space could be taken by two parts of a pattern."""
+    """Each of these took minutes, or forever, where white space could be taken by two parts of a pattern."""
     assert turtle.other_format("a.ttl", text) is None
 
 

@@ -128,7 +128,7 @@ def test_an_answer_that_was_promised_ends_when_an_actuator_comes_to_rest(under_w
 
 
 def test_a_promise_that_comes_to_another_one_is_no_answer() -> None:
-    """A request would wait for ever, and after 64 of them no other one would be served."""
+    """A request would wait forever, and after 64 of them no other one would be served."""
     promise: Future[Any] = Future()
     promise.set_result(Future())
     served = Served(Camera(reply=lambda request: promise))
