@@ -1,11 +1,12 @@
 """The tasks that wait for a component which others hold, as a value: in which order, and for which of them it is kept.
 
-Higher priority comes first, then the earlier beginning. Once the component is free, it is *offered* to the first that
-waits, and kept for it; until that one has reserved it or the offer is over, tasks that come later have to wait. To one
-of higher priority that begins to wait meanwhile it is offered instead, which else would have to have it yielded. An
-offer is over soon, and each task that waits has one until the component was held again: two tasks that cannot come for
-it, as each waits for the other, would have it offered to them forever. A task that has not come for it waits on, but
-no task is asked to yield for its sake until it asks again: its configurator may be gone.
+Higher priority comes first, then the earlier beginning. A component that becomes free is *offered* to the first task
+that waits, and kept for it; until that task has reserved it or the offer is over, tasks that come later have to wait. If
+a task of higher priority begins to wait meanwhile, the component is offered to that one instead.
+
+An offer is over soon. Until the component is held again, each waiting task has one offer: otherwise the component would
+be offered forever to two tasks each of which waits for the other. A task that has not taken its offer goes on waiting,
+but no task is asked to yield for its sake until it asks again: its configurator may be gone.
 """
 
 from __future__ import annotations

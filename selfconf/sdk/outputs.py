@@ -1,8 +1,8 @@
 """The outputs of a component: what it emits goes out, and the last signal is kept.
 
-*Outputs are latched.* An output that is followed anew issues its last signal of this activation again, so that a new
-connection carries a signal at once; and it answers with it each input that asks, for that it is followed by one more
-input is not noticed. Inputs pass over what they have had already.
+*Outputs are latched.* An output that gets its first follower issues its last signal of this activation again, so that
+the new connection carries a signal at once. Of further followers it is not told; these ask for the last signal, and it
+answers. An input passes over a signal that it has had already.
 """
 
 from __future__ import annotations

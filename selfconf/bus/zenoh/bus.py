@@ -4,14 +4,14 @@ A site opens a *relay* (`relay`): a router that listens on one endpoint and is c
 else on its host, the site's own bus included, is a *client* of a relay (`opening`). How sessions are set up stands in
 `session`, the topology and the keys in `docs/protocol.md`.
 
-* Callbacks of Zenoh only put into the loop's queues (`callback`): work in one would hold up every other message,
-  and by default each would have a thread. The callback of a direct subscription puts into a queue of its owner.
-* What comes by the thousand, the answers and the lives of all, is read from a channel (`channels`): with a
-  callback for each, Zenoh's thread would wait so long for Python that it misses the signs of life of its router.
-* A roll-call is made again where its answer may lack something (`roll_call`).
-* Questions go to all queryables and are not consolidated, for that keeps one reply per key and waits for the slowest.
-  They end when every queryable has finished, not at the time-out.
-* All control calls of one component have the same priority and are express, or they would overtake each other.
+* A callback of Zenoh only puts into a queue of the loop (`callback`): work done in it would delay every other message,
+  and by default each callback would have a thread. That of a direct subscription puts into a queue of its owner.
+* Answers and lives that come by the thousand are read from a channel (`channels`). With a callback for each of them,
+  Zenoh's thread would wait for Python until it misses the keep-alive messages of its router.
+* A roll-call whose answer may be incomplete is repeated (`roll_call`).
+* A question goes to all queryables. It is not consolidated, because that keeps one reply for each key and waits for the
+  slowest. It ends when every queryable has finished, not at the time-out.
+* All control calls of one component have the same priority and are express, so that none overtakes another.
 """
 
 from __future__ import annotations
@@ -110,10 +110,10 @@ class ZenohBus(Loop):
         self._roll_calls = RollCalls(self, session, self._readers, lambda: bool(self.link))
         self._open = True
         self._hubs = set[str]()
-        """The hubs that this bus is a client of, by Zenoh's events: its own list still has a hub that it calls lost.
-        """
+        """The hubs that this bus is a client of, by Zenoh's events. Zenoh's own list lags behind: it still has a hub
+        whose loss is being told."""
         self._turns = 0
-        """How often this bus has gained or lost a hub: of a hub that was away for a moment the name is the same."""
+        """How often this bus has gained or lost a hub: one that comes back has the same name as before."""
         self._link_watchers: list[Callable[[], None]] = []
         self._declared.add(session.info.declare_transport_events_listener(callback(self._turned), history=True))
         _OPEN.add(self)

@@ -1,14 +1,14 @@
-"""How one output takes over from another, where a call asks for that (`gently`): none is lost before the next delivers.
+"""How one output takes over from another without a gap, if a call asks for that (`gently`).
 
-An input goes on following the old output until the new one has issued a signal, also where it follows others before and
-afterwards. One that is lost right after its first has taken no place yet. A new output that issues nothing in time
-while the old one does is reported as silent, and again as long as both is so; what becomes of that is for the
-configurator to say. An output that has nothing to issue, such as a doorbell, looks like one that never will: where the
-old one has issued nothing in that time either, and both live, the new one takes its place, and the input has lost
-nothing.
+An input goes on following the old output until the new one has issued a signal. A new output that is lost right after
+its first signal has not taken over.
 
-*Opening.* Where such a call starts the component, an input has followed nothing before. Then it waits for the first
-signal of an output that promises a rate, as what the component takes the place of goes on until then.
+*Silence.* If the new output issues nothing in time although the old one does, it is reported as silent, again and again
+while both are so; the configurator decides what becomes of that. If the old one has issued nothing in that time either,
+and both live, the new one takes over: an output may have nothing to issue, such as that of a doorbell.
+
+*Opening.* If such a call starts the component, the input has followed nothing before. Then it waits for the first
+signal of an output that promises a rate: the component that is being replaced acts until then.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ HANDOVER = 2.0
 class Handover:
     """The change of an input to other outputs: it follows the old and the new until one of the new has issued a signal.
 
-    What it goes on following is neither. There are no old ones where it opens. `due` is when it is looked next whether
-    the new ones issue nothing although the old ones do, or although they promise a rate.
+    An output that it follows before and afterwards is neither old nor new. An input that opens has no old ones. `due`
+    is the next time at which new outputs that have issued nothing are reported, if the old ones issue or if they have
+    promised a rate.
     """
 
     old: frozenset[Wire]

@@ -1,9 +1,13 @@
 """An input asks each output that it begins to follow for its last signal, whether or not others follow it.
 
-Once more it asks one that has stood by, unless that has just issued one, or that was lost with the life of its
-component and is in sight again: it may have nothing else to issue. So it asks for what a component that has been at
-rest passed over, or knew before it was stopped. It asks again where no answer comes in time, nor a signal, and the
-component lives, and waits twice as long for the next answer.
+It asks again, because the output may have nothing else to issue,
+
+* when the output has stood by until now, unless it has just issued a signal;
+* when the output was lost with the life of its component, and that is in sight again;
+* when its own component has been at rest, and has passed over signals or forgotten them.
+
+If neither an answer nor a signal comes in time although the component lives, it asks once more, and waits twice as long
+for the answer.
 """
 
 from __future__ import annotations

@@ -1,13 +1,14 @@
 """One input of a component: which outputs it follows, when it is unfed, how one output follows another.
 
-It has a subscription for each of its outputs (`input_subscription`), and is handed over from one to another where a
-call asks for that (`handover`).
+An input has a subscription for each output that it follows (`input_subscription`). It is handed over from one output to
+another if a call asks for that (`handover`).
 
-An input is unfed when the life of the last of its outputs has ended, or that output's component has raised FAIL, has
-fallen silent, or has let go of a task and acts for no other, or another output has taken its place and has not issued
-anything yet. It is fed again by the first signal that comes; what still waits of a lost output is dropped, or a slow
-component would take it for news. So is what an output that stands by has issued for another task, which it acts for no
-more.
+An output is lost when the life of its component ends, or when that component raises FAIL, falls silent, or lets go of a
+task and acts for no other. An input is unfed when it has lost the last of its outputs, or when another output has taken
+the place of the last one and has not issued a signal yet. The next signal that comes feeds it.
+
+Signals of a lost output that still wait are dropped: a slow component would take them for new ones. So is what an
+output that stands by has issued for another task, if its component does not act for that task any more.
 """
 
 from __future__ import annotations

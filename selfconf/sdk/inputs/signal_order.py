@@ -1,7 +1,7 @@
 """Which signals of one output are news to an input, by the lives of the component that issues them and their numbers.
 
-Signals come late, twice, or after the word that their source has failed or has let go of its task, as what is more
-urgent overtakes them; and the last signal, for which an input asks, may have been delivered before.
+A signal may come late or twice. It may come after the message that its source has failed or has let go of its task, for
+urgent messages overtake signals. The last signal, which an input asks for, may have been delivered before.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Whether an output that has promised a rate keeps it, as one input that follows it sees.
 
-An output is silent when no signal has come for `PATIENCE` of the promised periods, and again as long as none comes.
-While this process itself stands still, as its machine stalls or it is suspended, no signal could have come: the time by
-which a look comes late counts as no silence. Looks come once in each promised period, or 40 times a second, so that of
-any such time no more than a period, or 25 ms, counts.
+An output is silent when no signal has come for `PATIENCE` of the promised periods, and is reported again for as long as
+none comes. While this process stands still (its machine stalls, or it is suspended) no signal can come, so the time by
+which a check is late does not count. Checks are made once in each promised period, or 40 times a second; so of a
+standstill at most one period, or 25 ms, counts.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Other processes that are the same component: of several lives of one component the smallest stays, the others leave.
+"""Other processes that are the same component: the life with the smallest name stays, all others leave.
 
-Two processes that begin at the same moment do not see each other before both are there, so each looks again a moment
-after its beginning. Two that were cut off from each other, or of which one was frozen, meet later: while a component is
-held for a task it follows its own lives, so that no two act. One that no task holds does nothing, and need not look.
+Two processes that begin at the same moment see each other only when both are there, so each looks a second time a
+moment later. Two that were cut off from each other, or one of which was frozen, may meet at any time. So a component
+follows the lives of its own IRI while a task holds it. While no task holds it, it does nothing and need not look.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class OtherLives:
         self._unfollow = self._bus.watch(self._lives, self._noticed)
 
     def _noticed(self, key: str, alive: bool) -> None:
-        """Look which lives there are: a new watch of Zenoh at times tells of an ended life, such as the one before."""
+        """Look which lives there are: a new watch of Zenoh sometimes reports one that has ended, such as the last."""
         if alive and life_of(key) < self._life:
             self._look()
 
