@@ -1,8 +1,8 @@
 """The tasks that wait for a component which others hold, as a value: in which order, and for which of them it is kept.
 
 Higher priority comes first, then the earlier beginning. A component that becomes free is *offered* to the first task
-that waits, and kept for it; until that task has reserved it or the offer is over, tasks that come later have to wait. If
-a task of higher priority begins to wait meanwhile, the component is offered to that one instead.
+that waits, and kept for it; until that task has reserved it or the offer is over, tasks that come later have to wait.
+If a task of higher priority begins to wait meanwhile, the component is offered to that one instead.
 
 An offer is over soon. Until the component is held again, each waiting task has one offer: otherwise the component would
 be offered forever to two tasks each of which waits for the other. A task that has not taken its offer goes on waiting,

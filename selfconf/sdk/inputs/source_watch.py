@@ -1,8 +1,8 @@
 """Whether an output that an input follows is lost, so that its last signal must not be taken for true any more.
 
-It is lost when the life that has issued its newest signal has ended, when no life of its component is ever seen, or when
-its component raises FAIL, or lets go of a task and acts for no other. A signal that comes afterwards may have been on
-its way. It counts for a moment; the output stays lost unless a life is seen, or another signal comes, within it.
+It is lost when the life that has issued its newest signal has ended, when no life of its component is ever seen, or
+when its component raises FAIL, or lets go of a task and acts for no other. A signal that comes afterwards may have been
+on its way. It counts for a moment; the output stays lost unless a life is seen, or another signal comes, within it.
 """
 
 from __future__ import annotations
