@@ -20,7 +20,7 @@ from selfconf.model.port_likeness import PortLikeness
 from selfconf.model.profile import Condition, Input, Output, Profile
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.requirement import InputFed
-from selfconf.model.signal_likeness import SignalLikeness, SignalMatch
+from selfconf.model.signal_likeness import SignalLikeness
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import (
@@ -127,7 +127,7 @@ class _NearRole:
         self._role = problem.roles[number].iri
         self._asked = ports_asked(composer.partitioner, self._role)
         self._ways = [self._asked] if self._asked else ways_along_interactions(problem, number)
-        self._ports = PortLikeness(self._ways, signals) if self._ways else None
+        self._ports = PortLikeness(self._ways, signals, composer.hierarchy) if self._ways else None
 
     def kept_out(self) -> Iterator[NearMiss]:
         """The components that only their ports keep out of the role."""
@@ -152,18 +152,16 @@ class _NearRole:
         _, lacking = self._ports.of(profile.ports)
         if not any(match.likeness for match in lacking.issued):
             return None
-        issued, given = ([one for one in side if not self._serves(one)] for side in (lacking.issued, lacking.given))
+        issued, given = (
+            # Without what is of another type than the wanted one, and serves all the same.
+            [match for match in side if match.exact or not self._ports.serves(match)]
+            for side in (lacking.issued, lacking.given)
+        )
         if all(match.exact for match in (*issued, *given)):
             return None
         return replace(
             lacking, issued=tuple(issued), given=tuple(given), unfit=tuple(_untaken(profile, lacking, unfed))
         )
-
-    def _serves(self, match: SignalMatch) -> bool:
-        """Whether what is offered is another type than the wanted one, and serves all the same in the mode."""
-        if match.exact or match.offered is None or match.wanted is None:
-            return False
-        return self._problem.hierarchy.matches(match.offered, match.wanted)
 
     def _unfit(self, profile: Profile, unfed: Sequence[InputFed]) -> UnfitOutput | None:
         """What is wrong with the first output that an unfed input would take by its type, where it takes no other."""
@@ -227,7 +225,7 @@ def ranked_exclusions(
         one.profile.component for one in kept_out_by_ports(partitioner, role.iri, composer.gathered(ecology), inside)
     }
     question = words_of_role(composer.task.document, role.iri, asked)
-    ports = PortLikeness([asked], SignalLikeness(known))
+    ports = PortLikeness([asked], SignalLikeness(known), composer.hierarchy)
     nearest = []
     for near in ranked((ecology[component].profile for component in of), ports, question):
         one = replace(of[near.profile.component], likeness=near.likeness)

@@ -1,7 +1,8 @@
 """How near the ports of a component come to those that are wanted: an assignment of signals, and their likeness.
 
 Each wanted signal is paired with at most one that is offered, the most alike first (a greedy matching, at least half as
-good as the best one); but what is offered just as it is wanted serves all that want it, as an output feeds many inputs.
+good as the best one); but what is offered as it is wanted, or serves for it in the reasoning mode, serves all that want
+it, as an output feeds many inputs.
 Outputs and inputs count alike, as in LOG4SWS (Schulte et al., 2010): of the outputs, how well what is wanted is issued;
 of the inputs, how well what the component requires is given. Ports that are left over on the offering side do no harm,
 and count against it a little: the nearest is what is wanted and nothing else.
@@ -12,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import UnlikePorts
 from selfconf.model.profile import Ports
 from selfconf.model.signal_likeness import SignalLikeness, SignalMatch
@@ -36,8 +38,9 @@ class WantedPorts(NamedTuple):
 class PortLikeness:
     """How near ports come to those that are wanted, in one of several ways; what was worked out is remembered."""
 
-    def __init__(self, ways: Iterable[WantedPorts], signals: SignalLikeness) -> None:
-        self._ways, self._signals = tuple(dict.fromkeys(ways)), signals
+    def __init__(self, ways: Iterable[WantedPorts], signals: SignalLikeness, seen: Hierarchy = NOTHING_ABOVE) -> None:
+        """`seen` is the hierarchy by which signals match in the reasoning mode."""
+        self._ways, self._signals, self._seen = tuple(dict.fromkeys(ways)), signals, seen
         self._known: dict[tuple[tuple[Types, ...], tuple[Types, ...]], tuple[float, UnlikePorts]] = {}
 
     def of(self, ports: Ports) -> tuple[float, UnlikePorts]:
@@ -72,10 +75,16 @@ class PortLikeness:
         found: dict[int, SignalMatch] = {}
         taken: set[int] = set()
         for _, at, number, match in pairs:
-            if at not in found and (match.exact or number not in taken):
+            if at not in found and (number not in taken or self.serves(match)):
                 found[at] = match
                 taken.add(number)
         return tuple(found.get(at) or self._signals.nearest((), types) for at, types in enumerate(wanted))
+
+    def serves(self, match: SignalMatch) -> bool:
+        """Whether what is offered serves as what is wanted."""
+        if match.exact or match.offered is None or match.wanted is None:
+            return match.exact
+        return self._seen.matches(match.offered, match.wanted)
 
 
 def _share(matches: Sequence[SignalMatch], offered: int) -> float:

@@ -239,3 +239,12 @@ def test_a_type_that_serves_in_the_mode_is_not_told_beside_one_that_does_not() -
     assert [str(miss) for miss in near(PREFIXES + FEED, ads, *BELOW_REQUESTS)] == [
         f"{above} and issues Fine, which lies below Coarse"
     ]
+
+
+def test_a_type_that_serves_several_inputs_in_the_mode_is_lacking_for_none() -> None:
+    two = FEED.replace(":p :c )", ":p :c :d )") + ":d a sc:Role ; sh:class :Other . :p sc:feeds :d ."
+    other = (CLIENT % "").replace(":k", ":l").replace(":Client", ":Other")
+    ads = PREFIXES + (CLIENT % "").replace(" .", ' , [ sc:name "more" ; sc:signalType :Colour ] .') + other
+    ads += issuing("a", "Taxed")
+    said = [str(miss) for miss in near(PREFIXES + two, ads, *BELOW, sees=known(*BELOW))]
+    assert said == ["it issues no Colour"]

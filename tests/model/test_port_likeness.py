@@ -9,7 +9,8 @@ from selfconf.model.signal_likeness import SignalLikeness
 from selfconf.model.term import IRI
 
 CAR, PRICE, TAXED, COLOUR, VEHICLE = (IRI(f"urn:{name}") for name in ("Car", "Price", "Taxed", "Colour", "Vehicle"))
-KNOWN = SignalLikeness(Hierarchy([(TAXED, PRICE), (CAR, VEHICLE)]))
+ABOVE = Hierarchy([(TAXED, PRICE), (CAR, VEHICLE)])
+KNOWN = SignalLikeness(ABOVE)
 
 
 def ports(inputs: list[IRI], outputs: list[IRI]) -> Ports:
@@ -44,6 +45,16 @@ def test_an_output_serves_all_that_want_just_its_signal() -> None:
     found, lacking = PortLikeness([twice], KNOWN).of(ports([CAR, CAR], [PRICE]))
     assert found == 1
     assert all(match.exact for match in (*lacking.issued, *lacking.given))
+
+
+def test_an_output_serves_all_that_want_what_the_reasoning_mode_sees_above_it() -> None:
+    below = WantedPorts(((PRICE,), (TAXED,), (PRICE,)))
+    taxed = ports([], [TAXED])
+    _, unseen = PortLikeness([below], KNOWN).of(taxed)
+    assert str(unseen) == "issues no Price"
+    found, lacking = PortLikeness([below], KNOWN, ABOVE).of(taxed)
+    assert [match.offered for match in lacking.issued] == [TAXED] * 3
+    assert found > PortLikeness([below], KNOWN).of(taxed)[0]
 
 
 def test_an_input_is_given_what_lies_below_it() -> None:
