@@ -1,83 +1,28 @@
-"""The program behind a command: one process for all its components, started again after a crash, ended when told to."""
+"""The program behind a command: one process for all its components, started again after a crash."""
 
 from __future__ import annotations
 
 import errno
-import json
 import os
 import signal
 import sys
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from selfconf import rendezvous
 from selfconf.bus.memory import Network
-from selfconf.bus.port import Replies
 from selfconf.errors import PeerError
-from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import End, Fail, Wake
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Wake
 from selfconf.site import Site, component_program, life_watch, restart_limit
-from selfconf.site.component_program import ComponentProgram
-from selfconf.site.process_group import ProcessGroup
 from selfconf.termination import alive
 from tests.lab import iri
-from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve, until
+from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python
+from tests.site.started import NUMBERED, fails, given_life, program, runs
 
 pytestmark = pytest.mark.process
-NUMBERED = 'import os; open("run-%d" % len(os.listdir()), "w").write(str(os.getpid()))'
-"""Leaves a file with the process id for each time it is started."""
-
-
-@pytest.fixture
-def network() -> Network:
-    """A simulated network."""
-    return Network()
-
-
-@pytest.fixture
-def site(network: Network, tmp_path: Path) -> Iterator[Callable[..., Site]]:
-    """A site over `here` that can start components, and keeps what they print in `home.log`."""
-    made: list[Site] = []
-
-    def make(command: str, *names: str, more: str = "") -> Site:
-        folder = dormant(tmp_path / "here", command, *names, more=more)
-        environment = rendezvous.environment("lab", "tcp/127.0.0.1:1")
-        made.append(serve(network, folder, environment, tmp_path / "home.log"))
-        return made[-1]
-
-    yield make
-    for each in made:
-        each.close()
-
-
-def runs(tmp_path: Path) -> list[int]:
-    """The processes that have been started and have said so, in order."""
-    files = sorted(path for path in (tmp_path / "here").glob("run-*") if path.read_text())
-    return [int(path.read_text()) for path in files]
-
-
-def fails(network: Network) -> list[Fail]:
-    """What is said on all FAIL keys from now on."""
-    heard: list[Fail] = []
-    network.node().subscribe(KEYS.any_fail(), lambda sample: heard.append(decode(sample.payload, Fail)))
-    return heard
-
-
-def program(site: Site) -> ComponentProgram:
-    """The program of the sleeper."""
-    return site.processes.by_component[SLEEPER]
-
-
-def given_life(site: Site) -> str:
-    """The name of a life that the process of the sleeper was given."""
-    process = program(site)._process
-    assert process is not None
-    return process.life
 
 
 def test_a_command_that_two_components_share_is_started_once(
@@ -307,74 +252,6 @@ def test_what_a_site_has_ended_for_a_task_counts_as_a_crash_when_that_task_asks_
     assert live(network, lambda: bool(ended))
 
 
-def test_a_process_that_is_ended_is_not_started_again_but_can_be(
-    network: Network, tmp_path: Path, site: Callable[..., Site]
-) -> None:
-    made = site(python(NUMBERED))
-    made.start(SLEEPER)
-    assert live(network, lambda: len(runs(tmp_path)) == 1)
-    replies: list[Replies] = []
-    network.node().ask(KEYS.end("home"), encode(End(SLEEPER)), 5.0, replies.append)
-    assert live(network, lambda: bool(replies))
-    assert [sample.payload for sample in replies[0].samples] == [b"ended"]
-    assert not alive(runs(tmp_path)[0])
-    live(network, lambda: len(runs(tmp_path)) > 1, 0.5)
-    assert len(runs(tmp_path)) == 1
-    made.start(SLEEPER)
-    assert live(network, lambda: len(runs(tmp_path)) == 2)
-
-
-def test_a_process_that_does_not_want_to_end_is_killed_with_all_that_it_started(
-    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(component_program, "TERMINATION", 0.3)
-    deaf = "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN); "
-    fork = "import os; os.fork(); "
-    made = site(python(deaf + fork + 'open("run-%d" % os.getpid(), "w").write(str(os.getpid()))'))
-    made.start(SLEEPER)
-    assert live(network, lambda: len(runs(tmp_path)) == 2)
-    ended: list[bool] = []
-    made.processes.end(SLEEPER, "", lambda: ended.append(True))
-    assert live(network, lambda: bool(ended))
-    assert not any(map(alive, runs(tmp_path)))
-
-
-def test_what_a_process_leaves_behind_is_looked_at_less_and_less_often(
-    network: Network, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    looks: list[bool] = []
-
-    class Counting(ProcessGroup):
-        def gone(self) -> bool:
-            looks.append(super().gone())
-            return looks[-1]
-
-    monkeypatch.setattr(component_program, "ProcessGroup", Counting)
-    deaf = "import os, signal; signal.signal(signal.SIGTERM, signal.SIG_IGN)"
-    made = site(python(f"{deaf}; os.fork() and os._exit(0); os.setsid()"))
-    made.start(SLEEPER)
-    assert live(network, lambda: bool(looks) and program(made).group is None)
-    assert looks[-1]
-    assert len(looks) < 15  # within two seconds
-
-
-def test_a_frozen_process_is_ended_without_going_on(
-    network: Network, tmp_path: Path, site: Callable[..., Site]
-) -> None:
-    told = 'import signal; signal.signal(signal.SIGTERM, lambda *_: open("acted", "w").close()); '
-    made = site(python(told + NUMBERED))
-    made.start(SLEEPER)
-    assert live(network, lambda: len(runs(tmp_path)) == 1)
-    os.kill(runs(tmp_path)[0], signal.SIGSTOP)
-    group = program(made).group
-    assert group is not None
-    assert live(network, group.frozen)
-    ended: list[bool] = []
-    made.processes.end(SLEEPER, "", lambda: ended.append(True))
-    assert live(network, lambda: bool(ended), 1.5)
-    assert not (tmp_path / "here" / "acted").exists()
-
-
 def test_a_process_that_is_frozen_before_it_lives_is_ended_and_started_again(
     network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -402,46 +279,6 @@ def test_of_two_components_of_a_process_one_life_is_enough(
     assert live(network, lambda: len(runs(tmp_path)) == 2)
 
 
-def test_only_the_life_that_the_site_has_started_is_ended(
-    network: Network, tmp_path: Path, site: Callable[..., Site]
-) -> None:
-    made = site(python('import json, os; open("environment", "w").write(json.dumps(dict(os.environ)))'))
-    with pytest.raises(PeerError, match="has not started"):
-        made.processes.end(SLEEPER)
-    made.start(SLEEPER)
-    path = tmp_path / "here" / "environment"
-    assert live(network, lambda: path.exists() and path.read_text().endswith("}"))
-    life = json.loads(path.read_text())[rendezvous.LIFE_VARIABLE]
-    network.node().announce(KEYS.life(SLEEPER, life))
-    network.node().announce(KEYS.life(SLEEPER, "a-duplicate"))
-    network.run(lambda: False, 0.1)
-    errors = ask(network, KEYS.end("home"), encode(End(SLEEPER, "a-duplicate"))).errors
-    assert "has not started the life a-duplicate" in errors[0]
-    ended: list[bool] = []
-    made.processes.end(SLEEPER, life, lambda: ended.append(True))
-    assert live(network, lambda: bool(ended))
-
-
-def test_a_start_while_the_process_ends_comes_after_its_end(
-    network: Network, tmp_path: Path, site: Callable[..., Site]
-) -> None:
-    slow = (
-        'import os, signal; signal.signal(signal.SIGTERM, lambda *_: open("told", "w").close());'
-        "open(str(os.getpid()), 'w').close()"
-    ).replace("'", '"')
-    made = site(python(slow + "; signal.pause(); " + NUMBERED + "; raise SystemExit(0)"))
-    made.start(SLEEPER)
-    group = program(made).group
-    assert group is not None
-    assert live(network, (tmp_path / "here" / str(group.number)).exists)
-    made.processes.end(SLEEPER)
-    made.start(SLEEPER)
-    made.processes.end(SLEEPER)  # as another task does that has shared it, and has not heard yet that it ends
-    assert program(made).group is group
-    assert live(network, lambda: program(made).group not in (None, group))
-    assert group.gone()
-
-
 def test_what_components_print_is_in_the_log_with_what_became_of_them(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:
@@ -466,16 +303,6 @@ def test_a_line_of_the_log_names_all_components_of_its_process_and_no_more_than_
     assert live(network, lambda: log.exists() and " hello\n" in log.read_text())
     (said,) = [line.split(" ")[2] for line in log.read_text().splitlines() if line.endswith(" hello")]
     assert said.split(",") == [iri(name) for name in (*names[: component_program.NAMED_IN_LOG - 1], names[-1])]
-
-
-def test_a_terminal_reaches_the_site_alone(network: Network, tmp_path: Path, site: Callable[..., Site]) -> None:
-    made = site(python(NUMBERED))
-    made.start(SLEEPER)
-    assert live(network, lambda: len(runs(tmp_path)) == 1)
-    (process,) = runs(tmp_path)
-    assert os.getsid(process) == os.getpgid(process) == process
-    made.close()
-    assert not alive(process)
 
 
 def test_a_command_that_does_not_start_any_more_is_tried_again(
@@ -509,69 +336,6 @@ def test_no_process_is_left_unwatched_where_no_more_can_be_opened(
             made.start(SLEEPER)
     made.start(SLEEPER)
     assert live(network, lambda: bool(heard))
-
-
-def test_what_is_ended_while_it_pauses_is_not_started_again(
-    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(restart_limit, "FIRST_PAUSE", 0.4)
-    made, heard, ended = site(python(NUMBERED)), fails(network), list[bool]()
-    made.start(SLEEPER)
-    assert live(network, lambda: len(runs(tmp_path)) == 1)
-    os.kill(runs(tmp_path)[0], signal.SIGKILL)
-    assert live(network, lambda: bool(heard) and program(made).group is None)
-    made.processes.end(SLEEPER, "", lambda: ended.append(True))
-    assert ended
-    live(network, lambda: len(runs(tmp_path)) > 1, 1.0)
-    assert len(runs(tmp_path)) == 1
-
-
-def test_nothing_is_started_again_once_the_site_closes_on_another_thread(
-    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(restart_limit, "FIRST_PAUSE", 0.0)
-    made = site(python(NUMBERED + "; raise SystemExit(3)"), more="; sc:restarts 1000 ")
-    made.start(SLEEPER)
-    over = threading.Event()
-    bus = threading.Thread(target=live, args=(network, over.is_set))
-    bus.start()
-    assert until(lambda: len(runs(tmp_path)) > 3)
-    made.processes.close()
-    started = len(list((tmp_path / "here").glob("run-*")))
-    assert not over.wait(0.5)
-    over.set()
-    bus.join()
-    assert len(list((tmp_path / "here").glob("run-*"))) == started
-    with pytest.raises(PeerError, match="is ending"):
-        made.start(SLEEPER)
-
-
-def test_a_process_that_is_being_started_as_the_site_closes_has_ended_with_it(
-    site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    begun, known = threading.Event(), threading.Event()
-
-    class Late(ProcessGroup):
-        def __init__(self, *arguments: Any) -> None:
-            super().__init__(*arguments)
-            begun.set()
-            known.wait(10.0)
-
-    monkeypatch.setattr(component_program, "ProcessGroup", Late)
-    made = site(python("import time; time.sleep(60)"))
-    starting, closing = (threading.Thread(target=do) for do in (lambda: made.start(SLEEPER), made.processes.close))
-    starting.start()
-    assert begun.wait(10.0)
-    closing.start()
-    closing.join(0.1)
-    closes_late = closing.is_alive()
-    known.set()
-    starting.join()
-    closing.join()
-    assert closes_late, "it does not know yet what to end"
-    group = program(made).group
-    assert group is not None
-    assert group.code() is not None
 
 
 @pytest.mark.parametrize("code", [0, 2])
