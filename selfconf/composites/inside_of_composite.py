@@ -23,7 +23,7 @@ import secrets
 from collections.abc import Callable, Mapping, Set
 from functools import partial
 
-from selfconf.bus.port import Bus, Undo, Urgency
+from selfconf.bus.port import Bus, Urgency
 from selfconf.composites.inside_prospect import InsideProspect
 from selfconf.composition import why_none
 from selfconf.deployment import Outside, RunRequest, TaskRunner
@@ -100,13 +100,9 @@ class InsideOfComposite:
         self.issued: Wires = {}
         self.callers: Mapping[str, tuple[IRI, ...]] = {}
         self._standing: Mapping[IRI, frozenset[str]] = {}
-        """The components inside on which outputs of the composite depend, with these outputs."""
-        self._undo_silence: Undo = lambda: None
-        """Undoes the plan to tell that nothing stands behind some outputs."""
+        """The components inside on which outputs of the composite depend, with these, each time anew when it runs."""
         self.prospect: InsideProspect | None = None
         """What may come of the last inside that was refused."""
-        self._silent: frozenset[str] = frozenset()
-        """The outputs behind which nothing stands since a component inside that they need was lost, or came to rest."""
         self.settled = False
         self.has_run = False
         """Whether an inside has run in this life."""
@@ -210,12 +206,10 @@ class InsideOfComposite:
         if beginning != self._beginnings or self.runner is None or self.ending or self._again is not None:
             return
         if isinstance(event, ComponentLost | ComponentReleased) and event.component in self._standing:
-            self._silent |= self._standing[event.component]
-            self._undo_silence()
-            self._undo_silence = self._bus.later(REPLACING, self._tell_silence)
+            lacking, standing = self._standing[event.component], self._standing
+            self._bus.later(REPLACING, partial(self._tell_silence, lacking, standing))
         if not isinstance(event, TaskRunning):
             return
-        self._forget_silence()
         self._standing = self._issuing()
         before, self.issued = self.issued, self.runner.issued_outside()
         called_by, self.callers = self.callers, self.runner.calling_outside()
@@ -238,14 +232,13 @@ class InsideOfComposite:
                     found[one.source] = found.get(one.source, frozenset()) | issued
         return found
 
-    def _tell_silence(self) -> None:
-        self.issued = {**self.issued, **dict.fromkeys(self._silent & self.issued.keys(), ())}
-        if self.settled:
+    def _tell_silence(self, lacking: frozenset[str], standing: Mapping[IRI, frozenset[str]]) -> None:
+        """Tell that nothing stands behind some outputs, unless the inside runs anew, or has ended, since they did."""
+        before = self.issued
+        if self._standing is standing:
+            self.issued = {**before, **dict.fromkeys(lacking & before.keys(), ())}
+        if self.settled and self.issued != before:
             self._tell_moved()
-
-    def _forget_silence(self) -> None:
-        self._undo_silence()
-        self._silent = frozenset()
 
     def _tell_moved(self) -> None:
         moved = self._bus.publisher(self.runtime.keys.moved(self.profile.component), Urgency.EVENT)
@@ -257,7 +250,6 @@ class InsideOfComposite:
         if refusal is not None and self.runner is not None:
             self.prospect = InsideProspect(self._bus, self._ecology, self.runner.request, self.runner.state)
         self.runner, self.issued, self.callers, self._standing = None, {}, {}, {}
-        self._forget_silence()
         ending, self.ending = self.ending, False
         again, self._again = self._again, None
         if again is not None:

@@ -8,6 +8,7 @@ import pytest
 
 from selfconf.api.task import template
 from selfconf.composites import InsideOfComposite
+from selfconf.composites.inside_of_composite import REPLACING
 from selfconf.deployment.components.audits import AUDIT
 from selfconf.discovery import EcologyView
 from selfconf.model.run_event import ComponentActivated, ComponentLost, InputConnected
@@ -69,6 +70,18 @@ def test_who_has_not_been_told_finds_out_when_the_composite_is_looked_at(monkeyp
     house.ecology.advance(AUDIT)
     assert (house.navigator.pose, house.navigator.source) == (["t2", "c1", "h1"], "t2")
     assert lost(run) == []
+
+
+def test_an_output_is_told_to_lack_what_stood_behind_it_half_a_second_after_the_first_loss_inside() -> None:
+    house = House()
+    house.run(SERVICE)
+    inside = house.ecology._composites.living[SERVED]
+    assert inside.runner is not None
+    for name in ("t1", "c1"):
+        inside.runner.request.report(ComponentLost(IRI(f"urn:c:{name}"), "crash", ""))
+        assert inside.issued["pose"]
+        house.ecology.advance(0.6 * REPLACING)
+    assert inside.issued == {"pose": ()}
 
 
 def test_an_output_that_falls_silent_inside_is_repaired_inside() -> None:
