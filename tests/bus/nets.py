@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from selfconf.bus.memory import Network
-from selfconf.bus.port import Bus
+from selfconf.bus.port import Bus, Sample
 from selfconf.bus.zenoh import ZenohBus, client
 
 
@@ -82,3 +82,8 @@ class ZenohNet:
         """Close every client."""
         for bus in self._nodes:
             bus.close()
+
+
+def payloads(samples: list[Sample]) -> list[bytes]:
+    """What was put, in order of arrival."""
+    return [sample.payload for sample in samples]
