@@ -12,6 +12,7 @@ from pathlib import Path
 from selfconf.atomic_write import READABLE, write_atomically
 from selfconf.errors import AuthorError
 from selfconf.model.term import IRI
+from selfconf.protocol.keys import checked_name
 
 FILE = "believed.json"
 """Its name in a folder of keys."""
@@ -62,9 +63,9 @@ def claims(
 
 
 def believe(folder: Path, component: IRI, site: str) -> None:
-    """Note that a component is that of a site. Raises AuthorError."""
+    """Note that a component is that of a site. Raises AuthorError, also for what can be the name of none."""
     path = folder / FILE
-    said = {**believed(folder), component: site}
+    said = {**believed(folder), component: checked_name(site, "a site")}
     try:
         write_atomically(path, f"{json.dumps(said, indent=1, sort_keys=True)}\n".encode(), READABLE)
     except OSError as error:

@@ -133,6 +133,8 @@ def test_whose_a_component_is_is_noted(tmp_path: Path, capsys: pytest.CaptureFix
     assert believed(tmp_path / "keys") == {"urn:lamp": "attic"}
     said = run(capsys, "access", "--keys", str(tmp_path / "keys"), "--believe", "attic", "lamp")
     assert said.is_one_sentence("write it in full")
+    said = run(capsys, "access", "--keys", str(tmp_path / "keys"), "--believe", "", "urn:lamp")
+    assert said.is_one_sentence("'' cannot name a site")  # of which it would be then, and so of none that there is
     assert believed(tmp_path / "keys") == {"urn:lamp": "attic"}
 
 
