@@ -63,7 +63,10 @@ def _of_role(
         elif profile.component in taken or role.minimum != 1 or number >= MOST_TRIED:
             yield one  # one that another task holds cannot play, and of several players none is alone
         else:
-            yield _with(one, _answer(inquiry, (role.iri, profile.component), taken, limit))
+            alone = _with(one, _answer(inquiry, (role.iri, profile.component), taken, limit))
+            # Where there may be several players, one that cannot be the only one may play beside others all the same.
+            beside = alone.outcome == "impossible" and role.maximum != 1 and bool(chosen)
+            yield one if beside else alone
 
 
 def _answer(

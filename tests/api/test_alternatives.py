@@ -105,6 +105,18 @@ def test_of_many_candidates_and_of_roles_for_several_not_all_are_tried() -> None
     assert {one[name].outcome for name in one if not one[name].chosen} == {"not tried"}
 
 
+def test_what_could_play_beside_others_alone_is_not_told_to_be_impossible() -> None:
+    feeding = [component(name, "A", "", signal) for name, signal in (("a1", "S"), ("a2", "S"), ("a3", "T"))]
+    sink = component("b1", "B", "", "S").replace(" .", ' ; sc:hasInput [ sc:name "o" ; sc:signalType :T ; %s ] .')
+    ads = "\n".join([HEAD, *feeding, sink % "sc:optional true"])
+    several = TEMPLATE.replace("sh:class :A ;", "sh:class :A ; sc:minCount 1 ; sc:maxCount 2 ;")
+    one = found("", ads, several)
+    assert {name: each.outcome for name, each in one.items() if not each.chosen} == {"a3": "not tried"}
+    fewer = sc.configure(sc.template(several % ""), sc.read(ads.replace(feeding[1], "")))
+    assert fewer["a"] == (sc.IRI("https://example.org/x#a1"), sc.IRI("https://example.org/x#a3"))
+    assert found("", ads)["a3"].outcome == "impossible"
+
+
 def test_when_the_time_is_up_nothing_is_decided() -> None:
     inquiry = Inquiry(sc.template(TEMPLATE % COST), sc.read(ECOLOGY), Method.of("best"))
     outcomes = {one.outcome for several in alternatives(inquiry, 0.0).values() for one in several}
