@@ -18,6 +18,8 @@ _LETTER = (
 _ASCII_CHARACTER = rf"{_ASCII_LETTER}_0-9\-"
 _CHARACTER = rf"{_LETTER}_0-9\u00B7\u0300-\u036F\u203F\u2040\-"
 """PN_CHARS."""
+SCHEMES = ("http", "https", "urn", "file", "mailto", "tag")
+"""What looks like a prefix where an IRI has no angle brackets."""
 
 
 def is_local_name(text: str) -> bool:

@@ -7,12 +7,14 @@ from collections.abc import Container, Mapping
 
 import pyoxigraph as ox
 
+from selfconf.model.curie import SCHEMES
 from selfconf.rdf.sparql.prologue import PROLOGUE
 from selfconf.rdf.sparql.read_only import fault, hidden, without
 
 BEGINNINGS = ("PREFIX", "BASE", "SELECT", "ASK", "CONSTRUCT", "DESCRIBE")
 _DECLARED = re.compile(r"\bprefix\s+([^\s:]*)\s*:", re.IGNORECASE)
 _PREFIX = re.compile(r"(?<![\w?$@:.-])((?:[^\W\d_][\w.-]*)?):(?!//)")
+_IRI = re.compile(rf"(?<![\w?$@:.<-])({'|'.join(SCHEMES)}):[^\s<>{{}}]")
 _COMPLAINT = re.compile(r"error at (\d+):(\d+): expected (?:one of )?(.*)", re.DOTALL)
 _SENTENCE = re.compile(r"(?:^|, )([A-Z][A-Za-z]*(?: [A-Za-z*]+){2,})(?=,|$)")
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
@@ -41,6 +43,9 @@ def mistake(text: str, complaint: str, known: Container[str]) -> str:
         return f"it begins with {_short(code)}; a query only asks, by SELECT, ASK, CONSTRUCT or DESCRIBE"
     bare = without(text, "#", '"', "'", "<")
     declared = set(_DECLARED.findall(bare))
+    for scheme in _IRI.findall(bare):
+        if scheme not in declared and scheme not in known:
+            return f"an IRI stands in angle brackets: <{scheme}:...>"
     for prefix in _PREFIX.findall(bare):
         if prefix not in declared and prefix not in known:
             return f"the prefix {prefix}: is not declared; begin with PREFIX {prefix}: <...>"

@@ -10,7 +10,7 @@ from functools import partial
 import pyoxigraph as ox
 
 from selfconf.errors import BindingError
-from selfconf.model.curie import is_local_name, is_prefix, suggested_local_name
+from selfconf.model.curie import SCHEMES, is_local_name, is_prefix, suggested_local_name
 from selfconf.model.immutable import replace
 from selfconf.model.literal_values import number_of
 from selfconf.model.setting_names import binding
@@ -57,7 +57,7 @@ def read_term(text: str, prefixes: Mapping[str, str]) -> Term:
     if colon and is_prefix(prefix) and _LOCAL_PART.fullmatch(name):
         if prefix in prefixes:
             return _turtle_term(words, prefixes)
-        if prefix in ("http", "https", "urn", "file", "mailto", "tag"):
+        if prefix in SCHEMES:
             raise BindingError(f"{words} looks like an IRI; write it in angle brackets: '<{words}>'")
         known = ", ".join(f"{name}:" for name in sorted(prefixes)) or "none"
         string = Literal(words).turtle(str)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from selfconf.model.curie import SCHEMES
 from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, UNIT, XSD
 
 USUAL = {"sc": SC, "rob": ROB, "rdf": RDF, "rdfs": RDFS, "owl": OWL, "sh": SH, "xsd": XSD, "unit": UNIT}
@@ -37,8 +38,6 @@ _ADVICE = (
     ("Unexpected end", "Perhaps the dot after the last statement is missing."),
 )
 """Regular expressions for what the parser says, each with what to try; the first that matches counts."""
-_WITHOUT_BRACKETS = frozenset(("http", "https", "urn", "file", "mailto"))
-"""What looks like a prefix where an IRI has no angle brackets."""
 
 
 def undeclared_prefix(message: str) -> str | None:
@@ -51,7 +50,7 @@ def advice(message: str) -> str | None:
     """What to try after a message of the parser, in a sentence, if that is known."""
     prefix = undeclared_prefix(message)
     if prefix is not None:
-        if prefix in _WITHOUT_BRACKETS:
+        if prefix in SCHEMES:
             return f"An IRI stands in angle brackets: <{prefix}:...>."
         stands_for = USUAL[prefix].base if prefix in USUAL else "..."
         return f"Write @prefix {prefix}: <{stands_for}> . at the head of the file."

@@ -16,6 +16,10 @@ from selfconf.rdf.sparql.dataset import Dataset
         ("SELECT ?c { ?c a wh:Arm }", "the prefix wh: is not declared; begin with PREFIX wh: <...>"),
         ("SELECT ?c { ?c a :Arm }", "the prefix : is not declared"),
         ("PREFIX a: <urn:a> SELECT ?c { ?c a:b 'x:y', <b:c> ; ^wh:is _:b } # d:e", "the prefix wh: is not declared"),
+        ("SELECT ?c { ?c rob:place http://e.org/kitchen }", "an IRI stands in angle brackets: <http:...>"),
+        ("SELECT ?c FROM urn:x:kitchen { ?c a ?t }", "an IRI stands in angle brackets: <urn:...>"),
+        ("PREFIX ex: https://e.org/ ASK { ?c a ex:Arm }", "an IRI stands in angle brackets: <https:...>"),
+        ("PREFIX urn: <urn:x> ASK { ?c a urn:y, }", "it ends too soon"),
         ('ASK { ?x <urn:a> "a"^^wh:b }', "the prefix wh: is not declared"),
         (
             "INSERT DATA { <a:a> <a:b> <a:c> }",
