@@ -209,7 +209,7 @@ class RosWorld:
         code = node.code = NodeComponent(self._domain, node.token, ports)
 
         def look() -> None:
-            if node.code is not code or self._by_name.get(iri) != node.token.identity:
+            if node.code is not code:
                 return  # it was advertised anew, or has gone
             if self._bridge.lives(iri):
                 self._bus.later(LOOK_WHETHER_IT_LIVES, look)
@@ -239,9 +239,9 @@ class RosWorld:
         if self._by_name.get(iri) != node.token.identity:
             return
         del self._by_name[iri]
-        if node.code is not None and node.code.active:
-            node.code.fail(reason)
-        code = node.code
+        code, node.code = node.code, None
+        if code is not None and code.active:
+            code.fail(reason)
         self._bus.later(RELEASING, lambda: self._withdraw(iri, code))
         for other in self._nodes.values():
             if node_iri(other.token) == iri:

@@ -6,16 +6,23 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
 
 from selfconf.bridging.bridge import Bridge
-from selfconf.bridging.ros2.ros_world import RosWorld
+from selfconf.bridging.ros2.domain import RosDomain
+from selfconf.bridging.ros2.ros_world import LOOK_WHETHER_IT_LIVES, TOKENS_COMPLETE, RosWorld
+from selfconf.bridging.ros2.tokens import RosNodeId, RosToken
+from selfconf.bus.memory import Network
 from selfconf.bus.zenoh import client
 from selfconf.errors import NetworkError
+from selfconf.importing import ImportedDocument
+from selfconf.model.term import IRI
 from selfconf.protocol.messages import Release
+from selfconf.sdk import Component
 from tests.bridging.ros2.nodes import DOMAIN, STRING_KEY, StandIn, bridging_domain, node
 from tests.sdk.living import LivingStage, until
 
@@ -126,6 +133,50 @@ def test_a_node_that_another_bridge_stands_for_lives_here_when_that_has_gone(
         assert until(lambda: second.lives("talker"))
         second.activate("talker")
         assert second.causes() == []
+
+
+class BegunLives:
+    """A bridge that notes the lives which it is to begin; the first begins at once, any other takes its time."""
+
+    def __init__(self) -> None:
+        self.asked: list[Component] = []
+        self._alive = False
+
+    def complain(self, sentence: str) -> None:
+        pass
+
+    def advertise(self, component: IRI, document: ImportedDocument) -> None:
+        self._alive = False
+
+    def withdraw(self, component: IRI) -> None:
+        self._alive = False
+
+    def end_life(self, component: IRI, code: Component) -> None:
+        pass
+
+    def lives(self, component: IRI) -> bool:
+        return self._alive
+
+    def begin_life(self, component: IRI, code: Component) -> Future[str | None]:
+        outcome: Future[str | None] = Future()
+        self.asked.append(code)
+        if len(self.asked) == 1:
+            self._alive = True
+            outcome.set_result(None)
+        return outcome
+
+
+def test_a_node_that_is_made_anew_in_its_process_lives_as_the_new_one_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    network, bridge = Network(1), BegunLives()
+    world, bus = RosWorld(lambda: pytest.fail("it is linked"), DOMAIN), network.node()
+    for name, part in (("_bus", bus), ("_bridge", bridge), ("_domain", RosDomain(bus, DOMAIN, bridge.complain))):
+        monkeypatch.setattr(world, name, part, raising=False)
+    token = RosToken(RosNodeId(DOMAIN, "a", 0), "", "talker").key()
+    for seconds, alive in ((0.0, True), (LOOK_WHETHER_IT_LIVES - 0.1, False), (0.0, True)):
+        network.run(lambda: False, seconds)
+        world._changed(token, alive)
+    network.run(lambda: False, TOKENS_COMPLETE + LOOK_WHETHER_IT_LIVES)
+    assert len(bridge.asked) == 2, "once each: the one before begins no life any more"
 
 
 def test_qualities_that_ros_does_not_connect_are_named(living: LivingStage, tmp_path: Path) -> None:
