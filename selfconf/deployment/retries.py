@@ -59,8 +59,8 @@ class Retries:
         """When that was done last, or was to be done."""
 
     def appeared(self) -> None:
-        """Try lost components again soon, as something has appeared in the ecology."""
-        self._pause = self._recovery_pause = TRY_AGAIN
+        """Let a task that waits try lost components again soon, as something has appeared in the ecology."""
+        self._pause = TRY_AGAIN
         if self._chance_at is not None:
             self._chance_at = min(self._chance_at, self._bus.now() + TRY_AGAIN)
 
@@ -115,10 +115,9 @@ class Retries:
         self._awaits_recovery = False
         if self._state().phase is not Phase.RUNNING:
             return
-        pause, able = min(2 * self._recovery_pause, LONGEST_PAUSE), self._failed()
-        if able:
+        if able := self._failed():
             self._step(Appeared(able))
-        self._recovery_pause, self._tried_at = pause, self._bus.now()
+        self._recovery_pause, self._tried_at = min(2 * self._recovery_pause, LONGEST_PAUSE), self._bus.now()
         self.await_recovery()
 
     def _failed(self) -> dict[IRI, str]:

@@ -114,7 +114,11 @@ def test_a_task_that_changes_for_the_better_returns_to_what_has_failed_once_it_c
     assert drive.said.count(("started",)) == starts, "what the failed one feeds has run on"
 
 
-def test_what_fails_again_and_again_is_tried_at_intervals_that_double_and_stops_nothing(lab: Lab) -> None:
+@pytest.mark.parametrize("stranger", [False, True])
+def test_what_fails_again_and_again_is_tried_at_intervals_that_double_and_stops_nothing(
+    lab: Lab, stranger: bool
+) -> None:
+    """Also where a stranger comes and goes: what appears says nothing of whether what has failed can go on."""
     agent = lab.agent(upgrade=0.5)
     assert lab.running(agent)
     drive, tracker = lab.components["drive"], lab.components["tracker"]
@@ -127,7 +131,11 @@ def test_what_fails_again_and_again_is_tried_at_intervals_that_double_and_stops_
     tracker.started = started  # type: ignore[method-assign]  # it fails whenever it begins
     starts = drive.said.count(("started",))
     tracker.fail("she is out of sight")
-    lab.let_pass(5 * LONGEST_PAUSE)
+    for number in range(15):
+        leave = lab.network.node().announce(lab.keys.life(iri("stranger"), str(number))) if stranger else None
+        lab.let_pass(LONGEST_PAUSE / 3)
+        if leave is not None:
+            leave()
     pauses = [after - before for before, after in itertools.pairwise(tried)]
     doubling = [TRY_AGAIN * 2**number for number in range(1, 4)]
     expected = [*doubling, *[LONGEST_PAUSE] * (len(pauses) - len(doubling))]
