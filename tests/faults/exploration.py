@@ -13,21 +13,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from tests.faults.reservation_model import (
+from tests.faults.reservation_model import GIVE_UP, SEARCH, World
+from tests.faults.reservation_state import (
     DEAD,
     ENDED,
-    GIVE_UP,
     QUEUED,
     RESERVING,
     RUNNING,
-    SEARCH,
     WAITING,
     WAKING,
     Claim,
     Configurator,
     Scheme,
     State,
-    World,
     bits,
 )
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.faults.exploration import Bounds, Findings, explore
-from tests.faults.reservation_model import Claim, Mask, Scheme
+from tests.faults.reservation_state import Claim, Mask, Scheme
 from tests.harness.effort import examples
 
 STATES = 20_000 * examples(100) // 100
