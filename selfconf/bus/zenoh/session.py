@@ -199,11 +199,13 @@ def check_free(endpoint: str) -> None:
 
 
 def _has_shared_memory() -> bool:
+    """Whether this process can share memory: else Zenoh would open no session at all, or lose signals."""
     try:
         there = os.statvfs(SHARED_MEMORY)
     except OSError:
         return False
-    return there.f_bavail * there.f_frsize >= ENOUGH_SHARED and _locks_any_memory()
+    has_room = there.f_bavail * there.f_frsize >= ENOUGH_SHARED and os.access(SHARED_MEMORY, os.W_OK | os.X_OK)
+    return has_room and _locks_any_memory()
 
 
 def _locks_any_memory() -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import resource
 import socket
 import threading
@@ -97,6 +98,15 @@ def may_lock_memory() -> None:
     """A process that Zenoh's shared memory is for."""
     if not session_setup._locks_any_memory():
         pytest.skip("this user may lock too little memory for shared memory; `ulimit -l unlimited`")
+
+
+def test_memory_that_this_program_may_not_make_files_in_is_not_shared(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a container of which all is read-only, where Zenoh would open no session."""
+    monkeypatch.setattr(session_setup, "ENOUGH_SHARED", 0)
+    monkeypatch.setattr(session_setup, "_locks_any_memory", lambda: True)
+    assert session_setup._has_shared_memory()
+    monkeypatch.setattr(os, "access", lambda path, mode: path != session_setup.SHARED_MEMORY)
+    assert not session_setup._has_shared_memory()
 
 
 @pytest.mark.slow
