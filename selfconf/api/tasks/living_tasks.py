@@ -20,7 +20,7 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import Status, TaskRecord
 from selfconf.render import disobedience
-from selfconf.this_machine import ClaimedName, LocalTask, claim, suspended_tasks
+from selfconf.this_machine import ClaimedName, LocalTask, claim, local_sites, suspended_tasks
 
 UNNUMBERED = 56
 """How many characters of a task's name stand before a number; with that they are 64 at most."""
@@ -39,6 +39,8 @@ class LivingTasks:
         self.complaints: tuple[str, ...] = ()
         """What was wrong with the answers of configurators, as of the last question, and which sites have one name."""
         self._holding: list[SilentHolder] = []
+        self._sites: frozenset[str] = frozenset()
+        """The names of the sites that lived as of the last question."""
         self._released = ReleasedComponents(bus, keys)
 
     def running(self, by_components: bool = False) -> tuple[Status, ...]:
@@ -61,7 +63,9 @@ class LivingTasks:
         suspended = suspended_tasks(self._keys.ecology, self._endpoints)
         self.suspended = tuple(one for one in suspended if one.name not in named)
         rejected += (one.suspension() for one in self.suspended)
-        self.complaints = (*rejected, *namesakes(self._bus.living(self._keys.any_site_life())))
+        sites = self._bus.living(self._keys.any_site_life())
+        self._sites = frozenset(map(owner_of, sites))
+        self.complaints = (*rejected, *namesakes(sites))
         return tuple(sorted(found, key=lambda status: status.configurator))
 
     def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:
@@ -163,10 +167,9 @@ class LivingTasks:
         silent = self._silent_beside_holders(None if unanswered else name)
         if name is not None and not kept:
             _check_there(name, silent, [*running, *holding, *suspended])
-        self._take_down(running, kept)
         _raise_for(
             [
-                *self._disobedience(running),
+                *self._take_down(running, kept),
                 *self._unheard(silent, holding, kept),
                 *(one.suspension() for one in suspended),
             ]
@@ -203,13 +206,21 @@ class LivingTasks:
             elif one.task not in ended:
                 yield f"{one}; they have come to rest, and if it was suspended, it takes them again when it goes on"
 
-    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> None:
-        """End tasks that run, and those that the sites keep, and wait until what they held is at rest."""
+    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> list[str]:
+        """End tasks that run, and those that the sites keep; returns what is to be said once what they held rests."""
+        here = {site.site for site in local_sites(self._keys.ecology)}
         for record in kept:
             self._end_record(record)
         for status in running:
             self._bus.ask(self._keys.configurator_call(status.configurator, "stop"))
-        self._await_end({status.configurator for status in running})
+        try:
+            self._await_end({status.configurator for status in running})
+            return self._disobedience(running)
+        except NetworkError:
+            # the site of a `run` with advertisements of its own ends with it, and all that the site has started
+            if self._sites and self._sites <= here and not local_sites(self._keys.ecology):
+                return []
+            raise
 
     def _disobedience(self, ended: Sequence[Status]) -> list[str]:
         """What is to be said of components that do not obey in time though their task has ended: they may act on."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import ExitStack
 from dataclasses import replace
 
@@ -17,6 +18,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
 from selfconf.protocol.messages import CallAnswer, Status, TaskRecord, Verdict
+from selfconf.this_machine import LocalSite, announce
 from tests.suspended_run import suspended_run
 
 KEYS = Keys("lab")
@@ -473,3 +475,26 @@ def test_a_name_is_claimed_as_soon_as_each_has_had_the_time_of_one_question(task
     with tasks.asked.claim("watch", numbered=True) as claimed:
         assert claimed.name == "watch-2"
     assert tasks.network.time - began < 1.5 * ROLL_CALL
+
+
+@pytest.mark.parametrize("elsewhere", [False, True])
+def test_the_site_of_a_run_ends_with_it_and_so_does_the_ecology_unless_it_has_sites_elsewhere(
+    tasks: Tasks, monkeypatch: pytest.MonkeyPatch, elsewhere: bool
+) -> None:
+    file = announce(LocalSite("lab", "s1", HERE, os.getpid()))
+    for site in ("s1", "s2") if elsewhere else ("s1",):
+        tasks.network.node().announce(KEYS.site_life(site, "1"))
+    configurator = tasks.configurator("c1", PATROL.task)
+
+    def link(_: MemoryBus) -> str:
+        if configurator.open:
+            return "hub"
+        file.unlink(missing_ok=True)
+        return ""
+
+    monkeypatch.setattr(MemoryBus, "link", property(link))
+    if elsewhere:
+        with pytest.raises(NetworkError, match="cut off from the ecology"):
+            tasks.asked.stop()
+    else:
+        assert tasks.asked.stop() == ("patrol",)
