@@ -79,8 +79,11 @@ class Retries:
         self._unsettled |= dict.fromkeys(appeared, now + self._upgrade)
         if self._improve_by is None:
             self._improve_by = now + MOST_UNREST * self._upgrade
+        self._look_for_better_in(min(self._upgrade, self._improve_by - now))
+
+    def _look_for_better_in(self, seconds: float) -> None:
         self._improve()
-        self._improve = self._bus.later(max(0.0, min(self._upgrade, self._improve_by - now)), self._look_for_better)
+        self._improve = self._bus.later(max(0.0, seconds), self._look_for_better)
 
     def _look_for_better(self) -> None:
         """Look at what has been there for long enough, and at the rest once it has."""
@@ -88,7 +91,9 @@ class Retries:
         self._unsettled = {component: until for component, until in self._unsettled.items() if until > now}
         self._step(Improvable(frozenset(self._unsettled)))
         if self._unsettled:
-            self.settle()
+            assert self._upgrade is not None
+            self._improve_by = min(self._unsettled.values()) + (MOST_UNREST - 1) * self._upgrade
+            self._look_for_better_in(max(self._unsettled.values()) - now)
 
     def look_whether_free(self) -> None:
         """Look again, after a while, for what would be rather had: only tasks that wait hear that it is free."""

@@ -195,6 +195,20 @@ def test_what_comes_and_goes_all_the_time_does_not_keep_a_task_from_changing_for
     assert lab.until(lambda: lab.active() == TASK | {"tracker"}, 3.0)
 
 
+def test_a_look_at_what_others_have_let_go_of_does_not_put_off_the_one_at_what_has_appeared(lab: Lab) -> None:
+    lab.crash("tracker")
+    agent = lab.agent(upgrade=3.0)
+    assert lab.running(agent)
+    lab.let_pass(4.0)
+    agent._retries.look_whether_free()
+    lab.let_pass(LET_GO_OF - 2.0)
+    lab.component("tracker")
+    lab.let_pass(2.5)
+    assert lab.active() == TASK | {"odometry"}
+    lab.let_pass(0.7)
+    assert "tracker" in lab.active()
+
+
 def test_what_would_be_rather_had_is_not_changed_to_while_it_comes_and_goes(lab: Lab) -> None:
     lab.crash("tracker")
     agent = lab.agent(upgrade=5.0)
