@@ -149,7 +149,7 @@ class InsideOfComposite:
             request = self._request_with(self._values, lambda: self._wires.keys())
         except SelfconfError as error:
             self.runtime.fail(str(error))
-            self._settle(False)
+            self._settle(runs=False)
             self._rested()
             return
         claim = message if self.runtime.activation.first is None else self.runtime.activation.first.claim
@@ -214,7 +214,7 @@ class InsideOfComposite:
         before, self.issued = self.issued, self.runner.issued_outside()
         called_by, self.callers = self.callers, self.runner.calling_outside()
         if not self.settled:
-            self._settle(True)
+            self._settle(runs=True)
         elif (self.issued, self.callers) != (before, called_by):
             self._tell_moved()
 
@@ -256,11 +256,11 @@ class InsideOfComposite:
             self._begin(again)
             return
         if ending:
-            self._settle(False)
+            self._settle(runs=False)
             self.runtime.at_rest()
         else:
             self.runtime.fail(f"its inside is refused: {why_none(refusal) if trouble is None else trouble}")
-            self._settle(False)
+            self._settle(runs=False)
         self._rested()
 
     def _settle(self, runs: bool) -> None:

@@ -175,7 +175,8 @@ def _kind(datatype: IRI) -> _JsonKind:
         low, high = -math.inf if least is None else least, math.inf if greatest is None else greatest
         return _JsonKind(frozenset((int,)), bounded, low, high, _is_whole)
     if datatype in DATATYPES:
-        return _JsonKind(frozenset((int, float)), True, -sys.float_info.max, sys.float_info.max, _is_number, True)
+        most = sys.float_info.max
+        return _JsonKind(frozenset((int, float)), True, -most, most, _is_number, finite=True)
     unbounded = (False, -math.inf, math.inf)
     if datatype == XSD_NAMESPACE + "boolean":
         return _JsonKind(frozenset((bool,)), *unbounded, lambda value: isinstance(value, bool))

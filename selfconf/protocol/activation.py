@@ -231,7 +231,7 @@ def _activate(activation: Activation, call: Apply, gone: frozenset[str], shareab
     return replace(
         activation,
         phase=ActivationPhase.ACTIVE,
-        holds=(*(hold.fulfilled_by(call) for hold in kept), Hold(call, True)),
+        holds=(*(hold.fulfilled_by(call) for hold in kept), Hold(call, active=True)),
         ended=(*_ended(activation, call), *left.items())[-MOST_ENDED:],
     )
 
@@ -250,7 +250,9 @@ def _reserve(activation: Activation, own: Hold | None, call: Reserve) -> Activat
         left = (
             own.claim.inputs if others or call.epoch == own.claim.epoch else _in_common(own.claim.inputs, call.inputs)
         )
-        held = Hold(replace(own.claim, epoch=call.epoch, supervisor=call.supervisor, inputs=left), True, wish)
+        held = Hold(
+            replace(own.claim, epoch=call.epoch, supervisor=call.supervisor, inputs=left), active=True, wish=wish
+        )
     return replace(activation, holds=(*others, held), ended=_ended(activation, call))
 
 

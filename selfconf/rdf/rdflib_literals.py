@@ -33,14 +33,14 @@ logging.getLogger("rdflib.term").addFilter(_worth_logging)
 def literal(text: str, datatype: URIRef | None, language: str | None = None) -> Literal:
     """A literal of a datatype or in a language."""
     if datatype in _MARKUP:
-        return _literal(text, datatype, text, datatype == RDF.XMLLiteral and not _is_xml(text))
+        return _literal(text, datatype, text, ill_typed=datatype == RDF.XMLLiteral and not _is_xml(text))
     if datatype == XSD.boolean and text not in TRUTH:
-        return _literal(text, datatype, False, True)
+        return _literal(text, datatype, False, ill_typed=True)
     found = Literal(text, lang=language, datatype=datatype, normalize=False)
     if isinstance(found.value, Decimal) and not found.value.is_finite():
-        return _literal(text, datatype, None, True)
+        return _literal(text, datatype, None, ill_typed=True)
     if datatype in _IN_64_BITS and number_of(text, str(datatype)) is None:
-        return _literal(text, datatype, found.value, True)
+        return _literal(text, datatype, found.value, ill_typed=True)
     return found
 
 

@@ -111,7 +111,7 @@ class FeasibilityOracle:
     def irreducible(self, together: Sequence[Constraint]) -> tuple[Constraint, ...]:
         """Return some of the constraints that cannot hold together, but could without any one of them: QuickXplain."""
         order = sorted(together, key=_preference)
-        return tuple(sorted(self._quickxplain((), order, False), key=order.index)) if order else ()
+        return tuple(sorted(self._quickxplain((), order, changed=False), key=order.index)) if order else ()
 
     def _quickxplain(
         self, background: tuple[Constraint, ...], rest: Sequence[Constraint], changed: bool
@@ -122,8 +122,8 @@ class FeasibilityOracle:
             return tuple(rest)
         half = len(rest) // 2
         first, second = tuple(rest[:half]), tuple(rest[half:])
-        of_second = self._quickxplain((*background, *first), second, True)
-        of_first = self._quickxplain((*background, *of_second), first, bool(of_second))
+        of_second = self._quickxplain((*background, *first), second, changed=True)
+        of_first = self._quickxplain((*background, *of_second), first, changed=bool(of_second))
         return (*of_first, *of_second)
 
     def _infeasible(self, together: tuple[Constraint, ...]) -> bool:

@@ -202,7 +202,7 @@ def _write(
     form = forms.find(affordance, "writeproperty")
     if form is None:
         return None
-    return ThingInput(port.name, form, False, _plain_field(affordance, port.types, fields))
+    return ThingInput(port.name, form, action=False, field=_plain_field(affordance, port.types, fields))
 
 
 def _action(
@@ -227,7 +227,7 @@ def _commands(
     for operation, action in operations.items():
         name = f"call {operation.name}" if operation.name in taken else operation.name
         port = ImportedPort(name, () if operation.request is None else (operation.request,), optional=True)
-        found[port] = ThingInput(name, action.form, True, action.request_field, action.empty)
+        found[port] = ThingInput(name, action.form, action=True, field=action.request_field, empty=action.empty)
     return found
 
 

@@ -158,12 +158,12 @@ class MemoryBus:
     def announce(self, key: str) -> Callable[[], None]:
         """Be alive under a key."""
         undo = self._declare(self._tokens, key)
-        self._publish_life(key, True)
+        self._publish_life(key, alive=True)
 
         def undone() -> None:
             if key in self._tokens.values():
                 undo()
-                self._publish_life(key, False)
+                self._publish_life(key, alive=False)
 
         return undone
 
@@ -177,7 +177,7 @@ class MemoryBus:
             if self.network.reaches(node, self):
                 for token in list(node._tokens.values()):
                     if intersects(key, token):
-                        self.network.deliver(node, self, _life_notice(self, number, changed, token, True))
+                        self.network.deliver(node, self, _life_notice(self, number, changed, token, alive=True))
         return undo
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:
@@ -208,7 +208,7 @@ class MemoryBus:
     def close(self) -> None:
         """Leave the network, as a crash or a clean exit does: others see the lives end."""
         for key in list(self._tokens.values()):
-            self._publish_life(key, False)
+            self._publish_life(key, alive=False)
         self.open = False
         self.network.shape += 1
         self._tokens.clear()
@@ -217,11 +217,11 @@ class MemoryBus:
 
     def see(self, other: MemoryBus) -> None:
         """Notice the lives of another node."""
-        self._notice_lives(other, True)
+        self._notice_lives(other, alive=True)
 
     def unsee(self, other: MemoryBus) -> None:
         """Notice the end of the lives of another node."""
-        self._notice_lives(other, False)
+        self._notice_lives(other, alive=False)
 
     def _notice_lives(self, other: MemoryBus, alive: bool) -> None:
         for token in other._tokens.values():

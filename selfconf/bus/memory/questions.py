@@ -32,8 +32,8 @@ class MemoryQuestion:
     def sent(self, seconds: float) -> None:
         """Wait for the replies of the nodes that were asked, for so many seconds."""
         if self._open == 0:
-            self.bus.network.deliver(self.bus, self.bus, lambda: self._end(True))
-        self._undo = self.bus.later(seconds, lambda: self._end(False))
+            self.bus.network.deliver(self.bus, self.bus, lambda: self._end(complete=True))
+        self._undo = self.bus.later(seconds, lambda: self._end(complete=False))
 
     def replied(self, sample: Sample | None, error: str | None) -> None:
         """Keep a reply, or the reason why there is none, as long as all of them are not too large."""
@@ -49,7 +49,7 @@ class MemoryQuestion:
         """Note that a node has ended its answer."""
         self._open -= 1
         if self._open == 0:
-            self._end(True)
+            self._end(complete=True)
 
     def _end(self, complete: bool) -> None:
         if not self._over:

@@ -85,4 +85,4 @@ class LivingSites:
 
     def _end_unseen(self) -> None:
         for site in sorted(self._unseen):
-            self.changed(site, False)
+            self.changed(site, alive=False)

@@ -163,7 +163,7 @@ class StatedOnPath:
         allowed, required = self.allowed, self.required
         for test in self.tests:
             for parameter in test.free_required:
-                yield Mention(parameter, allowed, self._never(known.get(parameter, ())), True)
+                yield Mention(parameter, allowed, self._never(known.get(parameter, ())), required=True)
             for parameter, members in test.free_in:
                 beside = frozenset(filter(self.passes, members if allowed is None else members & allowed))
                 # What has to be there is among the other members, or it is the value of the parameter.
@@ -171,7 +171,7 @@ class StatedOnPath:
                 must = not required <= members or len(beside) < self.minimum
                 if len(beside) + 1 < self.minimum:
                     only = _NONE
-                yield Mention(parameter, only, self._never(known.get(parameter, ())), must)
+                yield Mention(parameter, only, self._never(known.get(parameter, ())), required=must)
 
     def _never(self, known: Iterable[Term]) -> frozenset[Term]:
         return frozenset(value for value in known if not self.passes(value))

@@ -71,9 +71,9 @@ class QualifiedCount:
         """What is wrong with the number of those that conform among some values."""
         found = sum(not any(self.value.faults(frozenset((value,)))) for value in values)
         if found < self.minimum:
-            return WrongShareOfValues(found, self.minimum, False)
+            return WrongShareOfValues(found, self.minimum, too_many=False)
         if self.maximum is not None and found > self.maximum:
-            return WrongShareOfValues(found, self.maximum, True)
+            return WrongShareOfValues(found, self.maximum, too_many=True)
         return None
 
 

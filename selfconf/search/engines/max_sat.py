@@ -59,14 +59,14 @@ class _Cores:
                 active = [literal for literal, weight in self.weights.items() if weight >= heavy]
                 answer = self.clauses.solve([-literal for literal in active], self.budget)
                 if isinstance(answer, Undecided):
-                    return Minimum(self.bound, False, self.lightest[1] if self.lightest else None)
+                    return Minimum(self.bound, proved=False, lightest=self.lightest[1] if self.lightest else None)
                 if answer:
                     self._meet()
                     break
                 self._process(self._trimmed())
         for literal in self.weights:
             self.clauses.add([-literal])
-        return Minimum(self.bound, True, self.clauses.chosen())
+        return Minimum(self.bound, proved=True, lightest=self.clauses.chosen())
 
     def _meet(self) -> None:
         """Remember the last model if none before it is lighter: a lower stratum may have heavier models than this."""

@@ -118,7 +118,7 @@ class _BoundedSearch(ReducedSearch):
     """Leaves out options with which a solution would cost more than a limit."""
 
     def __init__(self, part: ReducedProblem, costs: CostTable, limit: int) -> None:
-        super().__init__(part, True)
+        super().__init__(part)
         self.of, self.limit = costs.of, limit
         self.spent = [0]
         """What the options chosen so far cost, by slot."""
