@@ -271,7 +271,7 @@ CODES: tuple[Code, ...] = (
         '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
         (
             "CompositeTemplateHere", "CompositePorts", "CompositePortTypes", "CompositePortUnits",
-            "CompositeParameters",
+            "CompositeParameters", "CompositeParametersFree", "CompositeParametersBound",
         ),
     ),
     Code(
