@@ -57,9 +57,16 @@ def checked_path(path: str | Path) -> Path:
 
 
 def checked_text(text: str, what: str) -> str:
-    """A text by which something is named. Raises ProgrammerError, in which `what` says what it is."""
+    """A text by which something is named. Raises ProgrammerError, in which `what` says what it is.
+
+    Raises AuthorError for one that cannot be written in UTF-8, as of bytes that were read in another encoding.
+    """
     if not isinstance(text, str):
         raise ProgrammerError(f"{what} is text, not {text!r}")
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise AuthorError(f"{what} is no text in UTF-8: {text!r}") from None
     return text
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol, TypeGuard, runtime_checkable
 
 from selfconf import files
 from selfconf.api.arguments import checked_path
-from selfconf.errors import AuthorError, ProgrammerError
+from selfconf.errors import AuthorError, ProgrammerError, TurtleError
 
 NO_FILE, PIPED, GRAPH = "<text>", "<stdin>", "<graph>"
 """The names of documents that are no files."""
@@ -70,10 +70,21 @@ def text_of(source: object) -> DocumentText:
     if _is_path(source):
         return file_text(_path(source))
     if isinstance(source, str):
-        return DocumentText(source.encode(), NO_FILE, None)
+        return DocumentText(_encoded(source), NO_FILE, None)
     if not is_graph(source):
         raise ProgrammerError(f"a source is a path, Turtle text, an rdflib graph or an endpoint, not {source!r}")
     return DocumentText(_serialized(source).encode(), GRAPH, None)
+
+
+def _encoded(text: str) -> bytes:
+    """A text in UTF-8. Raises TurtleError where it has half of a character, as of bytes in another encoding."""
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        before = text[: error.start]
+        line, column = before.count("\n") + 1, error.start - before.rfind("\n")
+        wrong = f"not Turtle: {text[error.start]!r} is no character; in which encoding was it read?"
+        raise TurtleError(wrong, file=NO_FILE, line=line, column=column) from None
 
 
 def _serialized(graph: _Graph) -> str:

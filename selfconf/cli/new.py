@@ -16,7 +16,9 @@ EXAMPLE = """  selfconf new component kitchen-thermometer
   selfconf configure watch-the-temperature.ttl --ads ."""
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:[-_][A-Za-z0-9]+)*")
-_NAMESPACE = re.compile(r"[a-z][a-z0-9+.-]*:(?:[^\x00-\x20<>\"{}|^`\\%]|%[0-9a-f]{2})*[#/:]", re.IGNORECASE)
+_NAMESPACE = re.compile(
+    r"[a-z][a-z0-9+.-]*:(?:[^\x00-\x20<>\"{}|^`\\%\ud800-\udfff]|%[0-9a-f]{2})*[#/:]", re.IGNORECASE
+)
 _MODULES = sys.stdlib_module_names | {"selfconf", "zenoh"}
 """Modules that a component needs, or may: beside a file of that name none would be found."""
 _HOME = "https://example.org/my-home#"

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 XSD_NAMESPACE = "http://www.w3.org/2001/XMLSchema#"
 
 
-_NOT_IN_AN_IRI = re.compile(r'[\x00-\x20<>"{}|^`\\]')
-"""The characters that Turtle and SPARQL allow in no IRI (their production IRIREF)."""
+_NOT_IN_AN_IRI = re.compile(r'[\x00-\x20<>"{}|^`\\\ud800-\udfff]')
+"""The characters that Turtle and SPARQL allow in no IRI (their production IRIREF), and surrogates, which are none."""
 
 
 class IRI(str):
@@ -38,7 +38,8 @@ class IRI(str):
             raise TypeError(f"an IRI is made of text, not of {type(text).__name__}")
         wrong = _NOT_IN_AN_IRI.search(text)
         if wrong is not None:
-            raise ValueError(f"{text!r} is no IRI: it has {wrong[0]!r}, which is written as %{ord(wrong[0]):02X}")
+            instead = f"written as %{ord(wrong[0]):02X}" if wrong[0].isascii() else "no character"
+            raise ValueError(f"{text!r} is no IRI: it has {wrong[0]!r}, which is {instead}")
         if not text:
             raise ValueError("'' is no IRI: a text that is not empty is needed, as 'https://example.org/my-home#clock'")
         return cls.unchecked(text)

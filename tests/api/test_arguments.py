@@ -83,6 +83,8 @@ def test_texts_and_flags_are_what_they_are_called() -> None:
     for text in (None, 3, b"a"):
         with pytest.raises(ProgrammerError, match=r"^a name is text, not "):
             checked_text(text, "a name")  # type: ignore[arg-type]  # that is what is tested
+    with pytest.raises(AuthorError, match=r"^a name is no text in UTF-8: '\\udcff'$"):
+        checked_text("\udcff", "a name")
     for flag in ("no", 1, None):
         with pytest.raises(ProgrammerError, match=r"^wait is True or False, not "):
             checked_flag(flag, "wait")  # type: ignore[arg-type]  # that is what is tested

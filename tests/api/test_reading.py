@@ -42,6 +42,12 @@ def test_paths_as_text_or_as_path_alone_or_several_or_in_a_list_are_read() -> No
         assert names(sc.read(*sources)) == ["clock", "display"]
 
 
+def test_half_of_a_character_in_a_text_is_a_mistake_with_its_place() -> None:
+    """As of a file in another encoding that was read with `errors="surrogateescape"`."""
+    with pytest.raises(TurtleError, match=r"^<text>:2:8: not Turtle: '\\udcff' is no character"):
+        read("@prefix : <x:> .\n:a :b '\udcff' .")
+
+
 @pytest.mark.parametrize(
     "text",
     [

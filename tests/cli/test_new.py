@@ -46,7 +46,7 @@ def test_a_component_whose_file_would_hide_a_module_or_be_no_python_is_refused(
 
 
 @pytest.mark.parametrize(
-    "namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#", "https://a/%zz#"]
+    "namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#", "https://a/%zz#", "urn:\udcff:"]
 )
 def test_a_namespace_that_is_no_iri_is_refused(
     namespace: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -35,6 +35,7 @@ def test_the_short_name_of_an_iri_is_its_last_segment(iri: str, short: str) -> N
     [
         ("", "'' is no IRI: a text that is not empty is needed"),
         ("urn:my home", "'urn:my home' is no IRI: it has ' ', which is written as %20"),
+        ("urn:\udcff", "is no IRI: it has '\\udcff', which is no character"),
         *((f"urn:a{wrong}b", "is no IRI: it has ") for wrong in '<>"{}|^`\\\n\x00'),
     ],
 )
