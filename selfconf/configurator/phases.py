@@ -98,6 +98,7 @@ def dismantle(state: State, afterwards: Phase) -> Reaction:
         fallback=None,
         owed=owed,
         watched=frozenset(),
+        awaited_since=0,
     )
     return then([Unwatch(component) for component in sorted(state.watched)], released(dismantling))
 
