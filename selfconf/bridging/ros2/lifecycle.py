@@ -139,7 +139,7 @@ class NodeLifecycle:
         failed: Callable[[str], None],
         late: Callable[[], None] = lambda: None,
     ) -> None:
-        """Ask for a transition; `late` is called where this turn has ended before it is known to have failed."""
+        """Ask for a transition; `late` is called where it may be made yet, or is made when this turn has ended."""
         number, label = transition
 
         def heard(answer: Mapping[str, Any]) -> None:
@@ -162,7 +162,7 @@ class NodeLifecycle:
         failed: Callable[[str], None],
         late: Callable[[Mapping[str, Any] | None], None] = lambda _: None,
     ) -> None:
-        """Ask one of the services; what is answered after this turn is for `late`, None if that cannot be read."""
+        """Ask one of the services; `late` receives what is answered after this turn, and None where nothing is."""
         # By the name alone: these definitions are older than hashes, and some implementations hash them in their way.
         kind = ros2.usual_type(endpoint.type.name)
         parts = None if kind is None else ros2.service_parts(kind)
@@ -181,6 +181,7 @@ class NodeLifecycle:
             if turn != self._turn:
                 late(answer)
             elif answer is None:
+                late(None)
                 failed(problem)
             else:
                 heard(answer)

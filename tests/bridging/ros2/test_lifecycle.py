@@ -126,6 +126,23 @@ def test_a_node_that_is_released_while_it_is_activated_is_put_back(
         assert found.causes() == []
 
 
+def test_a_node_whose_activation_takes_too_long_is_put_back_when_its_task_ends(
+    living: LivingStage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lifecycle, "TRANSITION_SECONDS", 3.0)
+    with bridging_domain(living, tmp_path / "ads") as found:
+        managed = Slow(found.node("map"), 2)
+        managed.let = threading.Event()
+        complete(found, managed)
+        found.activate("map")
+        late = "the service /map/change_state of a lifecycle node does not answer"
+        assert until(lambda: found.causes() == [late]), found.complaints
+        managed.let.set()
+        released = found.stage.call(node("map"), "release", Release(2, living.supervisor, "task~1"))
+        assert until(lambda: released)
+        assert until(lambda: managed.made == [3, 4]), managed.made
+
+
 def failed(found: BridgedDomain, managed: Managed) -> str:
     """The reason of the FAIL of a node after its activation."""
     found.called_for("map")
