@@ -1,4 +1,4 @@
-"""selfconf: components of a robot ecology that wire themselves.
+"""selfconf: components of a robot ecology that connect themselves.
 
     import selfconf as sc
 

@@ -81,7 +81,7 @@ def parser(names: Collection[str] = tuple(COMMANDS), settings: Settings | None =
     settings = settings or Settings()
     top = CommandLine(
         prog="selfconf",
-        description="Robots, sensors and home devices that wire themselves.",
+        description="Robots, sensors and home devices that connect themselves.",
         epilog="example:\n  selfconf configure examples/navigate.ttl --ads examples/peis-home"
         " --bind robot=:Astrid --bind goal='(AT BEDROOM)'",
         formatter_class=argparse.RawDescriptionHelpFormatter,
