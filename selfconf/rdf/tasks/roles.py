@@ -68,7 +68,7 @@ class _RoleReader(DocumentReader):
             if times > 1:
                 problem = f"the role {worded(role)} sets {worded(kind)} to {times} different values"
                 again = [node for setting, node in nodes.items() if setting.type == kind][1]
-                raise self.mistake(problem, role, SC.sets, again)
+                raise self.mistake(problem, again, SC.parameterType, kind)
         return tuple(nodes)
 
     def _recruits(self, role: IRI) -> bool:

@@ -44,6 +44,7 @@ _MADE_DISTINCT_BY: dict[Node, URIRef] = {
     _SHAPES.OperationNamesDistinct: _SC.name,
     _SHAPES.OperationalNamesDistinct: _SC.name,
     _SHAPES.ParameterNamesDistinct: _SC.name,
+    _SHAPES.SettingsAgree: _SC.parameterType,
     _SHAPES.BindingsDistinct: _SC.parameter,
     _SHAPES.ComponentPlaysOnce: _SC.component,
 }
