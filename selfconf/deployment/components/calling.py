@@ -56,6 +56,9 @@ class _ClaimFields(TypedDict):
     beginning: float
 
 
+CallMessage = Reserve | Apply | Release
+"""What goes with a call to a component, and says which call it is."""
+_CALL_OF: dict[type[CallMessage], Call] = {Reserve: Call.RESERVE, Apply: Call.APPLY, Release: Call.RELEASE}
 Unanswered = Callable[[Callable[[], None]], None]
 """What is done where a call has not been answered in time; it is given what there is to do otherwise."""
 
@@ -76,18 +79,17 @@ class Calling:
         self.identity, self.supervisor = identity, supervisor
         self.state, self.step, self._report = context.state, context.step, context.report
         self.lives, self._acts = lives, acts
-        self._latest: dict[IRI, Reserve | Apply | Release] = {}
+        self._latest: dict[IRI, CallMessage] = {}
         """The last call that was made to each component."""
 
     def ask(
         self,
         component: IRI,
-        call: Call,
-        message: Reserve | Apply | Release,
+        message: CallMessage,
         answered: Callable[[Replies], None] = lambda replies: None,
     ) -> None:
         """Make a call once, whatever becomes of it."""
-        self.bus.ask(self.keys.call(component, call.value), encode(message), CALL, answered)
+        self.bus.ask(self.keys.call(component, _CALL_OF[type(message)].value), encode(message), CALL, answered)
 
     def look(self, component: IRI, seen: Callable[[CallAnswer | None], None], attempts: int = CALL_ATTEMPTS) -> None:
         """Ask a component for its actual state; `seen` receives None if it does not answer."""
@@ -101,53 +103,47 @@ class Calling:
 
         self.bus.ask(self.keys.call(component, "state"), encode(StateOf(self.identity.task)), CALL, answered)
 
-    def call(
-        self,
-        component: IRI,
-        call: Call,
-        message: Reserve | Apply | Release,
-        unanswered: Unanswered | None = None,
-    ) -> None:
+    def call(self, component: IRI, message: CallMessage, unanswered: Unanswered | None = None) -> None:
         """Make a call; what has become of it is stepped, as `Answered`.
 
         `unanswered` is called where no answer has come in time, with what there is to do then otherwise: to ask for
         the component's state.
         """
         self._latest[component] = message
-        _PendingCall(self, component, call, message, unanswered).make()
+        _PendingCall(self, component, message, unanswered).make()
 
-    def stands(self, component: IRI, message: Reserve | Apply | Release) -> bool:
+    def stands(self, component: IRI, message: CallMessage) -> bool:
         """Whether a call holds in later epochs as well: it brings to rest what is held, and is the last one to that."""
         rests = isinstance(message, Apply) and message.rests
         return rests and self._latest.get(component) is message and component in self.state().held
 
-    def answered(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
+    def answered(self, component: IRI, message: CallMessage, answer: CallAnswer) -> None:
         """A component has answered a call, or its state shows that it has obeyed: report it, and step."""
-        self._tell(component, call, message, answer)
-        if answer.verdict is Verdict.DONE and call is Call.RELEASE:
+        self._tell(component, message, answer)
+        if answer.verdict is Verdict.DONE and isinstance(message, Release):
             self.lives.released(component)
-        if answer.verdict is Verdict.DONE and call is not Call.RELEASE:
+        if answer.verdict is Verdict.DONE and not isinstance(message, Release):
             self.lives.obeyed(component, answer.life, message.epoch != self.state().epoch)
-        if answer.verdict is Verdict.DONE and call is Call.APPLY:
+        if answer.verdict is Verdict.DONE and isinstance(message, Apply):
             self._acts(component, answer)
         holder = None
         if answer.verdict is Verdict.BUSY:
             holder = Holder(answer.task, answer.priority, answer.beginning, _configurator(answer), answer.active)
         acts = answer.verdict is Verdict.DONE and answer.active
-        newest, epoch, verdict = answer.epoch, message.epoch, answer.verdict
+        call, newest, epoch, verdict = _CALL_OF[type(message)], answer.epoch, message.epoch, answer.verdict
         said = answer.detail, holder, answer.shared, acts
         self.step(Answered(component, call, epoch, verdict, answer.life, newest, *said))
 
-    def _tell(self, component: IRI, call: Call, message: Reserve | Apply | Release, answer: CallAnswer) -> None:
+    def _tell(self, component: IRI, message: CallMessage, answer: CallAnswer) -> None:
         """Report what a component has done by its answer.
 
         One that is to rest has its parameters, and does not act. What one says that was given up meanwhile is over.
         """
         detail = answer.detail or answer.verdict.value
         if answer.verdict is not Verdict.DONE:
-            if call is Call.APPLY:
+            if isinstance(message, Apply):
                 self._report(CallDeclined(component, detail))
-        elif call is Call.RELEASE:
+        elif isinstance(message, Release):
             if self.lives.has_obeyed(component, answer.life):  # else this task has only waited for it
                 goes_on_for = task_name(answer.task) if answer.active else ""
                 self._report(ComponentReleased(component, detail, goes_on_for))
@@ -166,10 +162,11 @@ class Calling:
         if self.ecology.lives_on(component, answer.life):
             self.step(Appeared({component: answer.life}))
 
-    def unreachable(self, component: IRI, call: Call, epoch: int, detail: str) -> None:
+    def unreachable(self, component: IRI, message: CallMessage, detail: str) -> None:
         """It is not known what has become of a call, and nothing more is tried: report it, and step soon."""
+        call = _CALL_OF[type(message)]
         self._report(ComponentUnreachable(component, call.value, detail))
-        answer = Answered(component, call, epoch, None, detail=detail)
+        answer = Answered(component, call, message.epoch, None, detail=detail)
         self.bus.wake_up(lambda: self.step(answer))
 
     def claim(self, component: IRI, epoch: int) -> _ClaimFields:
@@ -194,15 +191,8 @@ class Calling:
 class _PendingCall:
     """One call to one component, made once or several times, until it is known what has become of it."""
 
-    def __init__(
-        self,
-        calling: Calling,
-        component: IRI,
-        call: Call,
-        message: Reserve | Apply | Release,
-        unanswered: Unanswered | None,
-    ) -> None:
-        self._calling, self._component, self._call, self._message = calling, component, call, message
+    def __init__(self, calling: Calling, component: IRI, message: CallMessage, unanswered: Unanswered | None) -> None:
+        self._calling, self._component, self._message = calling, component, message
         self._unanswered = unanswered
         self._left = CALL_ATTEMPTS
         """How often the call may be made, with the last time."""
@@ -212,21 +202,19 @@ class _PendingCall:
     def make(self) -> None:
         """Make the call, once more where it was made before."""
         self._last = self._calling.bus.now()
-        if self._call is not Call.RELEASE:
+        if not isinstance(self._message, Release):
             self._calling.lives.called(self._component)
-        self._calling.ask(self._component, self._call, self._message, self._answered)
+        self._calling.ask(self._component, self._message, self._answered)
 
     def _answered(self, replies: Replies) -> None:
         answer = self._said(replies)
         if answer is not None:
-            self._calling.answered(self._component, self._call, self._message, answer)
+            self._calling.answered(self._component, self._message, answer)
             if answer.verdict is Verdict.OTHER_LIFE and replies.complete:
                 self._calling.outlived(self._component, self._message.life, answer)
         elif replies.errors:
-            refused = Answered(
-                self._component, self._call, self._message.epoch, Verdict.REFUSED, detail=replies.errors[0]
-            )
-            self._calling.step(refused)
+            call, epoch = _CALL_OF[type(self._message)], self._message.epoch
+            self._calling.step(Answered(self._component, call, epoch, Verdict.REFUSED, detail=replies.errors[0]))
         elif self._unanswered is not None and not replies.complete:
             self._unanswered(self._inspect)
         else:
@@ -248,7 +236,7 @@ class _PendingCall:
     @property
     def _hasty(self) -> bool:
         """Whether nothing is waited for: a release is made again later as long as it is owed."""
-        return self._call is Call.RELEASE
+        return isinstance(self._message, Release)
 
     def _seen(self, replies: Replies) -> None:
         """Decide by the state of the component.
@@ -258,7 +246,7 @@ class _PendingCall:
         """
         answer = self._said(replies)
         if answer is not None and self._has_obeyed(answer):
-            self._calling.answered(self._component, self._call, self._message, answer)
+            self._calling.answered(self._component, self._message, answer)
             return
         current = self._message.epoch == self._calling.state().epoch
         if current or self._calling.stands(self._component, self._message):
@@ -278,7 +266,7 @@ class _PendingCall:
             detail = next(
                 (f"its answer cannot be read: {problem}" for problem in problems.values()), "it does not answer"
             )
-        self._calling.unreachable(self._component, self._call, self._message.epoch, detail)
+        self._calling.unreachable(self._component, self._message, detail)
 
     def _takes_longer(self, answer: CallAnswer | None, replies: Replies) -> bool:
         """Whether to ask once more in a moment: its inside is being started, or itself, for all that is known."""
@@ -300,11 +288,11 @@ class _PendingCall:
         if answer.epoch != message.epoch:
             return False
         mine = answer.task == message.task and answer.supervisor == message.supervisor
-        if self._call is Call.RELEASE:
+        if isinstance(message, Release):
             return not mine and not answer.stopping
-        if self._call is Call.APPLY and answer.patience:
+        if isinstance(message, Apply) and answer.patience:
             return False  # it acts, but follows what it followed before
-        return mine and answer.active == (self._call is Call.APPLY)
+        return mine and answer.active == isinstance(message, Apply)
 
     def _works_on(self, answer: CallAnswer) -> bool:
         """Whether a component that has not obeyed may do so yet: its code starts, or has not come to rest.

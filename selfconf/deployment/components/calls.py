@@ -99,7 +99,7 @@ class Calls:
             inputs=self._ends.wires(effect.inputs),
             values=dict(effect.values),
         )
-        self._calling.call(component, Call.RESERVE, message)
+        self._calling.call(component, message)
 
     def queue(self, effect: QueueFor) -> None:
         """Have a component remember that this task waits; nothing waits for its answer, but it may be in vain."""
@@ -109,14 +109,14 @@ class Calls:
         def answered(replies: Replies) -> None:
             answer = self._calling.answer_in(replies, message.life)
             if answer is not None:
-                self._calling.answered(component, Call.RESERVE, message, answer)
+                self._calling.answered(component, message, answer)
 
-        self._calling.ask(component, Call.RESERVE, message, answered)
+        self._calling.ask(component, message, answered)
 
     def decline(self, effect: Decline) -> None:
         """Let a component that is kept for this task go to the next that waits; nothing depends on the answer."""
         message = Release(**self._calling.claim(effect.component, effect.epoch))
-        self._calling.ask(effect.component, Call.RELEASE, message)
+        self._calling.ask(effect.component, message)
 
     def await_release(self, effect: AwaitRelease) -> None:
         """Ask again after a while for a component that another task holds."""
@@ -163,7 +163,7 @@ class Calls:
         values, gently, rests = dict(effect.values), effect.gently, effect.rests
         message = Apply(**claim, inputs=inputs, values=values, callers=calling, gently=gently, rests=rests)
         self._stood_by.pop(effect.component, None)
-        self._calling.call(effect.component, Call.APPLY, message)
+        self._calling.call(effect.component, message)
         connections = {Connection(w.component, w.output, effect.component, p) for p, ws in inputs.items() for w in ws}
         life = message.life
         known, before = self._connections.get(effect.component, (life, frozenset()))
@@ -215,7 +215,7 @@ class Calls:
             )
             if self._stood_by.get(component) != message:
                 self._stood_by[component] = message
-                self._calling.ask(component, Call.APPLY, message)
+                self._calling.ask(component, message)
 
     # Turning off.
 

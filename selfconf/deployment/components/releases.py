@@ -56,7 +56,7 @@ class Releases:
                 self._release_unseen(effect, message)
             return
         self._bus.later(RELEASE_AGAIN, partial(self._release_again, effect))
-        self._calling.call(component, Call.RELEASE, message, partial(self._end, component, message))
+        self._calling.call(component, message, partial(self._end, component, message))
 
     def _release_unseen(self, effect: ReleaseFrom, message: Release) -> None:
         """Tell a component whose life seems to have ended that it is released, as it may hear this without being heard.
@@ -69,11 +69,11 @@ class Releases:
         def answered(replies: Replies) -> None:
             answer = self._calling.answer_in(replies, message.life)
             if answer is not None:
-                self._calling.answered(component, Call.RELEASE, message, answer)
+                self._calling.answered(component, message, answer)
             elif not replies.complete:
                 self._bus.later(CALL, partial(self._release_again, effect))
 
-        self._calling.ask(component, Call.RELEASE, message, answered)
+        self._calling.ask(component, message, answered)
 
         def gone() -> None:
             """A life that has been gone for longer than its grace acts for no task, unless this node is cut off."""
@@ -109,7 +109,7 @@ class Releases:
             else:
                 self._bus.later(CALL, again)
 
-        self._calling.ask(component, Call.RELEASE, message, answered)
+        self._calling.ask(component, message, answered)
 
     def _release_again(self, effect: ReleaseFrom) -> None:
         if self._state().ended or self._state().owed.get(effect.component) != effect.epoch:
