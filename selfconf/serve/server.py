@@ -199,7 +199,7 @@ def bound(host: str, port: int) -> socket.socket:
     """A socket that is bound to an address. Raises NetworkError where it is taken, AuthorError for what is none."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-    except (OSError, OverflowError):
+    except (OSError, OverflowError, UnicodeError):  # of a name such as `a..b`
         advice = f"try {setting('host', '127.0.0.1')}"
         raise AuthorError(f"{host!r} with port {port} is no address of this machine; {advice}") from None
     place = socket.socket(family, kind, protocol)

@@ -82,6 +82,9 @@ def test_where_no_log_is_kept_there_is_one_sentence(
     monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(home.runtime))
     assert run(capsys, "log").is_one_sentence("no site has kept a log")
     assert run(capsys, "log", "--lines", "x").is_one_sentence("is no number of lines")
+    (home.runtime / "log").mkdir(parents=True)
+    (home.runtime / "log" / f"{home.ecology}@a.log").touch()
+    assert run(capsys, "log", "\udcff").is_one_sentence("the name of a component is no text in UTF-8")
     for pattern in ("*", "**", "/home", ""):
         assert run(capsys, "log", "--ecology", pattern).is_one_sentence(f"{pattern!r} cannot name an ecology")
 

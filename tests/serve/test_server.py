@@ -30,6 +30,8 @@ def test_a_port_that_is_taken_is_a_sentence() -> None:
 def test_what_is_no_address_is_a_sentence() -> None:
     with pytest.raises(AuthorError, match="no address of this machine"):
         bound("no such host", 0)
+    with pytest.raises(AuthorError, match=r"^'127\.0\.0\.\.1' with port 0 is no address of this machine"):
+        bound("127.0.0..1", 0)
     with pytest.raises(NetworkError, match="cannot listen"):
         bound("192.0.2.1", 0)
 

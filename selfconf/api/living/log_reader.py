@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from selfconf.api.arguments import checked_text
 from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.living_ecology import LivingEcology, join
 from selfconf.api.living.site_logs import LogSource, local_log, names_of_log, site_logs
@@ -92,8 +93,9 @@ def log_reader(
     """What reads the logs of an ecology: those in a folder, or those of this machine and of the sites of others.
 
     `complain` hears of what cannot be read. Raises NetworkError where there is no log at all, and AuthorError where
-    several ecologies have logs and none is named.
+    several ecologies have logs and none is named, or for what names no component.
     """
+    checked_text(component, "the name of a component")
     ecology, endpoints = asked_for(ecology, connect)
     with ExitStack() as stack:
         living: LivingEcology | NetworkError | None = None
