@@ -38,25 +38,25 @@ _checker: FileChecker | None = None
 
 def shared(
     checker: FileChecker,
-    suspects: Sequence[UnclearedFile],
+    uncleared: Sequence[UnclearedFile],
     forking: Callable[[], AbstractContextManager[None]] = nullcontext,
 ) -> Iterator[list[Diagnostic]]:
-    """Check each suspect, in as many processes as there are processors to use, where that pays and can be.
+    """Check each uncleared file, in as many processes as there are processors to use, where that pays and can be.
 
     They are forked inside of a `forking()`, which a program with a thread of its own can have rest meanwhile.
     """
-    processes = min(os.cpu_count() or 1, len(suspects) // WORTH)
+    processes = min(os.cpu_count() or 1, len(uncleared) // WORTH)
     if processes < 2:
-        yield from map(checker, suspects)
+        yield from map(checker, uncleared)
         return
-    yield checker(suspects[0])  # loads what each process will need
+    yield checker(uncleared[0])  # loads what each process will need
     with forking():
         pool = _pool(processes, checker) if _has_one_thread() else None
     if pool is None:
-        yield from map(checker, suspects[1:])
+        yield from map(checker, uncleared[1:])
         return
     with pool:
-        yield from pool.imap(_checked, suspects[1:], chunksize=4)
+        yield from pool.imap(_checked, uncleared[1:], chunksize=4)
         # They end by themselves: a program may have a handler of SIGTERM, which they have, too, until they begin.
         pool.close()
         pool.join()
@@ -93,9 +93,9 @@ def _begin(checker: FileChecker) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
-def _checked(suspect: UnclearedFile) -> list[Diagnostic]:
+def _checked(uncleared: UnclearedFile) -> list[Diagnostic]:
     assert _checker is not None
-    return _checker(suspect)
+    return _checker(uncleared)
 
 
 class Remembered:
@@ -107,12 +107,12 @@ class Remembered:
         self._file = folder / "validate" / f"{hashlib.blake2s(os.fsencode(absolute), digest_size=8).hexdigest()}.json"
         self._each, self._versions = each, {"selfconf": _own_version(), **{name: version(name) for name in PROGRAMS}}
 
-    def __call__(self, checker: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
+    def __call__(self, checker: FileChecker, uncleared: Sequence[UnclearedFile]) -> Iterator[list[Diagnostic]]:
         """What is remembered, and then what is not."""
         known = self._recalled()
-        keys = [checker.key(suspect) for suspect in suspects]
+        keys = [checker.key(one) for one in uncleared]
         outcomes = {key: known[key] for key in keys if key in known}
-        unknown = {key: suspect for key, suspect in zip(keys, suspects, strict=True) if key not in outcomes}
+        unknown = {key: one for key, one in zip(keys, uncleared, strict=True) if key not in outcomes}
         outcomes.update(zip(unknown, self._each(checker, list(unknown.values())), strict=True))
         if outcomes.keys() != known.keys():
             self._keep(outcomes)

@@ -30,14 +30,14 @@ BAD = Path(__file__).parents[1] / "bad"
 
 
 class Counting:
-    """Looks at each suspect, and notes whom it has looked at."""
+    """Looks at each uncleared file, and notes what it has looked at."""
 
     def __init__(self) -> None:
         self.names: list[str] = []
 
-    def __call__(self, judge: FileChecker, suspects: Sequence[UnclearedFile]) -> Iterable[list[Diagnostic]]:
-        self.names += [Path(suspect.source.name).name for suspect in suspects]
-        return map(judge, suspects)
+    def __call__(self, checker: FileChecker, uncleared: Sequence[UnclearedFile]) -> Iterable[list[Diagnostic]]:
+        self.names += [Path(one.source.name).name for one in uncleared]
+        return map(checker, uncleared)
 
 
 @pytest.fixture

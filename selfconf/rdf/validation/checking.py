@@ -65,12 +65,12 @@ class FileChecker:
     shapes: tuple[SourceText, ...]
     index: TermIndex
 
-    def __call__(self, suspect: UnclearedFile) -> list[Diagnostic]:
+    def __call__(self, uncleared: UnclearedFile) -> list[Diagnostic]:
         """The problems of a file."""
         # rdflib and pySHACL take longer to load than thousands of good files take to pass.
         from selfconf.rdf.validation.file_check import problems_of, shapes_of
 
-        return problems_of(suspect, shapes_of(*(source.text() for source in self.shapes)), self.index)
+        return problems_of(uncleared, shapes_of(*(source.text() for source in self.shapes)), self.index)
 
     @cached_property
     def knowledge(self) -> bytes:
@@ -82,13 +82,13 @@ class FileChecker:
         words = "\n\n".join("\n".join(sorted(terms)) for terms in (*known, *pairs, ranges))
         return _digest(*(source.octets for source in self.shapes), words.encode()).digest()
 
-    def key(self, suspect: UnclearedFile) -> str:
+    def key(self, uncleared: UnclearedFile) -> str:
         """A digest of all that the outcome depends on; a memory of outcomes adds the versions of the programs."""
-        source = suspect.source
-        elsewhere = repr(sorted(suspect.elsewhere.items()))
-        beside = repr([(other.name, other.base, things) for other, things in suspect.beside])
+        source = uncleared.source
+        elsewhere = repr(sorted(uncleared.elsewhere.items()))
+        beside = repr([(other.name, other.base, things) for other, things in uncleared.beside])
         said = (source.name, source.base, elsewhere, beside)
-        octets = (source.octets, *(other.octets for other, _ in suspect.beside))
+        octets = (source.octets, *(other.octets for other, _ in uncleared.beside))
         return _digest(self.knowledge, *octets, *(text.encode(errors="surrogatepass") for text in said)).hexdigest()
 
 
