@@ -140,7 +140,7 @@ class LocalTask:
     started: str
     """When the process began, to tell it from a later one with its number; empty where not known."""
     endpoints: Sequence[str]
-    """Those by which the program has joined: on another network there may be another ecology of this name."""
+    """The endpoints by which the program has joined: on another network there may be another ecology of this name."""
 
     def is_suspended(self) -> bool:
         """Whether the process was stopped by a signal and has not gone on, as after Ctrl-Z."""

@@ -82,7 +82,7 @@ class _Advertised(NamedTuple):
     """What the rules of a site follow from, beside the certificates that were shown."""
 
     own: Mapping[IRI, IRI]
-    """Its components, as those of a `SiteIdentity`."""
+    """The components of the site, each with the one whose certificate its process has."""
     others: Mapping[str, frozenset[IRI]]
     """The components that each other site advertises."""
     beside: frozenset[str]
@@ -101,7 +101,7 @@ class SiteIdentity:
     credentials: Credentials
     """What it shows."""
     own: Callable[[], Mapping[IRI, IRI]]
-    """Its components, each with the one whose certificate its process has."""
+    """The components of the site, each with the one whose certificate its process has."""
 
 
 @immutable
@@ -109,7 +109,7 @@ class GuardedHub:
     """The hub that a site opens, or would open as the one that relays on its host."""
 
     rules: AccessRules
-    """Those in force to begin with."""
+    """The rules in force to begin with."""
     relays: Callable[[], bool]
     """Whether the site relays."""
     sites: Callable[[], Iterable[str]]

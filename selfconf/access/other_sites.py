@@ -28,7 +28,7 @@ ASK_SITES_AGAIN = 5.0
 
 
 class OtherSites:
-    """Those of one ecology, as one site knows them."""
+    """The other sites of an ecology, as one site knows them."""
 
     def __init__(self, bus: Bus, keys: Keys, site: str, answered: Callable[[], None]) -> None:
         """`site` is the one that asks; `answered` is called whenever the others have said what they advertise."""

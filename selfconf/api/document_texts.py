@@ -14,7 +14,7 @@ from selfconf.errors import AuthorError, ProgrammerError, TurtleError
 NO_FILE, PIPED, GRAPH = "<text>", "<stdin>", "<graph>"
 """The names of documents that are no files."""
 KEPT_TEXTS = (NO_FILE, PIPED)
-"""Those of them whose lines can be looked up later only if the text is kept."""
+"""The names of documents whose lines can be looked up later only if the text is kept."""
 
 
 class DocumentText(NamedTuple):

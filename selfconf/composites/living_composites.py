@@ -65,10 +65,10 @@ class Composites:
         self._complain, self._aside, self._believed = complain, aside, believed
         self._advertisements: Mapping[IRI, Advertisement] = {}
         self._able: Mapping[IRI, Inside] = {}
-        """Those whose inside can be configured from these advertisements."""
+        """The composites whose inside can be configured from these advertisements."""
         self.living: dict[IRI, InsideOfComposite] = {}
         self._begun_as: dict[IRI, Advertisement] = {}
-        """As what each of them was advertised when its life began."""
+        """As what each composite was advertised when its life began."""
         self._told: dict[IRI, str] = {}
         self._between_lives: set[IRI] = set()
         self._looking: dict[IRI, Undo] = {}

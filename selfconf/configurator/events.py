@@ -59,7 +59,7 @@ class Discovered:
 
     holders: Mapping[IRI, Holder] = field(default_factory=dict)
     sharers: Mapping[IRI, Holder] = field(default_factory=dict)
-    """Those that hold components which can be shared."""
+    """The tasks that hold components which can be shared, by component."""
     unseen: bool = False
     """Whether something that is held for the task was not advertised: its site may be out of sight for a moment."""
 

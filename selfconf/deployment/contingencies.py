@@ -50,7 +50,7 @@ class _Supposed(NamedTuple):
 
 
 class Contingencies:
-    """Those of the one task that a configurator runs."""
+    """Finds out what the task of a configurator is to be changed to if a component is lost."""
 
     def __init__(
         self,
@@ -62,12 +62,12 @@ class Contingencies:
         """`advertised` is what a search is made among now, and `runs` whether the task does."""
         self._bus, self._request, self._advertised, self._runs = bus, request, advertised, runs
         self._supposed: _Supposed | None = None
-        """That for which they are found out now, or have been."""
+        """The state for which contingencies are found out now, or have been."""
         self._known: dict[Barred, Contingency | None] = {}
         """By the component that is lost, None where there is no configuration, or was no time to find it; replaced with
         what is supposed, and filled by another thread."""
         self._next: tuple[frozenset[IRI], Configuration] | None = None
-        """For what they are to be found out next."""
+        """For what contingencies are to be found out next."""
         self._rested = 0.0
         """When they may be found out anew, by the clock of the bus."""
         self.searched = 0.0

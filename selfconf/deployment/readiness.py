@@ -13,7 +13,7 @@ APPEARED_TOGETHER = 0.3
 
 
 class Readiness:
-    """That of one task."""
+    """Keeps one task ready for a failure."""
 
     def __init__(
         self, context: TaskContext, request: RunRequest, calls: Calls, liveness: Liveness, reachability: Reachability

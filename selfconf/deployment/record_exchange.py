@@ -59,7 +59,7 @@ class RecordKeeper(Protocol):
 
 
 class RecordExchange:
-    """That of one site."""
+    """Exchanges the records of tasks between one site and the others."""
 
     def __init__(self, bus: Bus, keys: Keys, site: str, folder: TaskFolder, keeper: RecordKeeper) -> None:
         self._bus, self._keys, self._site, self._folder, self._keeper = bus, keys, site, folder, keeper

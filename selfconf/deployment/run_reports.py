@@ -17,7 +17,7 @@ AT_LEISURE = 0.01
 
 
 class RunReports:
-    """Those of one run."""
+    """Reports the events of one run."""
 
     def __init__(self, bus: Bus, request: RunRequest, notices: RunNotices, clock: Callable[[], float]) -> None:
         self._bus, self._request, self._notices, self._clock = bus, request, notices, clock

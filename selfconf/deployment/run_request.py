@@ -96,7 +96,7 @@ class RunRequest:
     not_judged: Callable[[], Mapping[IRI, NotJudged]] = dict
     """The components that the last `compose` left out because they cannot be judged; called where that was."""
     usable: Callable[[Set[IRI], Refusal], Mapping[IRI, tuple[IRI, ...]]] = lambda components, refusal: {}
-    """Those of some components that could help where `compose` has refused, each with the roles that it may play."""
+    """Of some components, those that could help where `compose` has refused, each with the roles that it may play."""
     policy: Policy = Policy.REPAIR
     name: str = ""
     """The name of the task in the ecology; by default that of its template."""
@@ -153,12 +153,12 @@ class TaskIdentity:
     """A running task: what stays the same if another configurator goes on with it."""
 
     task: str
-    """Its name and a text that no other task of that name has: `selfconf.protocol.keys.task_identity`."""
+    """The name of the task and a text that no other task of that name has: `selfconf.protocol.keys.task_identity`."""
     priority: int = 0
     beginning: float = 0.0
     """When it began, in seconds of the Unix epoch."""
 
     @property
     def name(self) -> str:
-        """Its name, as its user knows it."""
+        """The name of the task, as its user knows it."""
         return task_name(self.task)

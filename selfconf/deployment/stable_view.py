@@ -32,9 +32,9 @@ class StableView:
         self._now, self._link = now, link
         self._has_just_begun = True
         self._missing: set[str] = set()
-        """Those that have gone in the present unrest, and were not seen since."""
+        """The sites that have gone in the present unrest, and were not seen since."""
         self._returned: set[str] = set()
-        """Those that have come in it: if they go, they were not only out of sight."""
+        """The sites that have come in the present unrest: if they go, they were not only out of sight."""
         self._before, self._is_over_new_link = link(), False
         """The link by which others were seen before it, and whether that was lost in it."""
         self._began = self._changed = now()

@@ -20,7 +20,7 @@ RESPITE = 60.0
 
 
 class TaskRequests:
-    """Those of one site."""
+    """The requests to run the tasks that one site keeps."""
 
     def __init__(self, bus: Bus, request_for: Callable[[TaskRecord], RunRequest]) -> None:
         """`request_for` reads a task; it raises SelfconfError for one that cannot be read, and OSError for now."""

@@ -40,7 +40,7 @@ class Discovery:
     site_tokens: frozenset[str] = frozenset()
     """The liveliness keys of the sites at the roll-call: which life of which site was asked."""
     answered: frozenset[str] = frozenset()
-    """Those of them whose sites have answered in full."""
+    """The liveliness keys of the sites that have answered in full."""
     complaints: list[str] = field(default_factory=list)
     """What was left out, and why, in sentences."""
 

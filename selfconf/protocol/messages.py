@@ -240,7 +240,7 @@ class LogQuestion:
     lines: int = 0
     """How many of the latest lines, where there is no position."""
     position: Label = ""
-    """That of an earlier answer: only what was added since is asked for."""
+    """The position that an earlier answer has named: only what was added since is asked for."""
 
 
 @immutable
@@ -413,7 +413,7 @@ class TaskRecord:
     """A task that lives in the ecology: what the sites keep of it, and by which one of them goes on with it."""
 
     task: Identity
-    """Its identity."""
+    """The identity of the task."""
     revision: int
     """Of two records of a task that has not ended, the one with the higher revision counts."""
     ended: bool = False

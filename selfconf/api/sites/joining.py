@@ -88,7 +88,7 @@ class Joining:
         self.served: Sequence[str] = ()
         """The files and folders with what the site advertises, for others on this machine."""
         self._awaited = hubs
-        """Those that relayed when this site last had a hub, or that it has been trying to reach since."""
+        """The endpoints of the hubs that there were when this site last had one, or that it has since tried."""
         self._hung_at: float | None = None
         """When they are taken to hang; None while there is a hub."""
         self._look_again: Undo = lambda: None

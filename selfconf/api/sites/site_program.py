@@ -66,9 +66,9 @@ class SiteOptions:
     connect: tuple[str, ...] = ()
     """The endpoints of other sites."""
     state: Path | None = None
-    """The folder with the tasks that it keeps, by default one of the runtime folder; so for the next."""
+    """The folder with the tasks that it keeps, by default one of the runtime folder."""
     log: Path | None = None
-    """The folder for what the components print that it starts."""
+    """The folder for what the components print that it starts, by default one of the runtime folder."""
     keys: Path | None = None
     """The folder with its keys: only holders of certificates of the same authority are let in."""
     insecure: bool = False

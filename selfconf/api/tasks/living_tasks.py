@@ -288,14 +288,14 @@ def _newest(replies: Replies) -> list[TaskRecord]:
 
 
 def _of_name(records: Iterable[TaskRecord], name: str | None) -> list[TaskRecord]:
-    """Those of some records whose tasks have a name; None means all."""
+    """The records of the tasks that have a name; None means all."""
     return [record for record in records if name in (None, task_name(record.task))]
 
 
 def _of_same_tasks(
     records: Iterable[TaskRecord], known: Iterable[TaskRecord | Status | SilentHolder]
 ) -> list[TaskRecord]:
-    """Those of some records that are of known tasks: with one whose configurator alone has ended a site goes on."""
+    """The records of known tasks: a site goes on with a task of which only the configurator has ended."""
     tasks = {one.task for one in known}
     return [record for record in records if record.task in tasks]
 

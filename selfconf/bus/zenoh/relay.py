@@ -263,7 +263,7 @@ class _Uplink:
         self._relay, self._lost = relay, set[str]()
         self.security, self.opened_at = security, now
         self.hubs = set[str]()
-        """Those that it has a link to."""
+        """The hubs that it has a link to."""
         self.regained = False
         """Whether it has lost a hub and has it again: what is declared does not get through to it any more."""
         self._sessions = relay.open_uplink()

@@ -20,7 +20,7 @@ SILENT_AUDITS = 3
 
 
 class Audits:
-    """Those of one task."""
+    """Looks again and again at the components that run for one task."""
 
     def __init__(self, context: TaskContext, calls: Calls, reachability: Reachability) -> None:
         self._bus, self._calls, self._reachability = context.ecology.bus, calls, reachability

@@ -12,7 +12,7 @@ LEFT_BEHIND = 8
 
 
 class HeldLives:
-    """Those of the components of one task."""
+    """The lives of the components that one task holds, or has held."""
 
     def __init__(self, ecology: EcologyView) -> None:
         self._ecology = ecology
@@ -51,7 +51,7 @@ class HeldLives:
         return component in self._unborn - self._called
 
     def out_of_control(self, owed: Iterable[IRI]) -> tuple[IRI, ...]:
-        """Those of the components that are owed a release which may still act, sorted."""
+        """The components that are owed a release and may still act, sorted."""
         return tuple(sorted(one for one in owed if one not in self._gone or self.lives_on(one)))
 
     def called(self, component: IRI) -> None:

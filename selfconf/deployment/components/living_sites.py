@@ -18,7 +18,7 @@ ASK_SITE_AGAIN = 5.0
 
 
 class LivingSites:
-    """Those of one ecology; what it learns of them it tells the machine of one task as news."""
+    """The sites of an ecology that live; what is learned of them is news for the machine of one task."""
 
     def __init__(self, context: TaskContext, waking: Waking) -> None:
         self._bus, self._step, self._waking = context.ecology.bus, context.step, waking

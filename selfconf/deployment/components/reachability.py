@@ -36,7 +36,7 @@ off or has seen its supervisor again.
 
 
 class Reachability:
-    """That of one ecology for the configurator of one task."""
+    """Whether the configurator of one task reaches its ecology."""
 
     def __init__(self, context: TaskContext, calls: Calls, sites: LivingSites) -> None:
         self._bus, self._ecology, self._calls, self._sites = context.ecology.bus, context.ecology, calls, sites

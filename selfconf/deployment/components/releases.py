@@ -34,7 +34,7 @@ RELEASE_AGAIN = 2.5
 
 
 class Releases:
-    """Those of one task."""
+    """Turns the components of one task off."""
 
     def __init__(self, context: TaskContext, lives: HeldLives, waking: Waking, calling: Calling) -> None:
         self._bus, self._ecology = context.ecology.bus, context.ecology

@@ -47,7 +47,7 @@ class Waking:
         self._bus, self._ecology, self._lives = context.ecology.bus, context.ecology, lives
         self._step, self._report = context.step, context.report
         self._waiting: dict[IRI, _Start] = {}
-        """Those that are being started."""
+        """The components that are being started."""
 
     def __contains__(self, component: IRI) -> bool:
         """Whether a component is being started."""

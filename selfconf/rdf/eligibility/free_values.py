@@ -119,7 +119,7 @@ class StatedOnPath:
     tests: tuple[PropertyTest, ...]
     """The tests of the property itself."""
     above: tuple[PropertyTest, ...]
-    """Those of the property and of what lies above it, which see its values too."""
+    """The tests of the property and of the properties above it, which see its values too."""
 
     @property
     def minimum(self) -> int:

@@ -134,7 +134,7 @@ class Prefiltered:
     above: set[tuple[str, str]] = field(default_factory=set)
     """Each class or property that the file places, with the one right above it; equal ones are above each other."""
     equal: set[tuple[str, str]] = field(default_factory=set)
-    """Those of `above` that the file says are equal."""
+    """The pairs of `above` that the file says are equal."""
     prefixes: set[tuple[str, str]] = field(default_factory=set)
 
 

@@ -36,7 +36,7 @@ from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.term_index import TermIndex
 
 _SC, _SH, _SHAPES = (Namespace(one.base) for one in (vocabulary.SC, vocabulary.SH, vocabulary.SHAPES))
-"""As rdflib makes terms of them."""
+"""The vocabularies of which rdflib makes terms."""
 
 _MADE_DISTINCT_BY: dict[Node, URIRef] = {
     _SHAPES.PortNamesDistinct: _SC.name,

@@ -69,7 +69,7 @@ class TermIndex:
     above: set[tuple[str, str]] = field(default_factory=set)
     """What the files say of the hierarchies of classes and properties: one of them, and one right above it."""
     equal: set[tuple[str, str]] = field(default_factory=set)
-    """Those of `above` that are said to be equal."""
+    """The pairs of `above` that are said to be equal."""
     _upper: dict[str, list[str]] = field(default_factory=dict)
     """By `above`: what is right above a class or property."""
     _circles: tuple[dict[str, str], dict[str, str]] = ({}, {})

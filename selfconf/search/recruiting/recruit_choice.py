@@ -253,7 +253,7 @@ class RecruitChoice:
         place, lacking = self._place, dict(self._lacking)
         order: list[int] = []
         costly = 0
-        """Those in the order that are not free."""
+        """The recruits of the order that are not free, as bits."""
         feeding: dict[int, int] = {}
         """For recruits that are not settled, those that feed them."""
         settled = [(0, place[number], number) for number, count in lacking.items() if not count and number != without]

@@ -90,7 +90,7 @@ class _Numbering:
     def __init__(self, scope: NeedScope) -> None:
         self.scope = scope
         self.plain: dict[IRI, int] = {}
-        """Those of one signal each, without a condition, by that."""
+        """The numbers of the needs of one signal each, without a condition, by that signal."""
         self.others: dict[tuple[tuple[IRI, ...], Condition | None], int] = {}
         """All others, by signals and condition."""
 

@@ -59,7 +59,7 @@ class History:
         self._current: dict[str, str] = {}
         """The configuration that is deployed, by the graph that states it."""
         self._unsettled = {name for name in self._names() if not self._has_ended(name)}
-        """Those that ran when the last server ended: they may run still."""
+        """The configurations that ran when the last server ended: they may run still."""
         self._losses: dict[str, dict[str, Body]] = {}
         """By the graph that states a configuration, the latest loss of each component that has a part in it."""
         self._to_note: dict[str, bytes] = {}
