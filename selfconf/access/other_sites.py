@@ -43,7 +43,7 @@ class OtherSites:
         self._undo_asking_again: Undo = lambda: None
 
     def advertised(self) -> dict[str, frozenset[IRI]]:
-        """The components that each of them advertises, as far as is known."""
+        """The components that each other site advertises, as far as is known."""
         return dict(self._advertised)
 
     def away(self, seconds: float = 0.0) -> frozenset[str]:

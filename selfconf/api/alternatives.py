@@ -23,7 +23,7 @@ from selfconf.model.term import IRI
 MOST_TRIED = 12
 """How many candidates of a role are tried, in their order; with thousands no user reads the others."""
 SECONDS_FOR_ALL = 20.0
-"""The time for all of them together."""
+"""The seconds that the trials of all roles may take together."""
 
 
 def alternatives(inquiry: Inquiry, seconds: float = SECONDS_FOR_ALL) -> dict[IRI, list[Alternative]]:

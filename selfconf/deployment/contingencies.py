@@ -28,7 +28,7 @@ MOST_SECONDS = 0.5
 """Seconds after which no further component of a configuration is looked at, and that a search may have taken for more
 of its kind to be made beforehand: what there is no time for is searched for when it is needed."""
 REST = 10
-"""How many times as long as they have taken it is until they are found out anew, while the ecology changes."""
+"""Contingencies are found out anew, while the ecology changes, after so many times as long as that has taken."""
 
 
 class Contingency(NamedTuple):
@@ -69,7 +69,7 @@ class Contingencies:
         self._next: tuple[frozenset[IRI], Configuration] | None = None
         """For what contingencies are to be found out next."""
         self._rested = 0.0
-        """When they may be found out anew, by the clock of the bus."""
+        """When contingencies may be found out anew, by the clock of the bus."""
         self.searched = 0.0
         """How many seconds the last search has taken."""
 

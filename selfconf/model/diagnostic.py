@@ -13,7 +13,7 @@ from selfconf.model.immutable import immutable
 LONGEST_SOURCE = 240
 """Characters of a line that are shown: a file on one line may have a million problems, all of them on that line."""
 BEFORE = 80
-"""How many of them stand before the place."""
+"""How many characters of what is shown of a line stand before the place."""
 LONGEST_SAID = 1_000
 """Characters of a message or hint, which may quote what an author wrote."""
 UNREADABLE = frozenset(("SC-S01", "SC-S02", "SC-S03", "SC-S05", "SC-P01"))

@@ -94,7 +94,7 @@ class DerivationStep:
 
     role: IRI
     component: IRI
-    """The first of them."""
+    """The first of these candidates."""
     more: int
     """How many others leave for the same cause."""
     input: str

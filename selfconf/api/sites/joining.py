@@ -55,7 +55,7 @@ MEETING = 0.6
 STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
 STILL_HEARD = 6
-"""How many of these times pass between two looks of other sites whether their hub answers them."""
+"""After how many times as long a site that does not relay looks again whether its hub answers."""
 HUNG = 0.5
 """Seconds without a hub, beyond the lease, after which one that relays and is suspended is taken to hang."""
 SLOW = 1.5
@@ -90,7 +90,7 @@ class Joining:
         self._awaited = hubs
         """The endpoints of the hubs that there were when this site last had one, or that it has since tried."""
         self._hung_at: float | None = None
-        """When they are taken to hang; None while there is a hub."""
+        """When the sites that relay are taken to hang; None while there is a hub."""
         self._look_again: Undo = lambda: None
         self._hub_health = HubHealth(self.bus, Keys(ecology).site_life(name, "*"), self._hub_is_broken)
         self.bus.watch_link(self._link_changed)

@@ -13,9 +13,9 @@ class TaskOptions:
 
     policy: Policy = Policy.REPAIR
     name: str = ""
-    """Empty for that of its template."""
+    """The name of the task; empty for that of its template."""
     priority: int | None = None
-    """None for that of its template."""
+    """The priority of the task; None for that of its template."""
     upgrade: float | None = None
     """The seconds before a change for the better; None for no such change."""
 

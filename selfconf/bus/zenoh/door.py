@@ -34,7 +34,7 @@ MOST_AT_DOOR = 30
 BETWEEN_LOOKS = 0.1
 """Seconds between two looks."""
 LOOKS_SHARE = 0.02
-"""Which part of a processor may be spent on them: where thousands are connected, it is looked less often."""
+"""Which part of a processor may be spent on looks: where thousands are connected, there are fewer."""
 BACKLOG = 50
 """How many connections the system takes before they are accepted; Zenoh would have it take 1024, and accepts all that
 there are before it waits."""

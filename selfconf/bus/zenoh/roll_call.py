@@ -40,7 +40,7 @@ BEFORE_AGAIN = 0.0002
 MOST_ROLL_CALLS = 7
 """How often one roll-call is made at most."""
 MOST_ROLL_CALLS_OF_MANY = 2
-"""How often where so many answer that it may have ended while they were read, if the session knows many."""
+"""How often one is made where so many answer that it may have ended meanwhile, if the session knows many."""
 
 
 class RollCalls:

@@ -14,7 +14,7 @@ from selfconf.protocol.messages import CallAnswer, Cause
 AUDIT = 1.0
 """Seconds between two audits."""
 AUDITED = 20
-"""How many components are looked at in one of them; they take turns."""
+"""How many components are asked in one audit; they take turns."""
 SILENT_AUDITS = 3
 """How many audits in a row a component may leave unanswered; each waits for as long as a call."""
 

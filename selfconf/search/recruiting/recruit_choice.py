@@ -42,7 +42,7 @@ class Suppliers:
     def __init__(self, issuers: Iterable[Issuers]) -> None:
         self.issuers = tuple(issuers)
         self.consumers: list[int] = []
-        """The numbers of the recruits that need one of them."""
+        """The numbers of the recruits with an input that one of these components has to feed."""
 
 
 class UnfedInput(NamedTuple):
