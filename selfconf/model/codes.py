@@ -377,7 +377,7 @@ CODES: tuple[Code, ...] = (
         f"{_PAIR}\n:radio sc:cost ( [ sc:term [ sc:weight 2 ] ] ) .",
         f"{_PAIR}\n:radio sc:cost ( [ sc:term [ sc:property rob:latency ; sc:weight 2 ; sc:ofRole :sink ] ] ) .",
         (
-            "CostTemplate", "CostOnce", "CostList", "LevelTerms", "TermPropertyOnce", "TermPropertyIri",
+            "CostTemplate", "CostOnce", "CostList", "CostLevel", "LevelTerms", "TermPropertyOnce", "TermPropertyIri",
             "TermWeightOnce", "TermWeight", "TermOtherwiseOnce", "TermOtherwise", "TermRoleOnce", "TermRoleTyped",
             "TermRoleListed",
         ),
