@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 
+from selfconf.rdf.turtle import COMMENT, QUOTED
+
 _TOKEN = re.compile(
-    r'"""[^"\\]*(?:(?:\\.|"(?!""))[^"\\]*)*"""|\'\'\'[^\'\\]*(?:(?:\\.|\'(?!\'\'))[^\'\\]*)*\'\'\''
-    r"|\"(?!\"\")[^\"\\\n]*(?:\\.[^\"\\\n]*)*\"|'(?!'')[^'\\\n]*(?:\\.[^'\\\n]*)*'"
-    r"|(?P<comment>#[^\n]*)|<(?P<iri>[^<>\s]*)>|(?P<open>[\[(])|(?P<close>[\])])"
+    rf"{QUOTED}|(?P<comment>{COMMENT})|<(?P<iri>[^<>\s]*)>|(?P<open>[\[(])|(?P<close>[\])])"
     r"|(?P<word>[^\s<>\"'()\[\]{};,#]+)|(?P<odd>[{}<>\"'])",
     re.DOTALL,
 )

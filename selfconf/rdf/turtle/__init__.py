@@ -9,7 +9,7 @@ the prefix that it may be about, and `USUAL` are those that most texts declare. 
 and `in_turtle` makes Turtle of it that can be read elsewhere;
 `format_of` and `other_format` tell which one a file is in (`RdfFormat`), and `conversion` is the command that makes
 Turtle of it. `first_not_utf_8` finds the place where a text is not UTF-8, and `check_utf_8` refuses it.
-`check_turtle_1_1` refuses what only Turtle 1.2 has.
+`check_turtle_1_1` refuses what only Turtle 1.2 has. `QUOTED` and `COMMENT` match what hides signs in a text.
 """
 
 from selfconf.rdf.turtle.advice import USUAL, advice, undeclared_prefix
@@ -28,8 +28,11 @@ from selfconf.rdf.turtle.document import (
 from selfconf.rdf.turtle.formats import RdfFormat, conversion, format_of, in_turtle, other_format, read_ontology
 from selfconf.rdf.turtle.refused_text import check_turtle_1_1, check_utf_8, first_not_utf_8
 from selfconf.rdf.turtle.serialization import ntriples, ox_term, pretty_turtle, to_turtle
+from selfconf.rdf.turtle.tokens import COMMENT, QUOTED
 
 __all__ = [
+    "COMMENT",
+    "QUOTED",
     "SKOLEM",
     "USUAL",
     "Document",

@@ -16,6 +16,7 @@ import re
 import pyoxigraph as ox
 
 from selfconf.errors import TurtleError
+from selfconf.rdf.turtle.tokens import COMMENT, QUOTED
 
 
 def first_not_utf_8(octets: bytes) -> tuple[int, int, str] | None:
@@ -43,12 +44,7 @@ TAKES_RDF_1_2 = "this takes RDF 1.2, a statement about a statement or a text wit
 _SIGNS = (b"<<", b"{|", b"~", b"--ltr", b"--rtl")
 """One of these is in every text that takes Turtle 1.2; they may also be in a comment, a string or an IRI."""
 _TOKEN = re.compile(
-    rb'"""(?:[^"\\]|\\.|"(?!""))*"""'
-    rb"|'''(?:[^'\\]|\\.|'(?!''))*'''"
-    rb'|"(?:[^"\\\n]|\\.)*"'
-    rb"|'(?:[^'\\\n]|\\.)*'"
-    rb'|<(?:[^<>"{}|^`\\\s]|\\[uU])*>'
-    rb"|#[^\n]*"
+    rf"{QUOTED}|{COMMENT}".encode() + rb'|<(?:[^<>"{}|^`\\\s]|\\[uU])*>'
     rb"|\\."
     rb"|(?P<newer><<|\{\||~|@[A-Za-z]+(?:-[A-Za-z0-9]+)*--(?:ltr|rtl)\b)",
     re.DOTALL,

@@ -14,14 +14,8 @@ from functools import cached_property
 
 from selfconf.model.codes import BY_CODE
 from selfconf.model.diagnostic import Diagnostic, excerpt, shortened
+from selfconf.rdf.turtle import COMMENT, QUOTED
 
-_PASSED_OVER = (
-    r'"""[^"\\]*(?:(?:\\.|"(?!""))[^"\\]*)*"""',
-    r"'''[^'\\]*(?:(?:\\.|'(?!''))[^'\\]*)*'''",
-    r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"',
-    r"'[^'\\\n]*(?:\\.[^'\\\n]*)*'",
-    r"\#[^\n]*",
-)
 _IRI = r"<(?P<iri>[^<>\s]*)>"
 _NAME_BEGINS = r"(?<![^\s<>\"'()\[\]{};,^])"
 _NAME_END = r"[^\s<>\"'()\[\]{};,\#]*"
@@ -54,7 +48,7 @@ class TextPlaces:
         homes = {prefix: base for prefix, base in prefixes if any(iri.startswith(base) for iri in iris)}
         names = "|".join(map(re.escape, homes))
         name = rf"|{_NAME_BEGINS}(?P<prefix>{names}):(?P<local>{_NAME_END})" if homes else ""
-        for found in re.finditer("|".join((*_PASSED_OVER, _IRI + name)), self.text, re.DOTALL):
+        for found in re.finditer("|".join((QUOTED, COMMENT, _IRI + name)), self.text, re.DOTALL):
             iri = found["iri"]
             if homes and found["prefix"] is not None:
                 iri = homes[found["prefix"]] + found["local"].rstrip(".")
@@ -65,7 +59,7 @@ class TextPlaces:
 
     def largest_token(self) -> int:
         """The offset of the longest string or IRI, or 0."""
-        tokens = re.finditer("|".join((*_PASSED_OVER, _IRI)), self.text, re.DOTALL)
+        tokens = re.finditer("|".join((QUOTED, COMMENT, _IRI)), self.text, re.DOTALL)
         return max(((found.end() - found.start(), found.start()) for found in tokens), default=(0, 0))[1]
 
     @cached_property
