@@ -46,6 +46,8 @@ class Inquiry:
         self._texts = (*self.task.texts, *ecology.texts)
         self.seconds: dict[str, float] = {}
         """How long each part took: load, partition, search."""
+        self._limit = TimeLimit(None)
+        """The time for the answer and for what is found out about it."""
         began = time.perf_counter()
         self.composer = method.composer(self.task)
         partitioner = self.composer.partitioner
@@ -137,11 +139,12 @@ class Inquiry:
         """Where a component is described."""
         return self.ecology[component].place or Place("the ecology")
 
-    def insides(self, answer: Answer) -> list[tuple[IRI, Configuration | str]]:
+    def insides(self, answer: Answer) -> list[tuple[IRI, Configuration | Undecided | str]]:
         """What the composites of an answer would be inside, if their sites had this ecology, or why that is nothing.
 
         Composites inside of these follow each after the one that holds it. Those are left out whose document, which
-        says what is inside, is not at hand: of a text, an endpoint or the living ecology.
+        says what is inside, is not at hand: of a text, an endpoint or the living ecology. It takes no longer than the
+        answer has left of the time of the method.
         """
         if not any(self.ecology[component].profile.inside for component in answer.components):
             return []
@@ -158,12 +161,22 @@ class Inquiry:
                     raise
             return documents[place]
 
-        found = list(insides(self.ecology, document_of, answer.plain, self.composer.hierarchy))
+        found: list[tuple[IRI, Configuration | Undecided | str]] = []
+
+        def gather() -> bool:
+            found.extend(insides(self.ecology, document_of, answer.plain, self.composer.hierarchy))
+            return True
+
+        if not self._limit.within(gather, False):
+            told = {component for component, _ in found}
+            composites = (one for one in answer.components if self.ecology[one].profile.inside)
+            late = Undecided(seconds=self._limit.seconds)
+            found += [(component, late) for component in composites if component not in told]
         return [(component, inside) for component, inside in found if component not in unknown]
 
     def answer(self, what_if: bool = False) -> Answer | Refusal | Undecided:
         """The configuration, or why there is none, within the time of the method."""
-        limit = TimeLimit(self.method.seconds)
+        limit = self._limit = TimeLimit(self.method.seconds)
         began = time.perf_counter()
         with collector_looking_at_new(len(self.ecology)):
             found = self._composed(limit)

@@ -99,22 +99,27 @@ def _tell_absent(answer: Answer, absent: frozenset[IRI]) -> None:
 
 def _tell_insides(inquiry: Inquiry, answer: Answer) -> None:
     """Tell what composites of a configuration would be inside, if their sites had these advertisements."""
+    from selfconf.model.configuration import Configuration
     from selfconf.render import configuration_text
 
     for component, inside in inquiry.insides(answer):
-        if isinstance(inside, str):
-            display(f"{answer.names(component)}: {inside}")
+        if not isinstance(inside, Configuration):
+            why = inside if isinstance(inside, str) else f"its inside is {inside}"
+            display(f"{answer.names(component)}: {why}")
             continue
         told = ("  " + line for line in configuration_text(inside, answer.names).splitlines())
         display("\n".join([f"inside of {answer.names(component)}, from these advertisements", *told]))
 
 
-def _inside_body(inside: Configuration | str) -> dict[str, Any]:
-    """What a composite is inside, or why that is nothing, as JSON."""
+def _inside_body(inside: Configuration | Undecided | str) -> dict[str, Any]:
+    """What a composite is inside, or why that is nothing or not known, as JSON."""
+    from selfconf.model.configuration import Configuration
     from selfconf.render import configuration_body
 
     if isinstance(inside, str):
         return {"status": "refused", "reason": inside}
+    if not isinstance(inside, Configuration):
+        return {"status": "undecided", "reason": f"its inside is {inside}"}
     return {"status": "configured", "template": inside.template, **configuration_body(inside)}
 
 

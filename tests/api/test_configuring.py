@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
@@ -12,17 +14,19 @@ from selfconf.api.answer import Answer
 from selfconf.api.configuring import Inquiry
 from selfconf.api.method import Method
 from selfconf.api.reading import described_in
-from selfconf.composition import Strategy
+from selfconf.composition import Strategy, TimeLimit
 from selfconf.errors import AuthorError, BindingError, ProgrammerError, TemplateError
 from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.holder import Holder
-from selfconf.model.refusal import Refusal
+from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.term import IRI
 from selfconf.project import STRATEGIES
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import Document
 from tests.api.navigation import EVERYTHING, answered, navigation
 from tests.lab import NAVIGATE, PREFIXES, iri, write_advertisements
+
+Result = TypeVar("Result")
 
 
 def test_a_component_that_another_task_holds_is_told_apart_from_one_that_is_not_eligible(
@@ -187,6 +191,28 @@ def test_what_a_composite_is_inside_is_not_told_where_no_file_says_it() -> None:
     answer = inquiry.answer()
     assert isinstance(answer, Answer)
     assert inquiry.insides(answer) == []
+
+
+class OneQuestion(TimeLimit):
+    """The time is up after one question."""
+
+    asked = 0
+
+    def within(self, ask: Callable[[], Result], otherwise: Result) -> Result:
+        self.asked += 1
+        return otherwise if self.asked > 1 else ask()
+
+
+def test_what_composites_are_inside_takes_no_longer_than_the_time_that_is_allowed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("selfconf.api.configuring.TimeLimit", OneQuestion)
+    (tmp_path / "radio.ttl").write_text(RADIO.replace("TYPE", "rob:Audio"))
+    task = template(f"{PREFIXES}:listen a sc:Template ; sc:roles ( :set ) . :set a sc:Role ; sh:class :Radio .")
+    inquiry = Inquiry(task, read(tmp_path), Method(seconds=2))
+    answer = inquiry.answer()
+    assert isinstance(answer, Answer)
+    assert inquiry.insides(answer) == [(iri("radio-set"), Undecided(seconds=2))]
 
 
 def test_a_refusal_of_text_that_is_in_no_file_has_its_lines(clock: sc.TaskSpecification) -> None:
