@@ -240,9 +240,9 @@ def announce(site: LocalSite) -> Path:
     return _write(site)
 
 
-def announce_for(other: LocalSite, relays: bool) -> None:
-    """Write into the file of another site, in a turn, whether it relays; it reads that when it goes on."""
-    _write(replace(other, relays=relays))
+def announce_no_relay(other: LocalSite) -> None:
+    """Write into the file of another site, in a turn, that it does not relay; it reads that when it goes on."""
+    _write(replace(other, relays=False))
 
 
 def relays(path: Path) -> bool:

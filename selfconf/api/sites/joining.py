@@ -345,7 +345,7 @@ class Joining:
             for other in this_machine.local_sites(self._ecology):
                 if other.relays and other.endpoint in self._usual:
                     with suppress(NetworkError):  # then two relay once that one goes on
-                        this_machine.announce_for(other, relays=False)
+                        this_machine.announce_no_relay(other)
             known = [one for one in hubs if one not in self._usual]
             self.bus.relay(hub, [*known, *strange, *self._elsewhere])
             self._await([endpoint])

@@ -77,7 +77,7 @@ def test_what_keeps_it_from_being_written_is_said_once_and_it_is_lost_until_it_c
 def test_a_site_that_another_has_taken_the_place_of_is_overruled(runtime: Path) -> None:
     made = announced()
     assert not made.is_overruled
-    this_machine.announce_for(site(), relays=False)
+    this_machine.announce_no_relay(site())
     assert made.is_overruled
     made.write()
     assert not made.is_overruled

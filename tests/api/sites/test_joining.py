@@ -201,7 +201,7 @@ def test_a_place_is_taken_though_nothing_can_be_written(machine: Machine, monkey
         raise NetworkError("cannot write: no space left")
 
     monkeypatch.setattr(this_machine, "announce", full)
-    monkeypatch.setattr(this_machine, "announce_for", full)
+    monkeypatch.setattr(this_machine, "announce_no_relay", full)
     machine.leave("a")
     assert machine.until(lambda: machine.relaying() == ["b"] and machine.united())
     assert not machine.until(lambda: not machine.relaying(), seconds=1.0)  # its file says still that it does not relay
