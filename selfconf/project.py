@@ -272,7 +272,7 @@ def _problem(
 ) -> Diagnostic:
     # A key whose table has no line of its own, as in `bind.navigate = 3`, is where the longest key begins that has it.
     line = lines.get(keys) or min((at for key, at in lines.items() if key[: len(keys)] == keys), default=1)
-    source = octets.decode().splitlines()[line - 1]
+    source = octets.decode().split("\n")[line - 1].rstrip("\r")  # as TOML counts lines
     column = len(source) - len(source.lstrip()) + 1
     return Diagnostic(name, line, column, code, message, width=len(source.strip()), source=source)
 

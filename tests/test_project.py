@@ -118,6 +118,7 @@ def test_a_stranger_s_file_in_a_folder_of_another_owner_is_passed_over_and_named
         ("\necology = [", "2:12 SC-P01", "Not TOML"),
         ("x = " + "[" * 100_000, "1:1 SC-P01", ""),
         ('ecology = "home"\nfoo = 3', "2:1 SC-P02", "no key 'foo'; the keys are ecology"),
+        ("# one\u2028line\n  foo = 3", "2:3 SC-P02", "no key 'foo'"),
         ("[budget]\nsteps = 3", "1:1 SC-P02", "no key 'budget'"),
         ('ecology = "two words"', "1:1 SC-P03", "'ecology' takes a name"),
         ("ecology = 3", "1:1 SC-P03", "takes a text in quotes"),
