@@ -34,6 +34,8 @@ QUERY_PREFIXES = {
     "xsd": XSD.base,
     "prov": PROV.base,
 }
+RENEWED = 10_000
+"""How many triples are removed at least before the store is made anew; of a larger one, twice as many as it has."""
 _UNION = ox.DefaultGraph()
 QueryAnswer = ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples
 
@@ -45,6 +47,8 @@ class Dataset:
         self._store = ox.Store()
         self._merged = True
         """Whether the default graph is the union of all others."""
+        self._removed, self._most_removed = 0, RENEWED
+        """How many triples were removed from the store, and after how many it is made anew."""
 
     def add_advertisements(self, found: Iterable[Advertisement]) -> None:
         """Add each advertisement as the graph that its component names."""
@@ -69,7 +73,8 @@ class Dataset:
     def replace(self, name: str, triples: bytes) -> None:
         """Let a named graph hold these N-Triples and nothing else; without any it is gone."""
         graph = ox.NamedNode(name)
-        for said in self._said_in(graph) if self._merged else ():
+        before = self._said_in(graph)
+        for said in before if self._merged else ():
             stating = self._store.quads_for_pattern(said.subject, said.predicate, said.object, None)
             if all(quad.graph_name in (graph, _UNION) for quad in stating):
                 self._store.remove(_in_union(said))
@@ -78,6 +83,15 @@ class Dataset:
             self._store.load(triples, format=ox.RdfFormat.N_TRIPLES, to_graph=graph)
         if self._merged:
             self._store.extend(map(_in_union, self._said_in(graph)))
+        self._removed += len(before)
+        if self._removed > self._most_removed:
+            self._renew()
+
+    def _renew(self) -> None:
+        """Make the store anew: Oxigraph keeps in memory what was removed from a store, for as long as that is there."""
+        store = ox.Store()
+        store.bulk_extend(self._store)
+        self._store, self._removed, self._most_removed = store, 0, max(RENEWED, 2 * len(store))
 
     def _said_in(self, graph: ox.NamedNode) -> list[ox.Quad]:
         return list(self._store.quads_for_pattern(None, None, None, graph))
