@@ -178,7 +178,7 @@ def test_a_literal_that_is_one_of_its_datatype_is_taken(value: str) -> None:
     assert bindings.bind(anything(), [("p", value)]).task.bindings
 
 
-@pytest.mark.parametrize("value", ["\udcff", '"\ud800"', Literal("a\udcff"), IRI("urn:\ud800")])
+@pytest.mark.parametrize("value", ["\udcff", '"\ud800"', Literal("a\udcff")])
 def test_half_a_character_is_refused_in_a_sentence(value: str | Term) -> None:
     task = templates.read_task(turtle.parse(PREFIXES + TEMPLATE, "t.ttl"))
     with pytest.raises(BindingError, match=r"^the value of 'goal' is no text in UTF-8: '.*\\ud[8c]"):
