@@ -63,6 +63,7 @@ class Restless:
         """How many triples each of them has."""
         self._epoch = 0
         self._next()
+        self._deployed = self._bus.publisher(self._keys.configuration(NAME), Urgency.SIGNAL)
         self._notices = self._bus.publisher(self._keys.notices(NAME), Urgency.SIGNAL)
         self._bus.serve(self._keys.configuration(NAME), self._tell)
         self._bus.serve(self._keys.notices(NAME), self._latest)
@@ -95,6 +96,7 @@ class Restless:
     def _deploy(self) -> None:
         self._bus.later(PERIOD, self._deploy)
         self._next()
+        self._deployed.put(self._turtle.encode())  # in order, while of two answers the newer one may come first
         self._notices.put(self._notice())
 
     def _notice(self) -> bytes:

@@ -16,6 +16,6 @@ def until_quiet(arrived: Callable[[], object]) -> None:
     deadline, known = time.monotonic() + PATIENCE, arrived()
     since = time.monotonic()
     while (now := time.monotonic()) - since < QUIET and now < deadline:
-        time.sleep(QUIET / 20)  # until it is looked again
+        time.sleep(QUIET / 20)  # until the next look
         if (new := arrived()) != known:
             known, since = new, time.monotonic()

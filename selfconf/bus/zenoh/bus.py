@@ -110,8 +110,7 @@ class ZenohBus(Loop):
         self._roll_calls = RollCalls(self, session, self._readers, lambda: bool(self.link))
         self._open = True
         self._hubs = set[str]()
-        """The hubs that this bus is a client of, by Zenoh's events. Zenoh's own list lags behind them: it
-        still has a hub whose loss an event tells."""
+        """The hubs that this bus is a client of, by Zenoh's events, behind which Zenoh's own list lags."""
         self._turns = 0
         """How often this bus has gained or lost a hub: one that comes back has the same name as before."""
         self._link_watchers: list[Callable[[], None]] = []
