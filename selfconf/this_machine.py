@@ -18,6 +18,7 @@ from dataclasses import asdict, field
 from io import FileIO
 from pathlib import Path
 
+from selfconf.atomic_write import write_atomically
 from selfconf.errors import NetworkError
 from selfconf.files import FileStamp, stamp
 from selfconf.model.immutable import immutable, replace
@@ -256,9 +257,7 @@ def relays(path: Path) -> bool:
 def _write(site: LocalSite) -> Path:
     with _writing() as root:
         path = root / f"{site.ecology}@{site.site}.json"
-        temporary = path.with_suffix(f".{os.getpid()}")
-        temporary.write_text(json.dumps(asdict(site)))
-        temporary.replace(path)
+        write_atomically(path, json.dumps(asdict(site)).encode())
     return path
 
 

@@ -7,6 +7,7 @@ import fcntl
 import json
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -68,6 +69,17 @@ def test_the_file_of_a_site_is_as_the_protocol_shows_it() -> None:
     page = (Path(__file__).parents[1] / "docs" / "protocol.md").read_text("utf-8")
     (shown,) = re.findall(r'^(\{"ecology".*?\})$', page, re.DOTALL | re.MULTILINE)
     assert list(json.loads(shown)) == list(json.loads(this_machine.announce(meeting()).read_text()))
+
+
+def test_a_site_that_cannot_be_announced_for_want_of_room_leaves_nothing(runtime_folder: Path) -> None:
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (16, before[1]))
+    try:
+        with pytest.raises(NetworkError, match=r"cannot write in"):
+            this_machine.announce(meeting())
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert list(runtime_folder.iterdir()) == []
 
 
 def test_all_sites_of_an_ecology_are_found_and_none_of_another() -> None:
