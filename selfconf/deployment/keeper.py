@@ -20,7 +20,7 @@ import time
 from collections.abc import Callable, Collection, Iterable, Set
 from typing import TYPE_CHECKING
 
-from selfconf.bus.port import Bus, Undo
+from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.configurator import Phase
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
 from selfconf.deployment.holders import Holding
@@ -97,6 +97,7 @@ class Keeper:
         """Whether it waits for what it sees of the other sites to be believed, to run a task."""
         self._exchange = RecordExchange(bus, keys, site, folder, self)
         bus.watch(keys.any_site_life(), self._site_changed)
+        bus.subscribe(keys.reopens(), lambda _: self._view.reopens(), Urgency.EVENT)
 
     def close(self) -> None:
         """Leave the tasks as they run to whichever site is next."""

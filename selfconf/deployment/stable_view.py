@@ -14,8 +14,8 @@ CALM = 0.3
 """Seconds without a site that comes or goes after which all count as seen; components let go of a task that no site
 runs after a second."""
 CALM_OVER_NEW_LINK = 2.0
-"""Seconds without such a change after which all count as seen by a site that has lost its hub meanwhile: a hub that
-many reach again may say nothing for so long."""
+"""Seconds without such a change after which all count as seen by a site that has lost its hub meanwhile, or has heard
+that one is opened anew: a hub that many reach again may say nothing for so long."""
 LONGEST_UNREST = 10.0
 """Seconds after which what is seen counts though sites still come and go."""
 
@@ -24,7 +24,7 @@ class StableView:
     """Whether the sites that are seen at a moment are those that there are.
 
     They are if at most one has gone and was not seen again, as when a site has ended; and once none has come or gone
-    for a while. A site that has just begun waits for that.
+    for a while. A site that has just begun waits for that, and so does one that hears of a hub which is opened anew.
     """
 
     def __init__(self, now: Callable[[], float], link: Callable[[], str]) -> None:
@@ -37,29 +37,43 @@ class StableView:
         """The sites that have come in the present unrest: if they go, they were not only out of sight."""
         self._before, self._is_over_new_link = link(), False
         """The link by which others were seen before it, and whether that was lost in it."""
+        self._hub_reopens = False
+        """Whether it was announced: a hub was about to be opened anew."""
         self._began = self._changed = now()
         """When it began, and when a site has come or gone last."""
 
+    def reopens(self) -> None:
+        """Note that a hub is about to be opened anew: the sites that are seen through it seem to go, and come back."""
+        self._note_change()
+        self._hub_reopens = True
+
     def changes(self, site: str, alive: bool) -> None:
         """Note that a site comes or goes."""
-        now = self._now()
-        if now - self._changed >= CALM and (len(self._missing) <= 1 or not self.unrest()):
-            self._missing, self._returned, self._began, self._has_just_begun = set(), set(), now, False
-            self._before, self._is_over_new_link = self._link(), False
-        self._changed = now
-        self._is_over_new_link |= self._link() != self._before
+        self._note_change()
         if alive:
             self._missing.discard(site)
             self._returned.add(site)
         elif site not in self._returned:
             self._missing.add(site)
 
+    def _note_change(self) -> None:
+        now = self._now()
+        if now - self._changed >= CALM and (self._counts_at_once() or not self.unrest()):
+            self._missing, self._returned, self._began, self._has_just_begun = set(), set(), now, False
+            self._before, self._is_over_new_link, self._hub_reopens = self._link(), False, False
+        self._changed = now
+        self._is_over_new_link |= self._link() != self._before
+
+    def _counts_at_once(self) -> bool:
+        """Whether a site that is missing has gone."""
+        return len(self._missing) <= 1 and not self._hub_reopens
+
     def unrest(self) -> float:
         """For how many more seconds others may be there than are seen, if nothing changes; 0 if not."""
-        if len(self._missing) <= 1 and not self._has_just_begun:
+        if self._counts_at_once() and not self._has_just_begun:
             return 0.0
         return max(0.0, min(self._changed + self._calm(), self._began + LONGEST_UNREST) - self._now())
 
     def _calm(self) -> float:
-        is_over_new_link = self._is_over_new_link or self._link() != self._before
-        return CALM_OVER_NEW_LINK if is_over_new_link else CALM
+        has_new_link = self._hub_reopens or self._is_over_new_link or self._link() != self._before
+        return CALM_OVER_NEW_LINK if has_new_link else CALM

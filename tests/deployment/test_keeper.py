@@ -12,7 +12,7 @@ from dataclasses import replace
 import pytest
 
 from selfconf.bus.memory import MemoryBus
-from selfconf.bus.port import Undo
+from selfconf.bus.port import Undo, Urgency
 from selfconf.deployment import Keeper, RunRequest
 from selfconf.deployment.keeper import keeper_of
 from selfconf.protocol.messages import TaskRecord
@@ -85,6 +85,27 @@ def test_while_all_sites_find_each_other_again_hardly_another_takes_a_task(
         keepers.lab.let_pass(0.05 if right in nodes else 0.0)
     keepers.lab.let_pass(5.0)
     assert len(begun) <= 1
+    assert keepers.running() == [keeper]
+
+
+def test_no_other_site_takes_a_task_while_the_hub_of_its_site_is_opened_anew(
+    keepers: Keepers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To the other sites only that one seems to have gone, as if it had been killed."""
+    keeper, begun = keepers.settled(), list[str]()
+    monkeypatch.setattr(Keeper, "_run", lambda self, record: begun.append(self.site))
+    network, node = keepers.lab.network, keepers.buses[keeper]
+    assert isinstance(node, MemoryBus)
+    others = [other for other in network.nodes if other is not node]
+    node.publisher(keepers.lab.keys.reopens(keeper), Urgency.EVENT).put(b"")
+    keepers.lab.let_pass(0.05)
+    for other in others:
+        network.cut(node, other)
+    keepers.lab.let_pass(0.5)
+    for other in others:
+        network.reconnect(node, other)
+    keepers.lab.let_pass(5.0)
+    assert not begun
     assert keepers.running() == [keeper]
 
 

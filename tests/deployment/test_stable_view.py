@@ -86,6 +86,31 @@ def test_over_a_new_link_nobody_is_taken_for_gone_so_soon(observed: Observed, li
     assert observed.unrest() == pytest.approx(CALM)
 
 
+def test_where_a_hub_is_opened_anew_the_only_site_that_is_missing_is_waited_for(observed: Observed) -> None:
+    observed.view.reopens()
+    observed.time += 0.05
+    observed.go("a")
+    assert observed.unrest() == pytest.approx(CALM_OVER_NEW_LINK)
+    observed.time += 1.1 * CALM
+    observed.come("b")
+    assert observed.unrest() == pytest.approx(CALM_OVER_NEW_LINK)
+    observed.time += 1.1 * CALM_OVER_NEW_LINK
+    assert not observed.unrest()
+    observed.go("b")
+    assert not observed.unrest()
+
+
+def test_hubs_that_are_opened_anew_again_and_again_are_waited_for_no_longer_than_a_while(observed: Observed) -> None:
+    observed.view.reopens()
+    observed.go("a")
+    waited = 0.0
+    while observed.unrest():
+        observed.time += 0.5 * CALM
+        waited += 0.5 * CALM
+        observed.view.reopens()
+    assert LONGEST_UNREST <= waited < LONGEST_UNREST + CALM
+
+
 def test_unrest_that_does_not_end_is_waited_for_no_longer_than_a_while(observed: Observed) -> None:
     observed.go("a", "b")
     waited = 0.0
