@@ -7,7 +7,6 @@ from collections import Counter
 
 import pytest
 
-from selfconf import library
 from selfconf.model.codes import BY_CODE, CODES, PREAMBLE, Code
 from selfconf.model.diagnostic import UNREADABLE, Severity
 from selfconf.rdf.turtle import parse
@@ -16,15 +15,6 @@ from selfconf.rdf.turtle import parse
 def test_a_code_is_given_once_and_is_found_by_its_name() -> None:
     assert max(Counter(code.code for code in CODES).values()) == 1
     assert [BY_CODE[code.code] for code in CODES] == list(CODES)
-
-
-def test_a_shape_earns_one_code() -> None:
-    assert max(Counter(shape for code in CODES for shape in code.shapes).values()) == 1
-
-
-def test_every_shape_that_is_named_ships() -> None:
-    text = "\n".join(path.read_text("utf-8") for path in library.shapes())
-    assert [shape for code in CODES for shape in code.shapes if not re.search(rf":{shape}\b", text)] == []
 
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.code)

@@ -146,7 +146,7 @@ def in_the_shape() -> Asked:
 def constraints(shape: Node) -> Iterator[tuple[str, object]]:
     """What a property shape asks of the values of its path."""
     for predicate, value in SHAPE.predicate_objects(shape):
-        if predicate not in (RDF.type, SH.path, SH.message):
+        if predicate not in (RDF.type, SH.path, SH.message, URIRef(SHAPES.code)):
             word = str(predicate).removeprefix(str(SH))
             if word == "in":
                 yield word, tuple(Collection(SHAPE, value))

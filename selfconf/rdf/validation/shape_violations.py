@@ -22,7 +22,6 @@ from rdflib.plugins.sparql.sparql import Query
 from rdflib.query import Result
 from rdflib.term import Node
 
-from selfconf.model.codes import BY_SHAPE
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.model.immutable import immutable
 from selfconf.rdf import vocabulary
@@ -254,7 +253,7 @@ def shape_violations(
         at(
             positions,
             offset,
-            BY_SHAPE[violation.shape.removeprefix(_SHAPES)].code,
+            str(shapes.all.value(violation.shape, _SHAPES.code)),
             violation.message,
             violation.severity,
             _remedy(violation, graph),
