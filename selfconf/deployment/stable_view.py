@@ -58,19 +58,15 @@ class StableView:
 
     def _note_change(self) -> None:
         now = self._now()
-        if now - self._changed >= CALM and (self._counts_at_once() or not self.unrest()):
+        if now - self._changed >= CALM and not self.unrest():
             self._missing, self._returned, self._began, self._has_just_begun = set(), set(), now, False
             self._before, self._is_over_new_link, self._hub_reopens = self._link(), False, False
         self._changed = now
         self._is_over_new_link |= self._link() != self._before
 
-    def _counts_at_once(self) -> bool:
-        """Whether a site that is missing has gone."""
-        return len(self._missing) <= 1 and not self._hub_reopens
-
     def unrest(self) -> float:
         """For how many more seconds others may be there than are seen, if nothing changes; 0 if not."""
-        if self._counts_at_once() and not self._has_just_begun:
+        if len(self._missing) <= 1 and not self._hub_reopens and not self._has_just_begun:
             return 0.0
         return max(0.0, min(self._changed + self._calm(), self._began + LONGEST_UNREST) - self._now())
 

@@ -111,6 +111,15 @@ def test_hubs_that_are_opened_anew_again_and_again_are_waited_for_no_longer_than
     assert LONGEST_UNREST <= waited < LONGEST_UNREST + CALM
 
 
+def test_a_site_that_comes_does_not_end_the_wait_of_one_that_has_just_begun_and_lost_its_link() -> None:
+    observed = Observed()
+    observed.link = "hub 2"
+    observed.time += 2.0 * CALM
+    assert observed.unrest() == pytest.approx(CALM_OVER_NEW_LINK - 2.0 * CALM)
+    observed.come("a")
+    assert observed.unrest() == pytest.approx(CALM_OVER_NEW_LINK)
+
+
 def test_unrest_that_does_not_end_is_waited_for_no_longer_than_a_while(observed: Observed) -> None:
     observed.go("a", "b")
     waited = 0.0
