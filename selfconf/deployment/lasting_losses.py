@@ -63,8 +63,12 @@ class LastingLosses:
         self._step(LossLasts(frozenset(filter(self._is_actuator, self._state().held))))
 
     def _is_actuator(self, component: IRI) -> bool:
-        """Whether a component is an actuator; one whose operations the task uses acts on, for those that call it."""
+        """Whether a component is an actuator; one whose operations the task uses acts on, for those that call it.
+
+        One that is advertised no more, as its site has gone, counts as an actuator if the task uses no output of it.
+        """
         found, plan = self._ecology.discovery.found.get(component), self._state().plan
-        if found is None or not found.advertisement.profile.is_actuator:
-            return False
-        return plan is None or component not in plan.inputs or component in plan.order.actuators
+        if plan is None or component not in plan.inputs:
+            return found is not None and found.advertisement.profile.is_actuator
+        is_last = component in plan.order.actuators
+        return is_last and (found is None or found.advertisement.profile.is_actuator)

@@ -43,6 +43,26 @@ def test_the_drive_rests_for_as_long_as_a_repair_takes_more_than_a_moment(
     assert drive.said.count(("started",)) == 1 + rests
 
 
+def test_a_drive_whose_site_has_gone_rests_as_any_other(tmp_path: Path) -> None:
+    """The ecology is asked again as something appears, and answers without the drive, which lives on."""
+    lab = Lab(tmp_path)
+    lab.site("sensors", "tracker", "sonar", "encoder", "control")
+    drives = lab.site("drives", "drive", "pippi")
+    for name in ("tracker", "sonar", "encoder", "control", "drive", "pippi"):
+        lab.component(name)
+    lab.running(agent := lab.agent())
+    lab.crash(drives)
+    lab.let_pass(1.0)
+    lab.crash("tracker")
+    lab.crash("pippi")
+    lab.let_pass(LASTS_LONG / 2)
+    lab.component("pippi")
+    lab.let_pass(LASTS_LONG / 2 + 0.1)
+    assert iri("astrid-drive") not in agent.ecology.discovery.found
+    assert agent.state.held[iri("astrid-drive")].rests
+    assert lab.components["drive"].said[-1] == ("stopped",)
+
+
 _TWO_SINKS = {
     "left": ':left a sc:Component, :Left ; sc:hasOutput [ sc:name "out" ; sc:signalType :X ] .',
     **{
