@@ -12,7 +12,7 @@ from pathlib import Path
 
 from benchmarks import validate
 from benchmarks.scale import worlds
-from benchmarks.search import families as f
+from benchmarks.search.families import scaling as f
 from selfconf.search.problem import Problem
 
 SEED = 52_417

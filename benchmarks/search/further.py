@@ -2,11 +2,10 @@
 
     python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--half HALF] [--write]
 
-Each engine runs in a process of its own, on the problems of `further_families`, `later_families`, `last_families`,
-`newest_families`, `installation_families` and `task_families`, and is asked two questions: which configuration is the
-first one, or that there is none, which is what selfconf answers; and, where there is one, for any configuration, which
-is easier. An engine is stopped at the limit, or at `PATIENCE` times the best time so far where that is sooner, since
-what is slower does not change how selfconf compares to the best.
+Each engine runs in a process of its own, on the problems of `families/sets.py`, and is asked two questions: which
+configuration is the first one, or that there is none, which is what selfconf answers; and, where there is one, for any
+configuration, which is easier. An engine is stopped at the limit, or at `PATIENCE` times the best time so far where
+that is sooner, since what is slower does not change how selfconf compares to the best.
 `--write` writes `docs/benchmarks/further.md`.
 """
 
@@ -24,15 +23,10 @@ from typing import NamedTuple
 
 from benchmarks.search import engines as anything
 from benchmarks.search import first
-from benchmarks.search.families import Instance
-from benchmarks.search.further_families import CHOOSING, REPORTING, SMALL, UNSEEN, Family, instances
-from benchmarks.search.installation_families import INSTALLATION_CHOOSING, INSTALLATION_REPORTING, INSTALLATION_SMALL
-from benchmarks.search.last_families import LAST_CHOOSING, LAST_REPORTING, LAST_SMALL
-from benchmarks.search.later_families import LATER_CHOOSING, LATER_REPORTING, LATER_SMALL
+from benchmarks.search.families.sets import SETS, SMALLEST
+from benchmarks.search.families.wiring import Instance, instances
 from benchmarks.search.measure import Measured, made, measure
-from benchmarks.search.newest_families import NEWEST_CHOOSING, NEWEST_REPORTING, NEWEST_SMALL
 from benchmarks.search.report import WORK, Row, table
-from benchmarks.search.task_families import TASK_CHOOSING, TASK_REPORTING, TASK_SMALL
 from selfconf.search.problem import Problem
 
 SEED = 94_211
@@ -42,24 +36,6 @@ PATIENCE = 3.0
 """An engine that has taken so many times as long as the best, and a second, is not waited for."""
 MEDIAN, WORST, ANY = 0.7, 2.0, 2.0
 """The goals: the first configuration in so many times the best in the median and at worst; any one in the median."""
-HALVES: dict[str, Mapping[str, Family]] = {
-    "choosing": CHOOSING,
-    "reporting": REPORTING,
-    "unseen": UNSEEN,
-    "choosing later": LATER_CHOOSING,
-    "reporting later": LATER_REPORTING,
-    "choosing last": LAST_CHOOSING,
-    "reporting last": LAST_REPORTING,
-    "choosing newest": NEWEST_CHOOSING,
-    "reporting newest": NEWEST_REPORTING,
-    "choosing installations": INSTALLATION_CHOOSING,
-    "reporting installations": INSTALLATION_REPORTING,
-    "choosing tasks": TASK_CHOOSING,
-    "reporting tasks": TASK_REPORTING,
-}
-"""The families by what they are for."""
-SMALLEST = {**SMALL, **LATER_SMALL, **LAST_SMALL, **NEWEST_SMALL, **INSTALLATION_SMALL, **TASK_SMALL}
-"""One small instance of each, to see that everything runs."""
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "further.md"
 
 SETTING = """\
@@ -223,14 +199,14 @@ def main() -> int:
     parser.add_argument("--limit", type=float, help=f"seconds for each answer ({LIMIT:g}; 0.3 with --smoke)")
     parser.add_argument("--seeds", type=int, default=SEEDS, help=f"instances of each size ({SEEDS})")
     parser.add_argument("--only", default="", help="families whose name contains this")
-    parser.add_argument("--half", choices=HALVES, help="only the families of this half")
+    parser.add_argument("--half", choices=SETS, help="only the families of this half")
     parser.add_argument("--write", action="store_true", help="write the page")
     options = parser.parse_args()
     limit = options.limit or (0.3 if options.smoke else LIMIT)
     seeds = 1 if options.smoke else options.seeds
     engines = anything.installed()
     everything: list[Asked] = []
-    for half, families in {"smoke": SMALLEST}.items() if options.smoke else HALVES.items():
+    for half, families in {"smoke": SMALLEST}.items() if options.smoke else SETS.items():
         chosen = {name: sizes for name, sizes in families.items() if options.only in name}
         if options.half not in (None, half):
             continue

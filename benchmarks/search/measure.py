@@ -16,10 +16,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 
-from benchmarks.search import families as f
 from benchmarks.search.engines import ENGINES, SMALL
+from benchmarks.search.families import scaling as f
+from benchmarks.search.families.coverage import cover
 from benchmarks.search.first import First
-from benchmarks.search.further_families import cover
 from selfconf.search.problem import Problem
 
 Engine = Callable[[Problem], First]

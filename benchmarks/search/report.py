@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.search.engines import ENGINES, GENERAL
-from benchmarks.search.families import Instance
+from benchmarks.search.families.wiring import Instance
 from benchmarks.search.first import First
 from benchmarks.search.measure import Measured
 from selfconf.model.wording import listed

@@ -17,10 +17,10 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
-from benchmarks.search import families as f
 from benchmarks.search import first, tuning
 from benchmarks.search.engines import SMALL, installed
-from benchmarks.search.families import Instance
+from benchmarks.search.families import scaling as f
+from benchmarks.search.families.wiring import Instance
 from benchmarks.search.measure import Measured, made, measure
 from benchmarks.search.report import Row, page, plot, table
 

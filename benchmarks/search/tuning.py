@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
 
-from benchmarks.search import families as f
-from benchmarks.search.families import Instance
+from benchmarks.search.families import scaling as f
+from benchmarks.search.families.wiring import Instance
 from benchmarks.search.measure import made, measure
 from selfconf.search.engines import candidate_search
 from selfconf.search.engines import clause_learning as sat

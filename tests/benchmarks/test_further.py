@@ -8,19 +8,24 @@ from operator import and_
 
 import pytest
 
-from benchmarks.search import families, first, further
+from benchmarks.search import first, further
+from benchmarks.search.families import scaling, wiring
+from benchmarks.search.families.arithmetic import Circuit, multiplied
+from benchmarks.search.families.coverage import cover
+from benchmarks.search.families.graphs import cycles, tree
+from benchmarks.search.families.installations import bins, building
+from benchmarks.search.families.puzzles import magic
+from benchmarks.search.families.rosters import hours, workshop
+from benchmarks.search.families.wiring import counted
 from benchmarks.search.further import Asked
-from benchmarks.search.further_families import counted, cover
-from benchmarks.search.last_families import Circuit, multiplied
 from benchmarks.search.measure import Measured
-from benchmarks.search.newest_families import bins, building, cycles, hours, magic, tree, workshop
 from benchmarks.search.report import Row
 from selfconf.model.partition import Candidate
 from tests.benchmarks.short_run import short_run
 
 
 def test_engines_agree_where_roles_draw_on_one_pool_each_in_an_order_of_its_own() -> None:
-    pool = [Candidate(families.profile(name)) for name in ("p0", "p1", "p2", "p3")]
+    pool = [Candidate(wiring.profile(name)) for name in ("p0", "p1", "p2", "p3")]
     problem = counted([pool, pool[::-1]], [2, 2], ())
     found = first.selfconf(problem)
     assert isinstance(found, tuple)
@@ -43,7 +48,7 @@ def test_a_circuit_has_the_bits_that_its_gates_make() -> None:
     wires = [built.wire(), built.wire()]
     built.gate(lambda x, y: x & y, wires, 1)
     assert first.selfconf(built.problem()) == tuple(
-        families.iri(name) for name in ("gate000.1", "gate001.1", "gate002.11")
+        wiring.iri(name) for name in ("gate000.1", "gate001.1", "gate002.11")
     )
 
 
@@ -138,7 +143,7 @@ def test_the_short_run_asks_all_engines_both_questions() -> None:
 
 def row(mine: float | None, other: float | None) -> Row:
     """An instance with the seconds that selfconf and another engine take; None where it has no answer within 60 s."""
-    instance = families.Instance("made up", "one", 1, lambda: families.navigation(1, 1))
+    instance = wiring.Instance("made up", "one", 1, lambda: scaling.navigation(1, 1))
     found = {
         engine: Measured(60.0, None) if seconds is None else Measured(seconds, False)
         for engine, seconds in (("selfconf", mine), ("CaDiCaL", other))

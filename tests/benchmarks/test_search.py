@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from benchmarks.search import families, first, sparql
+from benchmarks.search import first, sparql
 from benchmarks.search.engines import installed
+from benchmarks.search.families import scaling, wiring
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row, exponents, page, verdict
 from selfconf.model.term import IRI
@@ -23,19 +24,19 @@ def test_the_short_run_runs() -> None:
 
 @pytest.mark.parametrize("solvable", [True, False])
 def test_rdflib_answers_the_same_query(solvable: bool) -> None:
-    assert sparql.rdflib_graph(families.navigation(3, 1, solvable)) is solvable
-    assert sparql.oxigraph(families.navigation(3, 1, solvable)) is solvable
-    assert sparql.oxigraph(families.fleet(3, 4, 1))
+    assert sparql.rdflib_graph(scaling.navigation(3, 1, solvable)) is solvable
+    assert sparql.oxigraph(scaling.navigation(3, 1, solvable)) is solvable
+    assert sparql.oxigraph(scaling.fleet(3, 4, 1))
 
 
 PROBLEMS = {
-    "navigation": families.navigation(12, 7001),
-    "tree": families.graph("tree", 12, 6, 3, 7001),
-    "distinct": families.distinct(8, 8),
-    "scarce": families.scarce(12, 0.4, 1),
-    "3-SAT": families.satisfiability(20, 3.0, 7001),
-    "fleet": families.fleet(6, 20, 7001),
-    "impossible": families.navigation(4, 7001, solvable=False),
+    "navigation": scaling.navigation(12, 7001),
+    "tree": scaling.graph("tree", 12, 6, 3, 7001),
+    "distinct": scaling.distinct(8, 8),
+    "scarce": scaling.scarce(12, 0.4, 1),
+    "3-SAT": scaling.satisfiability(20, 3.0, 7001),
+    "fleet": scaling.fleet(6, 20, 7001),
+    "impossible": scaling.navigation(4, 7001, solvable=False),
 }
 
 
@@ -48,7 +49,7 @@ def test_whoever_is_asked_for_the_first_configuration_names_it(problem: Problem)
 
 def row(size: int, mine: float, other: float | None, answer: bool | None = True) -> Row:
     """A row of the table."""
-    instance = families.Instance("navigation", f"{size} per role", size, lambda: families.navigation(1, 1))
+    instance = wiring.Instance("navigation", f"{size} per role", size, lambda: scaling.navigation(1, 1))
     beside = Measured(3.0, None) if other is None else Measured(other, answer)
     return Row(instance, {"selfconf": Measured(mine, answer), "clingo": beside}, answer)
 

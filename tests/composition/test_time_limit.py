@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.search import families
+from benchmarks.search.families import scaling
 from selfconf.api.reading import read
 from selfconf.composition import TimeLimit, composed
 from selfconf.composition.composer import Composer
@@ -133,7 +133,7 @@ def test_what_is_asked_later_has_less_time_and_none_once_it_is_over() -> None:
 def test_a_call_of_a_solver_which_hears_no_alarm_is_ended_when_the_time_is_up(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pysat")
     monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 10**9)
-    hard, began = reduced(families.satisfiability(400, 4.26, 1)), time.monotonic()
+    hard, began = reduced(scaling.satisfiability(400, 4.26, 1)), time.monotonic()
     with ClauseSolver(hard) as solver:
         assert TimeLimit(0.2).within(lambda: solver.ask((), Budget()), "no answer") == "no answer"
     assert time.monotonic() - began < 10.0  # minutes without

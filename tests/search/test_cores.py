@@ -7,7 +7,7 @@ from itertools import combinations, islice
 import pytest
 from hypothesis import given
 
-from benchmarks.search.families import distinct
+from benchmarks.search.families.scaling import distinct
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.requirement import InputFed
 from selfconf.search import cores

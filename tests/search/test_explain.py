@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 
 import selfconf
-from benchmarks.search.further_families import pigeonholes
+from benchmarks.search.families.puzzles import pigeonholes
 from selfconf.composition import Strategy
 from selfconf.composition.searches import Searches
 from selfconf.model.refusal import InputUnfed, MisnamedPort, Refusal

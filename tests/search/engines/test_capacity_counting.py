@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.search.installation_families import beds, capacity
+from benchmarks.search.families.installations import beds, capacity
 from selfconf.search.budget import Budget
 from selfconf.search.engines import (
     ClauseSolver,

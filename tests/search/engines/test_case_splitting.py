@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.search.families import profile
-from benchmarks.search.further_families import counted
+from benchmarks.search.families.wiring import counted, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Variable
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
-from benchmarks.search import families
+from benchmarks.search.families import scaling
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, solver_available
 from selfconf.search.engines.least_solution import least_by_clauses
@@ -73,7 +73,7 @@ def test_clause_learning_finds_the_least_solution(problem: Problem) -> None:
 
 def test_propagation_alone_refutes_what_is_refuted_without_a_search() -> None:
     pytest.importorskip("pysat")
-    with clause_learning.ClauseSolver(pruned(reduced(families.distinct(3, 3)))) as solver:
+    with clause_learning.ClauseSolver(pruned(reduced(scaling.distinct(3, 3)))) as solver:
         first, second = solver.literal(), solver.literal()
         assert not solver.refutes(first)
         solver.add([-first, second])
@@ -85,7 +85,7 @@ def test_propagation_alone_refutes_what_is_refuted_without_a_search() -> None:
 
 def test_what_is_settled_refutes_what_cannot_be_beside_it() -> None:
     pytest.importorskip("pysat")
-    given_ = pruned(reduced(families.distinct(3, 3)))
+    given_ = pruned(reduced(scaling.distinct(3, 3)))
     with clause_learning.ClauseSolver(given_) as solver:
         (first, second, third), (of_second, *others), _ = solver.plays
         assert {-second, -third, -of_second} <= (solver.implied([first]) or set())
@@ -104,7 +104,7 @@ def test_what_is_settled_refutes_what_cannot_be_beside_it() -> None:
 def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pysat")
     monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 10**9)
-    with clause_learning.ClauseSolver(reduced(families.satisfiability(400, 4.26, 1))) as clauses:
+    with clause_learning.ClauseSolver(reduced(scaling.satisfiability(400, 4.26, 1))) as clauses:
         timer = threading.Timer(0.2, clauses.interrupt)
         timer.start()
         assert clauses.ask((), Budget()) is None
@@ -116,7 +116,7 @@ def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest
 
 def test_numbers_of_five_up_to_half_are_counted_by_clauses_and_others_by_the_solver() -> None:
     pytest.importorskip("pysat")
-    with clause_learning.ClauseSolver(reduced(families.satisfiability(10, 2.0, 1)), counters=True) as clauses:
+    with clause_learning.ClauseSolver(reduced(scaling.satisfiability(10, 2.0, 1)), counters=True) as clauses:
         literals = [clauses.literal() for _ in range(10)]
         for most, grown in ((1, False), (4, False), (5, True), (6, False), (10, False)):
             before = clauses.literal()
@@ -132,7 +132,7 @@ def test_an_interrupt_in_the_middle_of_a_call_reaches_the_program(monkeypatch: p
     monkeypatch.setattr(clause_learning, "CONFLICTS_PER_CALL", 20_000)  # conflicts: calls of about a tenth of a second
     command = [sys.executable, "-c", INTERRUPTING]
     with (
-        clause_learning.ClauseSolver(reduced(families.satisfiability(400, 4.26, seed=1))) as clauses,
+        clause_learning.ClauseSolver(reduced(scaling.satisfiability(400, 4.26, seed=1))) as clauses,
         subprocess.Popen(command, stdin=subprocess.PIPE) as other,
     ):
         solve_limited = clauses._solver.solve_limited

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from benchmarks.search.families import distinct
-from benchmarks.search.further_families import colouring
+from benchmarks.search.families.graphs import colouring
+from benchmarks.search.families.scaling import distinct
 from selfconf.search.engines.conflict_graph import ConflictGraph, mask_of, numbers_of
 from selfconf.search.reduction import pruned, reduced
 

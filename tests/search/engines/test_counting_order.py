@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from benchmarks.search.families import profile
-from benchmarks.search.further_families import counted
-from benchmarks.search.later_families import domination
+from benchmarks.search.families.puzzles import domination
+from benchmarks.search.families.wiring import counted, profile
 from selfconf.model.partition import Candidate
 from selfconf.search.budget import Budget
 from selfconf.search.engines import counting_order, encoding

@@ -7,7 +7,7 @@ from itertools import product
 
 import pytest
 
-from benchmarks.search.further_families import pigeonholes
+from benchmarks.search.families.puzzles import pigeonholes
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import Constraint, Distinct, Fed, Played, pruned, reduced

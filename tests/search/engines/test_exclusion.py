@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.search.families import distinct, iri, profile
-from benchmarks.search.further_families import colouring, counted, in_pairs
+from benchmarks.search.families.graphs import colouring
+from benchmarks.search.families.scaling import distinct
+from benchmarks.search.families.wiring import counted, in_pairs, iri, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.search.budget import Budget
 from selfconf.search.engines.encoding import Encoding

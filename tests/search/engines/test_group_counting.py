@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.search.further_families import frequencies, latin, pigeonholes, queens, tour
+from benchmarks.search.families.graphs import frequencies, tour
+from benchmarks.search.families.puzzles import latin, pigeonholes, queens
 from selfconf.search.budget import Budget
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.group_counting import GroupCounting

@@ -16,7 +16,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from benchmarks.search.further_families import cover, queens, ring
+from benchmarks.search.families.coverage import cover
+from benchmarks.search.families.puzzles import queens
+from benchmarks.search.families.random_relations import ring
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, least_solution, rival
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses
@@ -138,7 +140,7 @@ def test_a_budget_of_steps_starts_no_process(monkeypatch: pytest.MonkeyPatch) ->
 SEARCHING = """
 import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background ignores it
-from benchmarks.search.families import satisfiability
+from benchmarks.search.families.scaling import satisfiability
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, least_solution, rival
 from selfconf.search.reduction import reduced

@@ -12,8 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.search.families import satisfiability
-from benchmarks.search.further_families import cover, grid, queens
+from benchmarks.search.families.coverage import cover
+from benchmarks.search.families.puzzles import queens
+from benchmarks.search.families.random_relations import grid
+from benchmarks.search.families.scaling import satisfiability
 from selfconf.search.budget import Budget
 from selfconf.search.engines import ordered_decisions
 from selfconf.search.engines.encoding import Encoding

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.search.further_families import tour
-from benchmarks.search.later_families import coloured_parameters, crossword
-from benchmarks.search.newest_families import hours
+from benchmarks.search.families.graphs import coloured_parameters, tour
+from benchmarks.search.families.puzzles import crossword
+from benchmarks.search.families.rosters import hours
 from selfconf.search.budget import Budget
 from selfconf.search.engines import least_solution, support_clauses
 from selfconf.search.engines.clause_learning import ClauseSolver

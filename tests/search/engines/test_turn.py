@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.search import families
-from benchmarks.search.further_families import plant
+from benchmarks.search.families import scaling
+from benchmarks.search.families.random_relations import plant
 from selfconf.search.budget import Budget
 from selfconf.search.engines import turn
 from selfconf.search.engines.clause_learning import ClauseSolver
@@ -34,7 +34,7 @@ def test_questions_about_many_slots_lead_to_the_least_solution(problem: Problem,
 
 
 def test_what_propagation_refutes_is_left_out_of_a_question_and_is_a_step() -> None:
-    given_ = pruned(reduced(families.distinct(3, 3)))
+    given_ = pruned(reduced(scaling.distinct(3, 3)))
     with ClauseSolver(given_) as clauses:
         ahead, budget = Turn(clauses), Budget(100)
         assert ahead.ahead(given_.slots, clauses.plays, budget) == [0]
@@ -46,7 +46,7 @@ def test_what_propagation_refutes_is_left_out_of_a_question_and_is_a_step() -> N
 
 
 def test_what_follows_from_the_options_before_is_not_propagated_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    given_ = pruned(reduced(families.distinct(3, 3)))
+    given_ = pruned(reduced(scaling.distinct(3, 3)))
     propagated: list[list[int]] = []
     implied = ClauseSolver.implied
 
@@ -64,7 +64,7 @@ def test_what_follows_from_the_options_before_is_not_propagated_again(monkeypatc
 
 
 def test_where_all_options_are_refuted_half_of_the_slots_are_asked_about() -> None:
-    given_ = pruned(reduced(families.distinct(4, 4)))
+    given_ = pruned(reduced(scaling.distinct(4, 4)))
     with ClauseSolver(given_) as clauses:
         first, second, third = clauses.plays[:3]
         either = clauses.literal()
@@ -84,7 +84,7 @@ def test_where_all_options_are_refuted_half_of_the_slots_are_asked_about() -> No
 def test_how_far_it_looks_follows_from_the_last_answer(
     slots: int, possible: bool | None, conflicts: int, reach: int
 ) -> None:
-    with ClauseSolver(pruned(reduced(families.distinct(2, 2)))) as clauses:
+    with ClauseSolver(pruned(reduced(scaling.distinct(2, 2)))) as clauses:
         one = Turn(clauses)
         one.answered(slots, possible, conflicts)
         assert one.reach == reach

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from benchmarks.search import families, sparql
+from benchmarks.search import sparql
+from benchmarks.search.families import scaling
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.least_solution import least_by_clauses
@@ -46,7 +47,7 @@ def test_first_is_the_first_answer_to_one_query_for_the_whole_template(problem: 
 @pytest.mark.parametrize("seed", range(12))
 def test_a_cause_near_the_beginning_is_found_there_and_the_answer_is_the_same(seed: int) -> None:
     pytest.importorskip("pysat")
-    problem = families.graph("graph", 150, 10 + seed, 3, seed)
+    problem = scaling.graph("graph", 150, 10 + seed, 3, seed)
     given_ = LazyReduction(problem)
     found = first.solution(given_, Budget())
     expected = numbers(least_by_clauses(reduced(problem), Budget()))
@@ -57,7 +58,7 @@ def test_a_cause_near_the_beginning_is_found_there_and_the_answer_is_the_same(se
 
 def test_where_the_first_roles_are_impossible_the_whole_problem_is_not_reduced() -> None:
     pytest.importorskip("pysat")
-    given_ = LazyReduction(families.graph("graph", 200, 10, 3, 7_001))
+    given_ = LazyReduction(scaling.graph("graph", 200, 10, 3, 7_001))
     assert first.solution(given_, Budget()) is None
     assert "reduced" not in vars(given_)
 
@@ -68,7 +69,7 @@ def test_a_problem_is_possible_though_the_steps_end_before_its_first_solution_is
     pytest.importorskip("pysat")
     # The solver that decides in order meets no other solution than the first.
     monkeypatch.setattr(OrderedDecisions, "available", staticmethod(lambda _: False))
-    problem = families.satisfiability(60, 3.8, seed=2)
+    problem = scaling.satisfiability(60, 3.8, seed=2)
     # Each call of the solver is a step, and the first solution takes one more for each slot at least.
     undecided = [
         steps

@@ -1,59 +1,14 @@
-"""Families of problems, each instance made from its parameters and a seed, the same on every machine."""
+"""Families that grow in one number, by which the search is compared with other engines and its thresholds are tuned."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 
+from benchmarks.search.families.wiring import iri, made, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
-from selfconf.model.profile import Input, Output, Profile, shared_ports
-from selfconf.model.template import Interaction, Parameter, Role, Task, Template
-from selfconf.model.term import IRI
+from selfconf.model.template import Task
 from selfconf.search.problem import Problem
-
-
-@dataclass(frozen=True)
-class Instance:
-    """A problem and what to call it; made when asked for, as the big ones should not all be in memory at once."""
-
-    family: str
-    name: str
-    size: int
-    """What grows in the family: candidates per role, roles, or variables."""
-    make: Callable[[], Problem]
-
-
-def iri(name: object) -> IRI:
-    """A name in the namespace of the benchmarks."""
-    return IRI(f"urn:bench:{name}")
-
-
-def profile(name: object, inputs: Sequence[object] = (), outputs: Sequence[object] = ()) -> Profile:
-    """A component with a port for each signal."""
-    return Profile(
-        iri(name),
-        ports=shared_ports(  # as whoever reads an advertisement does
-            tuple(Input(f"i{k}", (iri(s),)) for k, s in enumerate(inputs)),
-            tuple(Output(f"o{k}", (iri(s),)) for k, s in enumerate(outputs)),
-        ),
-    )
-
-
-def made(
-    roles: Sequence[Sequence[Candidate]],
-    edges: Sequence[tuple[int, int]],
-    variables: tuple[Variable, ...] = (),
-) -> Problem:
-    """A problem with one component per role."""
-    template = Template(
-        iri("template"),
-        tuple(Role(iri(f"role{k}")) for k in range(len(roles))),
-        tuple(Interaction(iri(f"role{a}"), iri(f"role{b}")) for a, b in edges),
-        tuple(Parameter(v.parameter, v.parameter.short, in_shape=True) for v in variables),
-    )
-    return Problem(Task(template), Partition(tuple(map(tuple, roles)), variables))
-
 
 NAVIGATION = ((0, 3), (1, 3), (2, 3), (3, 4))
 

@@ -1,7 +1,4 @@
-"""Families after real installations, which were measured before the search was changed once more.
-
-`INSTALLATION_CHOOSING` is what it was changed on, and on `INSTALLATION_REPORTING` that was only measured.
-"""
+"""Families after real installations."""
 
 from __future__ import annotations
 
@@ -9,12 +6,86 @@ import random
 from collections.abc import Mapping
 from itertools import combinations, product
 
-from benchmarks.search.families import iri, profile
-from benchmarks.search.further_families import Family, Goes, counted, in_pairs
-from benchmarks.search.newest_families import heard_by_name, hearing
+from benchmarks.search.families.wiring import Goes, counted, heard_by_name, hearing, in_pairs, iri, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.model.template import Interaction, Parameter, Role, Task, Template
 from selfconf.search.problem import Problem
+
+
+def building(floors: int, rooms: int, each: int, protocols: int, seed: int) -> Problem:
+    """A building with a backbone, a gateway for each floor, and a sensor, a controller and a lamp for each room.
+
+    For each of these there are so many candidates, and each speaks one or two protocols; a sensor of a floor's hall may
+    serve any room of the floor, but one alone.
+    """
+    rng = random.Random(seed)
+
+    def spoken(kind: str, number: int) -> list[str]:
+        return [f"{kind}{protocol}" for protocol in rng.sample(range(protocols), number)]
+
+    def some(name: str, heard: Mapping[int, str], issued: str, number: int) -> list[Candidate]:
+        return [
+            hearing(
+                f"{name}.{k:02}",
+                {role: signal for role, kind in heard.items() for signal in spoken(kind, 1)},
+                spoken(issued, number),
+            )
+            for k in range(each)
+        ]
+
+    parts = [some("backbone", {}, "net", 2)]
+    edges: list[tuple[int, int]] = []
+    for floor in range(floors):
+        gateway = len(parts)
+        parts.append(some(f"gateway{floor:02}", {0: "net"}, "bus", 2))
+        edges.append((0, gateway))
+        hall = some(f"hall{floor:02}", {}, "lux", 2)
+        for room in range(rooms):
+            place, sensor = f"{floor:02}.{room:02}", len(parts)
+            parts += [
+                some(f"sensor{place}", {}, "lux", 1) + hall,
+                some(f"controller{place}", {sensor: "lux", gateway: "bus"}, "dim", 1),
+                some(f"lamp{place}", {sensor + 1: "dim"}, "light", 1),
+            ]
+            edges += [(sensor, sensor + 1), (gateway, sensor + 1), (sensor + 1, sensor + 2)]
+    return heard_by_name(parts, edges)
+
+
+def bins(items: int, number: int, each: int, slack: int, seed: int) -> Problem:
+    """Items of 2 to 9 units that each fit some of the bins; a bin knows the loads that it can take, all nearly full."""
+    rng = random.Random(seed)
+    size = [rng.randint(2, 9) for _ in range(items)]
+    fits = [rng.sample(range(number), each) for _ in range(items)]
+    room = [slack] * number
+    for item, some in enumerate(fits):
+        room[rng.choice(some)] += size[item]
+    parts = [
+        [
+            hearing(f"item{item:02}.{one}", {}, [f"{'in' if one == other else 'out'}{other}" for other in some])
+            for one in some
+        ]
+        for item, some in enumerate(fits)
+    ]
+    edges: list[tuple[int, int]] = []
+    for one in range(number):
+        mine = [item for item, some in enumerate(fits) if one in some]
+        loads = [
+            load
+            for load in product((0, 1), repeat=len(mine))
+            if room[one] - 5 <= sum(size[item] for item, taken in zip(mine, load, strict=True) if taken) <= room[one]
+        ]
+        parts.append(
+            [
+                hearing(
+                    f"load{one}.{''.join(map(str, load))}",
+                    {item: f"{'in' if taken else 'out'}{one}" for item, taken in zip(mine, load, strict=True)},
+                    (),
+                )
+                for load in rng.sample(loads, len(loads))
+            ]
+        )
+        edges += [(item, items + one) for item in mine]
+    return heard_by_name(parts, edges)
 
 
 def capacity(holes: int, room: int, guests: int, each: int, seed: int) -> Problem:
@@ -236,66 +307,3 @@ def voters(groups: int, makes: int, signals: int, seed: int) -> Problem:
         wanted = [some("v", 2) + [f"q{one}" for one in rng.sample(range(4), 2)] for _ in range(6)]
         parts.append([Candidate(profile(f"voter{group:02}.{k}", one)) for k, one in enumerate(wanted)])
     return counted(parts, [2, 3, 1] * groups, edges)
-
-
-INSTALLATION_CHOOSING: Mapping[str, Family] = {
-    "capacity": (
-        ("8 holes for 2, 16 guests", lambda seed: capacity(8, 2, 16, 4, seed)),
-        ("8 holes for 2, 17 guests", lambda seed: capacity(8, 2, 17, 5, seed)),
-    ),
-    "beds": (
-        ("8 holes for 2, 16 guests", lambda seed: beds(8, 2, 16, 4, seed)),
-        ("8 holes for 2, 17 guests", lambda seed: beds(8, 2, 17, 5, seed)),
-    ),
-}
-"""What the search was changed on."""
-
-INSTALLATION_REPORTING: Mapping[str, Family] = {
-    "shifts": (
-        ("5 days", lambda seed: shifts(5, 12, 0.5, seed)),
-        ("14 days", lambda seed: shifts(14, 9, 0.6, seed)),
-    ),
-    "magazine": (
-        ("6 of 30 tools", lambda seed: magazine(30, 6, 12, 12, seed)),
-        ("9 of 60 tools", lambda seed: magazine(60, 9, 20, 18, seed)),
-    ),
-    "redundant": (
-        ("twice 6 of 40 relays", lambda seed: redundant(20, 40, 6, 0.25, seed)),
-        ("twice 8 of 60 relays", lambda seed: redundant(28, 60, 8, 0.2, seed)),
-    ),
-    "charging": (
-        ("12 robots, 3 chargers", lambda seed: charging(12, 3, 16, seed)),
-        ("24 robots, 5 chargers", lambda seed: charging(24, 5, 20, seed)),
-    ),
-    "zones": (
-        ("30 rooms, 3 zones", lambda seed: zones(30, 3, 8, seed)),
-        ("60 rooms, 4 zones", lambda seed: zones(60, 4, 10, seed)),
-    ),
-    "licences": (
-        ("12 stations, 4 of 20 servers", lambda seed: licences(12, 40, 14, 20, 4, seed)),
-        ("20 stations, 5 of 30 servers", lambda seed: licences(20, 60, 20, 30, 5, seed)),
-    ),
-    "cabling": (
-        ("8 cables, 8 x 8", lambda seed: cabling(8, 8, 8, seed)),
-        ("14 cables, 12 x 14", lambda seed: cabling(12, 14, 14, seed)),
-    ),
-    "voters": (
-        ("6 groups", lambda seed: voters(6, 6, 8, seed)),
-        ("12 groups", lambda seed: voters(12, 6, 8, seed)),
-    ),
-}
-"""What was only measured."""
-
-INSTALLATION_SMALL: Mapping[str, Family] = {
-    "capacity": (("2 holes for 2, 3 guests", lambda seed: capacity(2, 2, 3, 2, seed)),),
-    "beds": (("2 holes for 2, 3 guests", lambda seed: beds(2, 2, 3, 2, seed)),),
-    "shifts": (("1 day", lambda seed: shifts(1, 5, 0.8, seed)),),
-    "magazine": (("2 of 5 tools", lambda seed: magazine(5, 2, 3, 4, seed)),),
-    "redundant": (("twice 2 of 8 relays", lambda seed: redundant(3, 8, 2, 0.6, seed)),),
-    "charging": (("3 robots, 1 charger", lambda seed: charging(3, 1, 8, seed)),),
-    "zones": (("4 rooms, 2 zones", lambda seed: zones(4, 2, 3, seed)),),
-    "licences": (("2 stations, 2 of 5 servers", lambda seed: licences(2, 8, 4, 5, 2, seed)),),
-    "cabling": (("2 cables, 4 x 4", lambda seed: cabling(4, 4, 2, seed)),),
-    "voters": (("1 group", lambda seed: voters(1, 3, 4, seed)),),
-}
-"""One small size of each, to see that everything runs."""

@@ -1,17 +1,12 @@
-"""Families after tasks of robots, sensors and homes, with port names, free parameters and numbers of players together.
-
-They were written down before they were measured. `TASK_CHOOSING` is what the search was changed on, and on
-`TASK_REPORTING` that was only measured.
-"""
+"""Families after tasks of robots, sensors and homes: port names, free parameters, and roles with several players."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import combinations, product
 
-from benchmarks.search.families import iri, profile
-from benchmarks.search.further_families import Family, counted
+from benchmarks.search.families.wiring import counted, iri, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.model.profile import Input, Output, Profile, shared_ports
 from selfconf.model.template import Interaction, Parameter, Role, Task, Template
@@ -19,6 +14,8 @@ from selfconf.search.problem import Problem
 
 Named = Iterable[tuple[str, str]]
 """Ports by their names, each with its signal."""
+
+
 Link = tuple[int, int, str | None, str | None]
 """An interaction: the role that feeds, the role that is fed, and the names of both ports where they matter."""
 
@@ -315,56 +312,3 @@ def patrol(legs: int, robots: int, seed: int) -> Problem:
         if leg:
             links += [(leg - 1, leg, None, "tool"), (leg - 1, leg, None, "charge")]
     return _task(parts, [1] * legs, links)
-
-
-TASK_CHOOSING: Mapping[str, Family] = {
-    "rooms": (
-        ("18 rooms", lambda seed: rooms(18, 36, 4, seed)),
-        ("36 rooms", lambda seed: rooms(36, 60, 5, seed, 0.3)),
-    ),
-    "convoy": (
-        ("16 robots", lambda seed: convoy(16, 4, 5, seed)),
-        ("40 robots", lambda seed: convoy(40, 5, 5, seed)),
-    ),
-    "orchard": (
-        ("7 of 40 drones", lambda seed: orchard(26, 40, 7, 3, seed)),
-        ("9 of 60 drones", lambda seed: orchard(36, 60, 9, 4, seed)),
-    ),
-    "theatres": (
-        ("6 theatres", lambda seed: theatres(6, 40, 3, seed)),
-        ("12 theatres", lambda seed: theatres(12, 70, 4, seed)),
-    ),
-}
-"""What the search was changed on."""
-
-TASK_REPORTING: Mapping[str, Family] = {
-    "fusion": (
-        ("8 platforms", lambda seed: fusion(8, 5, 10, seed)),
-        ("20 platforms", lambda seed: fusion(20, 6, 14, seed)),
-    ),
-    "museum": (
-        ("12 groups", lambda seed: museum(12, 16, 7, 9, seed)),
-        ("24 groups", lambda seed: museum(24, 30, 9, 14, seed)),
-    ),
-    "depot": (
-        ("4 zones", lambda seed: depot(5, 4, 40, 3, seed)),
-        ("8 zones", lambda seed: depot(6, 8, 80, 3, seed)),
-    ),
-    "patrol": (
-        ("14 legs", lambda seed: patrol(14, 7, seed)),
-        ("30 legs", lambda seed: patrol(30, 8, seed)),
-    ),
-}
-"""What was only measured."""
-
-TASK_SMALL: Mapping[str, Family] = {
-    "rooms": (("1 room", lambda seed: rooms(1, 4, 2, seed, 0.9)),),
-    "convoy": (("4 robots", lambda seed: convoy(4, 2, 3, seed)),),
-    "orchard": (("3 of 8 drones", lambda seed: orchard(4, 8, 3, 2, seed, 0.4)),),
-    "theatres": (("2 theatres", lambda seed: theatres(2, 9, 2, seed, 2)),),
-    "fusion": (("1 platform", lambda seed: fusion(1, 3, 5, seed)),),
-    "museum": (("3 groups", lambda seed: museum(3, 5, 4, 5, seed)),),
-    "depot": (("1 zone", lambda seed: depot(2, 1, 8, 2, seed)),),
-    "patrol": (("4 legs", lambda seed: patrol(4, 3, seed)),),
-}
-"""One small size of each, to see that everything runs."""
