@@ -278,6 +278,8 @@ class ComponentCode:
         if trouble is None:
             self._on = True
             trouble = self._started()
+        if turn != self.turn:  # what was off meanwhile is no failure of what has been called for since
+            return
         if trouble is not None:
             self._fail(trouble)
             return

@@ -269,6 +269,25 @@ def test_a_parameter_that_a_task_adds_while_an_actuator_is_woken_is_set_as_well(
     assert split.verdicts[-1] is Verdict.DONE
 
 
+def test_what_an_actuator_that_is_woken_was_to_do_before_it_failed_is_no_failure_of_its_next_activation() -> None:
+    class Failing(Recorder):
+        def parameter_set(self, name: str, value: Any) -> None:
+            super().parameter_set(name, value)
+            if len(self.said) == 4:  # it is woken
+                self.fail("the bulb is broken")
+                split.let_pass()
+                split.call(apply(2, US, values={"goal": Literal("y")}))
+
+    split = Split(recorder := Failing(), replace(DRIVE_PROFILE, ports=Ports()))
+    split.call(reserve(1, US))
+    for rests in (False, True, False):
+        split.call(apply(1, US, values={"goal": Literal("x")}, rests=rests))
+        split.run_code()
+    assert recorder.said == [("goal", "x"), ("started",), ("stopped",), ("goal", "x"), ("goal", "y"), ("started",)]
+    assert split.verdicts[-1] is Verdict.DONE
+    assert split.runtime.active
+
+
 def test_a_timer_that_is_late_is_run_once_and_not_made_up_for() -> None:
     class Ticking(Recorder):
         def started(self) -> None:
