@@ -41,6 +41,7 @@ from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
 from selfconf.rdf.rdflib_terms import rdflib_term
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
+from selfconf.rdf.sparql_corrections import sparql_corrections
 from selfconf.rdf.turtle import Node
 
 Focus = TypeVar("Focus", bound=Node)
@@ -111,7 +112,7 @@ def violations(
         raise TemplateError(f"{called} is not evaluated: {reason}", file=source)
     try:
         # The limit last: the processor time of a thread that judges meanwhile, and is waited for, would count.
-        with linear_patterns(), only_ordered(), processor_limit(SHAPE_SECONDS), _silent():
+        with linear_patterns(), only_ordered(), sparql_corrections(), processor_limit(SHAPE_SECONDS), _silent():
             judge = _Judge(subjects, shapes, shape)
             found: dict[Focus, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
@@ -263,7 +264,7 @@ def _in_english(messages: Iterable[rdflib.term.Node]) -> str:
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
     """The report of pySHACL and its text."""
     index_constraints()
-    with linear_patterns(), _silent():
+    with linear_patterns(), sparql_corrections(), _silent():
         _, report, text = validate(
             subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST_TRIAL
         )

@@ -78,7 +78,7 @@ def _compared(
     component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any, holds: Callable[[int], bool]
 ) -> tuple[bool, Any]:
     """What pySHACL wants to know of a constraint on two properties: whether it is violated, and the results."""
-    orders = [(value, _order(value, other)) for value in values for other in others]
+    orders = [(value, order_of(value, other)) for value in values for other in others]
     wrong = [value for value, order in orders if order is None or not holds(order)]
     return bool(wrong), [component.make_v_result(graph, focus, value_node=value) for value in wrong]
 
@@ -125,10 +125,10 @@ def comparable(one: Term, other: Term) -> bool:
 
 def order(value: Term, limit: Term) -> int | None:
     """How a value compares with a limit: negative, zero or positive; None where the two have no order (SHACL, 4.3)."""
-    return _order(rdflib_term(value), rdflib_term(limit))
+    return order_of(rdflib_term(value), rdflib_term(limit))
 
 
-def _order(one: rdflib.term.Node, other: rdflib.term.Node) -> int | None:
+def order_of(one: rdflib.term.Node, other: rdflib.term.Node) -> int | None:
     if not isinstance(one, rdflib.Literal) or not isinstance(other, rdflib.Literal):
         return None
     if isinstance(one.value, str) != isinstance(other.value, str):
