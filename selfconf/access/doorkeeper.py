@@ -136,9 +136,7 @@ class Doorkeeper:
         self._disputed: frozenset[IRI] = frozenset()
         self._known_for = 0
         """How often it need not be shown to others, as all know it and none has come since."""
-        self._strangers: frozenset[str] = frozenset()
-        """Who is known to the rules, but not to the hub yet."""
-        self._reports = RefusalReports(bus, hub.refusals, complain)
+        self._reports = RefusalReports(bus, hub.refusals, complain, lambda one: self.rules.allow(one))
         self._faults: dict[str, float] = {}
         """What was said to be wrong with the keys or the hub, and when."""
         self._pause = LOOK
@@ -296,7 +294,6 @@ class Doorkeeper:
             self._tell_fault(str(error))
             return
         if rules != self.rules:
-            self._strangers |= rules.principals - self.rules.principals
             self.rules = rules
             self._open_anew()
 
@@ -316,9 +313,6 @@ class Doorkeeper:
         try:
             read_pair(self._credentials.certificate.with_suffix(""))  # the hub as it is would be closed, and not open
             self._hub.open_anew(self.rules)
-            for name in self._strangers:  # what it tried before it was known was not refused for what it is
-                self._hub.refusals.forget(name)
-            self._strangers = frozenset()
         except SelfconfError as error:
             self._tell_fault(f"the hub cannot be opened with its new rules: {error}; trying again")
             self._undo_retry = self._bus.later(self._pause, self._enforced)
@@ -370,5 +364,5 @@ class Doorkeeper:
         with answering(request):
             for access in self.rules.accesses:
                 request.reply(self._keys.access(self._name), encode(access))
-            for refused in self._hub.refusals.refused:
+            for refused in self._reports.refused:
                 request.reply(self._keys.access(self._name), encode(refused))

@@ -10,7 +10,7 @@ from selfconf.model.wording import client_text
 from selfconf.protocol.messages import RefusedAttempt
 
 LOOKS = 3
-"""After how many looks a refused attempt is reported: those of a client that is let in by then do not count."""
+"""After how many looks a refused attempt is reported: one that its client may make by then does not count."""
 LIFE = "Liveliness Token"
 """What Zenoh calls the announcement of a life."""
 LIFE_ANSWER = 3.0
@@ -22,16 +22,27 @@ MOST_TOLD = 20
 class RefusalReports:
     """Tells of the attempts that a hub has refused, each once, and not without end."""
 
-    def __init__(self, bus: Bus, refusals: RefusalLog, complain: Callable[[str], None]) -> None:
-        self._bus, self._refusals, self._complain = bus, refusals, complain
+    def __init__(
+        self, bus: Bus, refusals: RefusalLog, complain: Callable[[str], None], allowed: Callable[[RefusedAttempt], bool]
+    ) -> None:
+        """`allowed` says whether the rules that there are by now allow an attempt."""
+        self._bus, self._refusals, self._complain, self._allowed = bus, refusals, complain, allowed
         self._seen: dict[tuple[str, str, str], int] = {}
         """How often each refused attempt was seen in the log."""
         self._told_at: list[float] = []
         """When something was said in the last minute."""
 
+    @property
+    def refused(self) -> tuple[RefusedAttempt, ...]:
+        """What was refused, the latest first, but for what was tried before the rules allowed it."""
+        for one in self._refusals.refused:
+            if self._allowed(one):
+                self._refusals.drop(one)
+        return self._refusals.refused
+
     def look(self) -> None:
         """Report the attempts that have stayed refused for `LOOKS` calls of this method."""
-        refused = {(one.principal, one.attempt, one.key): one for one in self._refusals.refused}
+        refused = {(one.principal, one.attempt, one.key): one for one in self.refused}
         self._seen = {what: self._seen.get(what, 0) + 1 for what in refused}
         for what, one in refused.items():
             if self._seen[what] == LOOKS:

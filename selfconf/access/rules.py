@@ -14,10 +14,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from selfconf.access.principal import Principal, PrincipalKind
+from selfconf.bus.zenoh import includes
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, any_ecology, component_chunk
-from selfconf.protocol.messages import Access
+from selfconf.protocol.messages import Access, RefusedAttempt
 
 SPEAK = ("put", "delete", "declare_queryable", "reply", "liveliness_token")
 """The messages by which a client says something under a key: a sample, an answer, a life."""
@@ -37,16 +38,21 @@ class AccessRules:
     """What every holder may do at uplinks: there the other end is a hub that this site was set up to connect to, and it
     has to answer a client that shows a certificate before it is known. At a hub only known sites answer that."""
 
-    @property
-    def principals(self) -> frozenset[str]:
-        """The common names that they speak of."""
-        return frozenset(access.principal for access in self.accesses)
-
     def knows(self, principals: Sequence[Principal]) -> bool:
         """Whether they speak of the holder of a certificate, and of the components that share its process."""
         first, *others = principals
         about = {access.principal: access.about for access in self.accesses}.get(first.common_name)
         return about is not None and all(one.name in about for one in others)
+
+    def allow(self, refused: RefusedAttempt) -> bool:
+        """Whether they allow what a client has tried: then earlier ones have refused it."""
+        message = refused.attempt.lower().replace(" ", "_")
+        return any(
+            includes(key, refused.key)
+            for access in self.accesses
+            if access.principal in ("", refused.principal)
+            for key in (access.says if message in SPEAK else access.hears if message in LISTEN else ())
+        )
 
     def access_control(self, at_uplinks: bool = False) -> dict[str, Any]:
         """The rules as the member `access_control` of a configuration of Zenoh: of a hub, or of its uplinks."""

@@ -397,6 +397,22 @@ def test_a_site_that_is_revoked_ends(door: Door) -> None:
     assert door.said[-1] == "it ends"
 
 
+def test_what_a_site_says_for_its_components_before_these_are_known_is_no_attempt(door: Door) -> None:
+    bus = advertise(door, "attic")
+    for component in (BELL, LAMP):
+        line = "2126-01-01T00:00:00Z TRACE rx ThreadId(1) x: {}"
+        key = KEYS.outputs(component)
+        peer = "a1 on Interface(lo)+CertCommonName(site.attic) is unauthorized to Declare Queryable (ingress) on"
+        door.refusals.take(line.format(f"{peer} {key}"))
+        door.refusals.take(line.format("Msg intercepted!"))
+    bus.close()
+    advertise(door, "attic", BELL)
+    door.pass_time(5.0)
+    assert [said for said in door.said if "refused" in said] == [
+        f"refused: site.attic: Declare Queryable on {KEYS.outputs(LAMP)}"
+    ]
+
+
 def test_a_folder_in_which_nothing_changes_is_read_seldom_and_at_once_when_something_does(tmp_path: Path) -> None:
     authority = Authority.init(tmp_path / "keys")
     folder = CountedReads(authority.path)

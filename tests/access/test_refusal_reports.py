@@ -22,7 +22,9 @@ class Reports:
     def __init__(self) -> None:
         self.network = Network(1)
         self.bus, self.log, self.said = self.network.node(), RefusalLog(clock=lambda: 0.0), list[str]()
-        self.reports = RefusalReports(self.bus, self.log, self.said.append)
+        self.allowed = set[str]()
+        """The principals that may do what they try."""
+        self.reports = RefusalReports(self.bus, self.log, self.said.append, lambda one: one.principal in self.allowed)
 
     def refuse(self, name: str, attempt: str, key: str) -> None:
         """Have the log say that a client may not do that."""
@@ -47,13 +49,15 @@ def test_an_attempt_is_told_of_once_and_not_before_it_has_stayed_refused() -> No
     assert site.said == ["refused: a client without a trusted certificate: peer sent no certificates"]
 
 
-def test_a_client_that_is_let_in_meanwhile_is_not_told_of() -> None:
+def test_what_a_client_may_do_meanwhile_is_not_told_of() -> None:
     site = Reports()
     site.refuse("conf.bob", "Put", KEYS.fail("urn-lamp"))
+    site.refuse("conf.eve", "Put", KEYS.fail("urn-lamp"))
     site.look(LOOKS - 1)
-    site.log.forget("conf.bob")
+    site.allowed.add("conf.bob")
+    assert [one.principal for one in site.reports.refused] == ["conf.eve"]
     site.look(5)
-    assert site.said == []
+    assert [said.split(": ")[1] for said in site.said] == ["conf.eve"]
 
 
 def test_a_site_that_passes_on_who_lives_is_not_complained_of() -> None:

@@ -10,6 +10,7 @@ import zenoh
 from selfconf.access import AccessRules, Principal, PrincipalKind, rules_of
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import RefusedAttempt
 
 KEYS = Keys("lab")
 CAMERA, DRIVE, LAMP = IRI("urn:camera"), IRI("urn:drive"), IRI("urn:lamp")
@@ -90,6 +91,8 @@ def test_all_components_are_asked_at_once_how_they_are_and_for_nothing_else() ->
 )
 def test_each_may_do_what_its_name_says(principal: str, message: str, key: str, allowed: bool) -> None:
     assert passes(principal, "ingress", message, key) is allowed
+    tried = RefusedAttempt(principal, message.replace("_", " ").title(), key, 1, 0.0)
+    assert rules().allow(tried) is allowed
 
 
 def test_only_sites_that_are_known_answer_who_shows_a_certificate() -> None:

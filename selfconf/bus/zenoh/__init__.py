@@ -5,10 +5,11 @@
 * `open_session` opens a bare session; `ANYWHERE_ON_LOOPBACK` is the endpoint of a hub that takes any free port, and
   `with_port` puts a free port in place of port 0; `GREETING` is how long a silent end is waited for.
 * `hear_refusals` reads in Zenoh's log what the hub of this process refuses, and keeps it as a `RefusalLog`, of each key
-  `LONGEST_KEY` characters.
+  `LONGEST_KEY` characters; `includes` says whether a key is one of those that were granted.
 """
 
 from selfconf.bus.zenoh.bus import ZenohBus
+from selfconf.bus.zenoh.key_inclusion import includes
 from selfconf.bus.zenoh.opening import client, router
 from selfconf.bus.zenoh.refusals import LONGEST_KEY, RefusalLog, hear_refusals
 from selfconf.bus.zenoh.relay import Hub, cut_connections
@@ -25,6 +26,7 @@ __all__ = [
     "client",
     "cut_connections",
     "hear_refusals",
+    "includes",
     "open_session",
     "router",
     "with_port",

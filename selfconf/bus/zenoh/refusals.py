@@ -28,7 +28,6 @@ a line the key comes last, so what stands before it is what counts.
 from __future__ import annotations
 
 import fcntl
-import math
 import os
 import re
 import sys
@@ -39,7 +38,6 @@ from contextlib import contextmanager
 from functools import cache
 
 from selfconf.bus.zenoh.session import begin_log
-from selfconf.model.moments import parsed_moment
 from selfconf.protocol.messages import RefusedAttempt
 
 FILTER = "zenoh::net::routing::interceptor=trace,zenoh_link_tls::unicast=warn"
@@ -82,8 +80,6 @@ class RefusalLog:
         """The common name of each peer, by what Zenoh calls it."""
         self._denied: dict[str, tuple[str, str, str, str]] = {}
         """The last line of each thread that says no: peer, attempt, flow, key."""
-        self._forgiven: dict[str, float] = {}
-        """Until when what a principal has tried is forgotten."""
         self._lock = threading.Lock()
 
     @property
@@ -92,12 +88,6 @@ class RefusalLog:
         with self._lock:
             found = [RefusedAttempt(*what, number, latest) for what, (number, latest) in self._found.items()]
         return tuple(sorted(found, key=lambda one: -one.latest))
-
-    def forget(self, principal: str) -> None:
-        """Forget what a principal has tried so far, also where that has not been read yet."""
-        with self._lock:
-            self._forgiven[principal] = self._clock()
-            self._found = {what: found for what, found in self._found.items() if what[0] != principal}
 
     def take(self, line: str) -> None:
         """Read one line."""
@@ -109,7 +99,7 @@ class RefusalLog:
         if target == _TLS:
             warning = _DETAIL.sub("", text)
             if _NO_VERDICT.fullmatch(warning) is None:
-                self._count("", warning[:LONGEST_KEY], "", line)
+                self._count("", warning[:LONGEST_KEY], "")
         elif denied is not None:
             self._denied[thread] = self._note(*denied.groups())
         elif text == "Msg intercepted!" and thread in self._denied:
@@ -117,7 +107,7 @@ class RefusalLog:
             withdraws = attempt.startswith("Undeclare ")  # it concerns what is one's own, or nothing
             says_no = attempt == "Reply" and "*" in key
             if flow == "ingress" and not withdraws and not says_no:
-                self._count(self._names.get(peer, "?"), attempt, key[:LONGEST_KEY], line)
+                self._count(self._names.get(peer, "?"), attempt, key[:LONGEST_KEY])
 
     def _note(self, peer: str, link: str | None, attempt: str, flow: str, key: str) -> tuple[str, str, str, str]:
         """Remember what a peer is called, where its link says so."""
@@ -129,10 +119,8 @@ class RefusalLog:
                 del self._names[next(iter(self._names))]
         return peer, attempt, flow, key
 
-    def _count(self, principal: str, attempt: str, key: str, line: str) -> None:
+    def _count(self, principal: str, attempt: str, key: str) -> None:
         with self._lock:
-            if self._at(line) <= self._forgiven.get(principal, -math.inf):
-                return
             what = principal, attempt, key
             if what not in self._found and len(self._found) >= MOST_ATTEMPTS:
                 what = principal, "further attempts", ""
@@ -140,16 +128,9 @@ class RefusalLog:
                 self._found[what] = self._found.get(what, (0, 0.0))[0] + 1, self._clock()
 
     def drop(self, attempt: RefusedAttempt) -> None:
-        """Forget one attempt: it was none."""
+        """Forget one attempt: it was none, or was made before it was known that it may be made."""
         with self._lock:
             self._found.pop((attempt.principal, attempt.attempt, attempt.key), None)
-
-    def _at(self, line: str) -> float:
-        """When a line was written, as it says itself; now, where it does not."""
-        try:
-            return parsed_moment(line.partition(" ")[0]).timestamp()
-        except ValueError:
-            return self._clock()
 
     def take_chunk(self, chunk: bytes) -> None:
         """Read some whole lines; quickly where none of them says that something was refused."""

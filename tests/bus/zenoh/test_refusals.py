@@ -125,17 +125,3 @@ def test_a_flood_takes_bounded_memory() -> None:
     log = log_of(*(line.replace(PEER, f"{peer:032x}") for peer in range(2 * MOST_ATTEMPTS) for line in denied("x")))
     assert [(one.principal, one.number) for one in log.refused] == [("comp.x", 2 * MOST_ATTEMPTS)]
     assert len(log._names) == MOST_ATTEMPTS
-
-
-def test_nobody_is_asked_about_again_after_being_let_in() -> None:
-    log = log_of(*denied("a/b"))
-    log.forget("comp.x")
-    assert found(log) == []
-    later = RefusalLog()
-    later.forget("comp.x")
-    for line in denied("a/b"):  # written before, and read only now
-        later.take(line)
-    assert found(later) == []
-    for line in denied("a/b"):
-        later.take(line.replace("2026-", "2126-"))
-    assert found(later) == [("comp.x", "Put", "a/b", 1)]
