@@ -44,61 +44,7 @@ def exclusions(
 
     What only pySHACL can judge is reported of the components that pass all tests.
     """
-    ecology = AdvertisementIndex.of(advertisements)
-    akin = set(partitioner.akin(role, ecology))
-    outside = {
-        advertisement: (
-            kind in akin,
-            _told(partitioner, role, alike[0], verdict),
-        )
-        for kind, alike, verdict in partitioner.tested(role, ecology, ecology.type_sets)
-        for advertisement in alike
-        if advertisement.component not in inside
-    }
-    passed = [advertisement for advertisement, (_, obstacles) in outside.items() if not obstacles]
-    if passed and not role.complete:
-        outside |= {
-            a: (outside[a][0], obstacles) for a, obstacles in _least(partitioner, role, passed, ecology).items()
-        }
-    return sorted(
-        (
-            Exclusion(a.component, reasons or (partitioner.unjudged(a.profile) or NoCommonValue(),), of_its_class)
-            for a, (of_its_class, reasons) in outside.items()
-        ),
-        key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
-    )
-
-
-def _told(
-    partitioner: Partitioner, role: CompiledRole, advertisement: Advertisement, verdict: TestOutcome
-) -> tuple[Obstacle, ...]:
-    """All that tests tell against a component, and what the values do that it would leave to free parameters then."""
-    failed = verdict.obstacles
-    if not failed:
-        return tuple(_forbidden(partitioner, verdict.allows).values())
-    if not partitioner.free or any(isinstance(one, NotJudged) for one in failed):
-        return failed
-    allows = _let_in(partitioner, role, advertisement)
-    disagreeing = () if all(allows.values()) else (NoCommonValue(),)
-    return (*failed, *_forbidden(partitioner, allows).values(), *disagreeing)
-
-
-def _least(
-    partitioner: Partitioner, role: CompiledRole, passed: Sequence[Advertisement], ecology: AdvertisementIndex
-) -> dict[Advertisement, tuple[Obstacle, ...]]:
-    """What pySHACL finds to keep some components out, with the value of a free parameter that leaves the least of it.
-
-    Where no value leaves less than the parameter itself, the parameter is named.
-    """
-    judged = partitioner.violations(role, passed, ecology, {})
-    unbound: dict[Advertisement, tuple[Obstacle, ...]] = {a: judged.get(a.component, ()) for a in passed}
-    parameter = partitioner.mentioned(role)
-    if parameter is None:
-        return unbound
-    reasons = _reasons(partitioner, role, ecology, parameter, dict.fromkeys(passed, ()))
-    by_number = {a: sorted(map(tuple, by_value.values()), key=len) for a, by_value in reasons.items()}
-    least = {a: some[0] if some else () for a, some in by_number.items()}
-    return {a: unbound[a] if 0 < len(unbound[a]) <= len(some) else some for a, some in least.items()}
+    return _RoleExclusions(partitioner, role, AdvertisementIndex.of(advertisements)).exclusions(inside)
 
 
 def near_misses(
@@ -125,87 +71,156 @@ def nearly(
 
     Where the shape says more than the tests, pySHACL has to agree that there is nothing else; it is asked about a few.
     """
-    few = [
-        tested
-        for tested in partitioner.tested(role, ecology, type_sets)
-        if len(tested[2].obstacles) < 2 and not any(isinstance(one, NotJudged) for one in tested[2].obstacles)
-    ]
-    found = _by_tests(partitioner, role, few) if role.complete else _judged(partitioner, role, ecology, few)
-    return sorted(found, key=_component)
+    return sorted(_RoleExclusions(partitioner, role, ecology).near_misses(type_sets), key=_component)
 
 
-def _by_tests(partitioner: Partitioner, role: CompiledRole, few: Iterable[Tested]) -> Iterator[NearMiss]:
-    near: list[tuple[Sequence[Advertisement], Obstacle, Mapping[IRI, frozenset[Term]]]] = []
-    for _, alike, verdict in few:
-        near += [(alike, obstacle, _let_in(partitioner, role, alike[0])) for obstacle in verdict.obstacles]
-        forbidden = _forbidden(partitioner, verdict.allows)
-        if not verdict.obstacles and len(forbidden) == 1:
-            rest = {parameter: values for parameter, values in verdict.allows.items() if parameter not in forbidden}
-            near += [(alike, obstacle, rest) for obstacle in forbidden.values()]
-    suitable = {
-        parameter: partitioner.suitable.of(parameter, frozenset().union(*(a.get(parameter, ()) for *_, a in near)))
-        for parameter in partitioner.free
-    }
-    for alike, obstacle, allows in near:
-        allowed = {parameter: values & suitable[parameter] for parameter, values in allows.items()}
-        if all(allowed.values()):
-            yield from (NearMiss(role.iri, a.component, obstacle, allowed) for a in alike)
+@immutable
+class _RoleExclusions:
+    """What keeps the components of an ecology out of one role."""
 
+    partitioner: Partitioner
+    role: CompiledRole
+    ecology: AdvertisementIndex
 
-def _forbidden(partitioner: Partitioner, allows: Mapping[IRI, frozenset[Term]]) -> dict[IRI, ParameterForbids]:
-    """The free parameters that may have none of the values that a component wants them to have."""
-    return {
-        parameter: ParameterForbids(parameter, values)
-        for parameter, values in allows.items()
-        if values and not partitioner.suitable.of(parameter, values)
-    }
+    def exclusions(self, inside: Container[IRI]) -> list[Exclusion]:
+        akin = set(self.partitioner.akin(self.role, self.ecology))
+        outside = {
+            advertisement: (kind in akin, self._told(alike[0], verdict))
+            for kind, alike, verdict in self.partitioner.tested(self.role, self.ecology, self.ecology.type_sets)
+            for advertisement in alike
+            if advertisement.component not in inside
+        }
+        passed = [advertisement for advertisement, (_, obstacles) in outside.items() if not obstacles]
+        if passed and not self.role.complete:
+            outside |= {a: (outside[a][0], obstacles) for a, obstacles in self._least(passed).items()}
+        return sorted(
+            (
+                Exclusion(
+                    a.component, reasons or (self.partitioner.unjudged(a.profile) or NoCommonValue(),), of_its_class
+                )
+                for a, (of_its_class, reasons) in outside.items()
+            ),
+            key=lambda exclusion: (not exclusion.akin, len(exclusion.obstacles), exclusion.component),
+        )
 
+    def _told(self, advertisement: Advertisement, verdict: TestOutcome) -> tuple[Obstacle, ...]:
+        """All that tests tell against a component, and what the values do that it would leave to free parameters."""
+        failed = verdict.obstacles
+        if not failed:
+            return tuple(self._forbidden(verdict.allows).values())
+        if not self.partitioner.free or any(isinstance(one, NotJudged) for one in failed):
+            return failed
+        allows = self._let_in(advertisement)
+        disagreeing = () if all(allows.values()) else (NoCommonValue(),)
+        return (*failed, *self._forbidden(allows).values(), *disagreeing)
 
-def _let_in(partitioner: Partitioner, role: CompiledRole, advertisement: Advertisement) -> dict[IRI, frozenset[Term]]:
-    """The values of free parameters that a component would allow, were it let in."""
-    profile, hierarchy = advertisement.profile, partitioner.hierarchy
-    passed = tuple(test for test in role.tests if test.obstacle(profile, hierarchy) is None)
-    return replace(role, tests=passed).allows(profile, hierarchy)
+    def _least(self, passed: Sequence[Advertisement]) -> dict[Advertisement, tuple[Obstacle, ...]]:
+        """What pySHACL finds to keep components out, with the value of a free parameter that leaves the least of it.
 
+        Where no value leaves less than the parameter itself, the parameter is named.
+        """
+        judged = self.partitioner.violations(self.role, passed, self.ecology, {})
+        unbound: dict[Advertisement, tuple[Obstacle, ...]] = {a: judged.get(a.component, ()) for a in passed}
+        parameter = self.partitioner.mentioned(self.role)
+        if parameter is None:
+            return unbound
+        reasons = self._reasons(parameter, dict.fromkeys(passed, ()))
+        by_number = {a: sorted(map(tuple, by_value.values()), key=len) for a, by_value in reasons.items()}
+        least = {a: some[0] if some else () for a, some in by_number.items()}
+        return {a: unbound[a] if 0 < len(unbound[a]) <= len(some) else some for a, some in least.items()}
 
-def _judged(
-    partitioner: Partitioner, role: CompiledRole, ecology: AdvertisementIndex, few: Iterable[Tested]
-) -> Iterator[NearMiss]:
-    """The components that pySHACL finds to be kept out by one thing, for some value of the free parameter."""
-    obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
-    focus = _focus(obstacles)
-    parameter = partitioner.mentioned(role)
-    settled = {a: {p: v for p, v in _let_in(partitioner, role, a).items() if p != parameter} for a in focus}
-    forbidden = {a: _forbidden(partitioner, allows) for a, allows in settled.items()}
-    told = {a: [*obstacles[a], *forbidden[a].values()] for a in focus}
-    for a, by_value in _reasons(partitioner, role, ecology, parameter, told).items():
-        near = _alone(by_value)
-        if near:
-            allows = {p: partitioner.suitable.of(p, v) for p, v in settled[a].items() if p not in forbidden[a]}
-            if parameter is not None and ANOTHER not in near:
-                allows[parameter] = frozenset(near)
-            if all(allows.values()):
-                yield NearMiss(role.iri, a.component, next(iter(near.values())), allows)
+    def near_misses(self, type_sets: Iterable[TypeSet]) -> Iterator[NearMiss]:
+        few = [
+            tested
+            for tested in self.partitioner.tested(self.role, self.ecology, type_sets)
+            if len(tested[2].obstacles) < 2 and not any(isinstance(one, NotJudged) for one in tested[2].obstacles)
+        ]
+        return self._by_tests(few) if self.role.complete else self._judged(few)
 
+    def _by_tests(self, few: Iterable[Tested]) -> Iterator[NearMiss]:
+        near: list[tuple[Sequence[Advertisement], Obstacle, Mapping[IRI, frozenset[Term]]]] = []
+        for _, alike, verdict in few:
+            near += [(alike, obstacle, self._let_in(alike[0])) for obstacle in verdict.obstacles]
+            forbidden = self._forbidden(verdict.allows)
+            if not verdict.obstacles and len(forbidden) == 1:
+                rest = {parameter: values for parameter, values in verdict.allows.items() if parameter not in forbidden}
+                near += [(alike, obstacle, rest) for obstacle in forbidden.values()]
+        suitable = {
+            parameter: self.partitioner.suitable.of(
+                parameter, frozenset().union(*(a.get(parameter, ()) for *_, a in near))
+            )
+            for parameter in self.partitioner.free
+        }
+        for alike, obstacle, allows in near:
+            allowed = {parameter: values & suitable[parameter] for parameter, values in allows.items()}
+            if all(allowed.values()):
+                yield from (NearMiss(self.role.iri, a.component, obstacle, allowed) for a in alike)
 
-def _reasons(
-    partitioner: Partitioner,
-    role: CompiledRole,
-    ecology: AdvertisementIndex,
-    parameter: IRI | None,
-    told: Mapping[Advertisement, Sequence[Obstacle]],
-) -> dict[Advertisement, dict[Term, list[Obstacle]]]:
-    """All that keeps some components out for each value of a free parameter, behind what the tests have told of it."""
-    focus = list(told)
-    tests = {a: _failed(partitioner, role, a) for a in focus}
-    subjects = partitioner.judge.subjects(role, focus, ecology)
-    reasons: dict[Advertisement, dict[Term, list[Obstacle]]] = {a: {} for a in focus}
-    for value in _values(partitioner, role, parameter, focus):
-        values = {} if parameter is None else {parameter: value}
-        judged = partitioner.violations(role, focus, ecology, values, subjects)
-        for a in focus:
-            reasons[a][value] = [*told[a], *_besides(judged.get(a.component, ()), tests[a])]
-    return reasons
+    def _judged(self, few: Iterable[Tested]) -> Iterator[NearMiss]:
+        """The components that pySHACL finds to be kept out by one thing, for some value of the free parameter."""
+        obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
+        focus = _focus(obstacles)
+        parameter = self.partitioner.mentioned(self.role)
+        settled = {a: {p: v for p, v in self._let_in(a).items() if p != parameter} for a in focus}
+        forbidden = {a: self._forbidden(allows) for a, allows in settled.items()}
+        told = {a: [*obstacles[a], *forbidden[a].values()] for a in focus}
+        for a, by_value in self._reasons(parameter, told).items():
+            near = _alone(by_value)
+            if near:
+                allows = {p: self.partitioner.suitable.of(p, v) for p, v in settled[a].items() if p not in forbidden[a]}
+                if parameter is not None and ANOTHER not in near:
+                    allows[parameter] = frozenset(near)
+                if all(allows.values()):
+                    yield NearMiss(self.role.iri, a.component, next(iter(near.values())), allows)
+
+    def _reasons(
+        self, parameter: IRI | None, told: Mapping[Advertisement, Sequence[Obstacle]]
+    ) -> dict[Advertisement, dict[Term, list[Obstacle]]]:
+        """All that keeps components out for each value of a free parameter, behind what the tests have told of it."""
+        focus = list(told)
+        tests = {a: self._failed(a) for a in focus}
+        subjects = self.partitioner.judge.subjects(self.role, focus, self.ecology)
+        reasons: dict[Advertisement, dict[Term, list[Obstacle]]] = {a: {} for a in focus}
+        for value in self._values(parameter, focus):
+            values = {} if parameter is None else {parameter: value}
+            judged = self.partitioner.violations(self.role, focus, self.ecology, values, subjects)
+            for a in focus:
+                reasons[a][value] = [*told[a], *_besides(judged.get(a.component, ()), tests[a])]
+        return reasons
+
+    def _values(self, parameter: IRI | None, focus: Sequence[Advertisement]) -> list[Term]:
+        """The values of a free parameter with which a role is judged; without a parameter it is judged once."""
+        if parameter is None:
+            return [ANOTHER]
+        listed = free_values.enumerated(self.partitioner.document, parameter)
+        stated = listed | free_values.seen(
+            left_to_judge(self.partitioner.document, self.role), self.role.iri, self.partitioner.judge.visible(focus)
+        )
+        suitable = sorted(self.partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
+        return suitable if listed else [*suitable, ANOTHER]
+
+    def _failed(self, advertisement: Advertisement) -> set[IRI | None]:
+        """The property over which a test of the shape has failed, if one has; None stands for the component itself."""
+        profile, hierarchy = advertisement.profile, self.partitioner.hierarchy
+        return {
+            test.path if isinstance(test, PropertyTest) else None
+            for test in self.role.tests
+            if not isinstance(test, ParameterTest) and test.obstacle(profile, hierarchy) is not None
+        }
+
+    def _let_in(self, advertisement: Advertisement) -> dict[IRI, frozenset[Term]]:
+        """The values of free parameters that a component would allow, were it let in."""
+        profile, hierarchy = advertisement.profile, self.partitioner.hierarchy
+        passed = tuple(test for test in self.role.tests if test.obstacle(profile, hierarchy) is None)
+        return replace(self.role, tests=passed).allows(profile, hierarchy)
+
+    def _forbidden(self, allows: Mapping[IRI, frozenset[Term]]) -> dict[IRI, ParameterForbids]:
+        """The free parameters that may have none of the values that a component wants them to have."""
+        return {
+            parameter: ParameterForbids(parameter, values)
+            for parameter, values in allows.items()
+            if values and not self.partitioner.suitable.of(parameter, values)
+        }
 
 
 def _alone(by_value: Mapping[Term, Sequence[Obstacle]]) -> dict[Term, Obstacle]:
@@ -226,27 +241,3 @@ def _besides(violated: Iterable[ShapeViolated | NotJudged], failed: set[IRI | No
     violations = list(violated)
     told = next((one for one in violations if isinstance(one, ShapeViolated) and one.path in failed), None)
     return [one for one in violations if one is not told]
-
-
-def _values(
-    partitioner: Partitioner, role: CompiledRole, parameter: IRI | None, focus: Sequence[Advertisement]
-) -> list[Term]:
-    """The values of a free parameter with which a role is judged; without a parameter it is judged once."""
-    if parameter is None:
-        return [ANOTHER]
-    listed = free_values.enumerated(partitioner.document, parameter)
-    stated = listed | free_values.seen(
-        left_to_judge(partitioner.document, role), role.iri, partitioner.judge.visible(focus)
-    )
-    suitable = sorted(partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
-    return suitable if listed else [*suitable, ANOTHER]
-
-
-def _failed(partitioner: Partitioner, role: CompiledRole, advertisement: Advertisement) -> set[IRI | None]:
-    """The property over which a test of the shape has failed, if one has; None stands for the component itself."""
-    profile, hierarchy = advertisement.profile, partitioner.hierarchy
-    return {
-        test.path if isinstance(test, PropertyTest) else None
-        for test in role.tests
-        if not isinstance(test, ParameterTest) and test.obstacle(profile, hierarchy) is not None
-    }
