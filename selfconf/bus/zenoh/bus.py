@@ -35,6 +35,7 @@ from selfconf.bus.zenoh.receivers import DirectReceiver, Receiver, ZenohRequest,
 from selfconf.bus.zenoh.relay import Hub, Relay
 from selfconf.bus.zenoh.roll_call import RollCalls
 from selfconf.bus.zenoh.session import Security
+from selfconf.bus.zenoh.unread_links import UnreadLinks
 
 LAST_TOLD = 0.5
 """Seconds after which the last sample is announced as that, where samples are kept: the last may be lost, too."""
@@ -114,6 +115,7 @@ class ZenohBus(Loop):
         self._turns = 0
         """How often this bus has gained or lost a hub: one that comes back has the same name as before."""
         self._link_watchers: list[Callable[[], None]] = []
+        self._unread_links = UnreadLinks(self, session.info.links)
         self._declared.add(session.info.declare_transport_events_listener(callback(self._turned), history=True))
         _OPEN.add(self)
 
@@ -151,6 +153,8 @@ class ZenohBus(Loop):
         change = self._hubs.add if event.kind == zenoh.SampleKind.PUT else self._hubs.discard
         change(str(event.transport.zid))
         self._turns += 1
+        if event.kind == zenoh.SampleKind.PUT:
+            self._unread_links.watch()
         for tell in tuple(self._link_watchers):
             tell()
 

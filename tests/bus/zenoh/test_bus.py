@@ -14,7 +14,7 @@ import pytest
 from zenoh import SampleKind, WhatAmI
 
 from selfconf.bus.port import Replies, Request, Sample, Urgency
-from selfconf.bus.zenoh import ZenohBus, client, router
+from selfconf.bus.zenoh import ZenohBus, client, router, unread_links
 
 
 def until(condition: Callable[[], bool], *buses: ZenohBus, seconds: float = 10.0) -> bool:
@@ -37,6 +37,16 @@ def test_clients_of_two_routers_that_are_connected_hear_each_other(zenoh_router:
     assert until(lambda: publisher.put(b"across") or bool(heard), one, two)  # a signal may be lost
     for bus in (one, two, second):
         bus.close()
+
+
+def test_a_client_that_reads_nothing_of_a_new_link_makes_another_one(
+    zenoh_router: ZenohBus, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(unread_links, "_first_bytes", lambda end: end.encode())
+    bus = client([zenoh_router.endpoint])
+    first = bus.link
+    assert until(lambda: bus.link not in ("", first), bus)
+    bus.close()
 
 
 def test_a_client_whose_router_is_gone_is_not_linked_and_is_again_when_it_is_back(top: str) -> None:
