@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.effects import ApplyTo
-from selfconf.configurator.events import Call
 from selfconf.configurator.state import Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.profile import CALL_MARK
@@ -98,7 +97,7 @@ def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
     resting = {
         one: {port: wires if port.endswith(CALL_MARK) else () for port, wires in mine.inputs.items()}
         for one, mine in state.held.items()
-        if one in actuators and mine.active and (mine.acts or (one, Call.APPLY) not in state.pending)
+        if one in actuators and mine.active
     }
     told = {one: ins for one, ins in resting.items() if ins != state.held[one].inputs or not state.held[one].rests}
     at_rest = {one: replace(state.held[one], acts=False, rests=True) for one in resting}

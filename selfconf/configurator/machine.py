@@ -177,7 +177,7 @@ def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
 
 def _waits_for(state: State, components: frozenset[IRI]) -> bool:
     """Whether a component, in a change for the better, does not answer before it is fed by what stood behind others."""
-    asked = (one for one, call in state.pending if call is Call.APPLY and one in state.held)
+    asked = (one for one, call in state.pending if call is Call.APPLY)
     return state.fallback is not None and any(state.held[one].is_wired_to(components) for one in asked)
 
 

@@ -181,6 +181,7 @@ def test_a_patient_task_that_has_found_something_else_waits_no_more() -> None:
     effects = history.all_answer()
     assert kinds(effects) == [Running, ReleaseFrom]
     assert released(effects) == [TRACKER]
+    assert not history.state.queued
 
 
 def test_a_patient_task_that_is_stopped_waits_no_more() -> None:

@@ -19,6 +19,7 @@ from selfconf.configurator.effects import (
     Watch,
 )
 from selfconf.configurator.events import (
+    Accepted,
     Adopted,
     Answered,
     Appeared,
@@ -40,6 +41,7 @@ from tests.configurator.builders import (
     GOAL,
     ODOMETRY,
     OTHERS,
+    REFUSAL,
     TASK,
     TRACKER,
     History,
@@ -232,6 +234,20 @@ def test_what_the_configurator_before_has_lost_does_not_count_until_it_lives_ane
     assert history.state.lost.keys() == {TRACKER}
     history.hear(Appeared({TRACKER: "2"}))
     assert not history.state.lost
+
+
+def test_what_another_configurator_has_lost_of_a_task_that_begins_does_not_count() -> None:
+    history = History(TASK)
+    history.hear(Accepted(100, (RecordedLoss(TRACKER, "1", Cause.FAIL, "lost Astrid"),)))
+    assert history.hear(Discovered()) == [Compose(1, frozenset({TRACKER}), None)]
+
+
+def test_what_is_adopted_and_taken_down_for_a_loss_is_not_refused_before_the_ecology_was_asked() -> None:
+    history = History(replace(TASK, policy=Policy.DISMANTLE))
+    history.hear(Adopted(500, navigation(), (RecordedLoss(TRACKER, "1", Cause.FAIL),)))
+    history.all_answer()
+    assert history.state.phase is Phase.COMPOSING
+    assert history.composed(REFUSAL) == [Discover()]
 
 
 @pytest.mark.parametrize("acts", [True, False])

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from selfconf.configurator.answering import OBEYED
-from selfconf.configurator.deploying import acting_wires
+from selfconf.configurator.deploying import DEPLOYING, acting_wires
 from selfconf.configurator.effects import (
     ApplyTo,
     AwaitRelease,
@@ -187,12 +187,14 @@ class Ledger:
             assert held.active >= held.acts >= held.confirmed
         assert not any(component in state.lost for component in state.held) or state.phase is Phase.DISMANTLING
         assert not state.ended or not state.queued
+        assert state.fallback is None or state.phase in DEPLOYING
         waits = state.phase is Phase.COMPOSING and state.awaits_return
         assert not waits or state.awaited_since in self.awaited, "nothing would end the wait"
 
     def _check_running(self) -> None:
         """All that is wanted is held, and has confirmed that it acts with the wanted inputs and values."""
         state = self.state
+        assert not state.queued
         assert state.target is not None
         wires, values = wiring(state.target), parameter_values(state.target)
         assert set(state.held) == set(state.target.components) == set(state.watched)

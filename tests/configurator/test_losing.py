@@ -7,7 +7,17 @@ from dataclasses import replace
 import pytest
 
 from selfconf.configurator.effects import AwaitReturn, Compose, Discover, Finish, ReleaseFrom, WakeUp
-from selfconf.configurator.events import Answered, Appeared, Call, Discovered, Event, Failed, Reconnected, StayedAway
+from selfconf.configurator.events import (
+    Answered,
+    Appeared,
+    Call,
+    Discovered,
+    Event,
+    Failed,
+    Freed,
+    Reconnected,
+    StayedAway,
+)
 from selfconf.configurator.state import MOST_PUT_OFF, Phase, State
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
@@ -16,6 +26,7 @@ from tests.configurator.builders import (
     ODOMETRY,
     OTHERS,
     REFUSAL,
+    TASK,
     TRACKER,
     History,
     navigation,
@@ -88,6 +99,30 @@ def test_what_went_with_its_site_is_searched_with_when_that_is_back() -> None:
     history.hear(Failed(TRACKER, "1", Cause.CRASH, "its life has ended", startable=True))
     history.hear(Discovered())
     assert history.composed(REFUSAL) == [Compose(history.state.attempt, frozenset(), None)]
+
+
+def test_what_could_not_be_reached_stays_lost_when_another_component_appears() -> None:
+    history = lost(patient=True)
+    history.composed(navigation(ODOMETRY))
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    history.answer(ODOMETRY, Call.APPLY, None)
+    assert ODOMETRY in history.state.lost
+    history.hear(Appeared({DRIVE: "2"}))
+    assert ODOMETRY in history.state.lost
+    history.hear(Appeared({}))
+    assert ODOMETRY not in history.state.lost, "its site may have been cut off with it"
+
+
+def test_a_component_that_another_task_had_and_that_ends_before_this_one_has_it_is_lost() -> None:
+    history = History(TASK).accepted()
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    history.busy(CONTROL)
+    history.hear(Freed(CONTROL))
+    history.composed(navigation())
+    assert (CONTROL, Call.WAKE) in history.state.pending
+    history.hear(Failed(CONTROL, "1", Cause.CRASH))
+    assert CONTROL in history.state.lost
 
 
 def out_of_sight() -> History:

@@ -29,6 +29,7 @@ from selfconf.configurator.events import (
 from selfconf.configurator.state import Phase
 from selfconf.protocol.messages import Cause, Verdict
 from tests.configurator.builders import (
+    ARM,
     CONTROL,
     DISMANTLE,
     DRIVE,
@@ -208,6 +209,15 @@ def test_a_component_that_seemed_dead_and_lives_was_only_cut_off_and_is_released
     assert history.hear(Answered(TRACKER, Call.RELEASE, history.state.owed[TRACKER], Verdict.DONE)) == []
     assert not history.state.owed
     assert history.hear(Appeared({TRACKER: "1"})) == []
+
+
+def test_of_what_has_not_obeyed_its_release_only_what_appears_is_released_again() -> None:
+    history = History().running()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH))
+    history.composed(navigation(ODOMETRY))
+    history.all_answer()
+    assert history.hear(Appeared({ARM: "1"})) == []
+    assert history.state.owed.keys() == {TRACKER}
 
 
 def test_a_component_that_is_applied_to_again_is_owed_no_release() -> None:

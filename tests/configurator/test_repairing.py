@@ -148,6 +148,12 @@ def test_what_has_just_appeared_is_not_changed_to_and_what_runs_stays() -> None:
     assert search == Compose(history.state.attempt, frozenset(), None)
 
 
+def test_what_has_just_appeared_may_take_the_place_of_what_is_lost() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    history.hear(Improvable(frozenset((TRACKER,))), Discovered(), Failed(ODOMETRY, "1", Cause.FAIL))
+    assert history.effects[-1] == Compose(history.state.attempt, frozenset((ODOMETRY,)), navigation(ODOMETRY))
+
+
 def test_what_an_ecology_has_answered_to_a_look_for_better_starts_no_search_after_a_failure() -> None:
     history = History(TASK).running(navigation(ODOMETRY))
     history.hear(Improvable(), Failed(ODOMETRY, "1", Cause.FAIL))
@@ -175,6 +181,17 @@ def test_what_moves_while_a_configuration_is_deployed_is_told_at_its_end() -> No
     assert applied(history.answer(CONTROL, Call.APPLY)) == [CONTROL]  # once more, with what stands behind now
     effects = history.answer(CONTROL, Call.APPLY)
     assert effects == [Running(navigation()), Unwatch(ODOMETRY), ReleaseFrom(ODOMETRY, history.state.epoch)]
+
+
+def test_what_moves_while_a_change_for_the_better_reserves_lets_it_not_begin_anew() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    history.hear(Improvable(), Discovered())
+    history.composed(with_arm(navigation()))
+    history.all_answer(Call.WAKE)
+    assert history.state.pending == {(ARM, Call.RESERVE)}
+    assert history.hear(Rewired(TRACKER)) == []
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
 
 
 def test_what_moves_while_another_configuration_is_looked_for_is_told_once_that_is_deployed() -> None:
@@ -236,6 +253,15 @@ def test_the_actuators_inside_of_a_composite_rest_also_while_another_one_is_star
         history.all_answer()
         assert history.state.phase is Phase.RUNNING
         assert history.state.held[DRIVE].rests is rests
+
+
+def test_what_comes_to_rest_inside_of_a_composite_is_called_no_more_as_that_is_part_of_something_incomplete() -> None:
+    whole = IRI("urn:c:whole")
+    inside = replace(navigation(), connections=(*navigation().connections, Connection(whole, "hint", TRACKER, "hint")))
+    history = History(TASK).running(inside)
+    history.hear(Stopped())
+    assert history.state.phase is Phase.DISMANTLING
+    assert history.hear(Rewired(whole, True)) == [], "a call with a newer epoch than its release would let it act"
 
 
 def test_what_gets_another_input_waits_for_its_source() -> None:

@@ -124,6 +124,15 @@ def test_what_others_share_is_known_before_it_is_changed_for_the_better() -> Non
     assert history.composed(navigation(ODOMETRY)) == []
 
 
+def test_a_component_that_others_share_is_done_without_where_it_cannot_do_without_the_sources_to_avoid() -> None:
+    history = History(TASK).running(navigation(ODOMETRY))
+    history.hear(Improvable(), Discovered({}, sharers(navigation(ODOMETRY))))
+    history.composed(navigation())
+    assert history.composed(REFUSAL) == [Compose(history.state.attempt, frozenset({CONTROL}), None)]
+    assert history.composed(REFUSAL) == []
+    assert history.state.phase is Phase.RUNNING
+
+
 def test_a_component_is_shared_as_its_holder_wants_where_that_can_be() -> None:
     history = History(TASK)
     history.hear(Accepted(100), Discovered({}, sharers(navigation(ODOMETRY))))
