@@ -130,10 +130,15 @@ class NotAmong:
 
     def said(self, name: str) -> str:
         """The fault of the property of that name."""
-        alike = {term_in_words(value) for value in self.values} & {term_in_words(member) for member in self.members}
+        alike = {_bare(value) for value in self.values} & {_bare(member) for member in self.members}
         worded = in_full if alike else in_words
         said, wanted = worded(self.values), worded(self.members)
         return f"{name} is {said} as well, not only {wanted}" if self.partly else f"{name} is {said}, not {wanted}"
+
+
+def _bare(term: Term) -> str:
+    """What a term is called without the marks that distinguish a literal from an IRI."""
+    return term.lexical if isinstance(term, Literal) else term_in_words(term)
 
 
 @immutable

@@ -265,7 +265,7 @@ def test_values_with_one_local_name_are_told_apart_by_their_whole_iris() -> None
     here, there = IRI("https://example.org/here#bed1"), IRI("https://example.org/there#bed1")
     assert NotAmong(frozenset((here,)), frozenset((there,))).said("place") == f"place is {here!r}, not {there!r}"
     text = Literal("bed1")
-    assert NotAmong(frozenset((text,)), frozenset((there,))).said("place") == 'place is "bed1", not bed1'
+    assert NotAmong(frozenset((text,)), frozenset((there,))).said("place") == f'place is "bed1", not {there!r}'
 
 
 def test_of_several_values_that_one_that_is_not_allowed_is_named_as_a_further_one() -> None:

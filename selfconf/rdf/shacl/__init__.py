@@ -2,7 +2,7 @@
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
 makes tests of the constraints that can be; two `exclude` each other if no value passes both, and one may be
-`passed_by_none` at all. `misfit`, `unfit`, `of_values`, `said_twice`, `said_alone`, `LISTS`, `LITERAL`,
+`passed_by_none` at all. `misfit`, `unfit`, `of_values`, `said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`,
 `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and `ILL_FORMED` say what may stand as a value of SHACL's own
 properties. `component_parameters` are the predicates by which a document constrains by components of its own. `pattern`
 is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is `MatchTooCostly`.
@@ -14,6 +14,7 @@ from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, patter
 from selfconf.rdf.shacl.shape_syntax import (
     BESIDES,
     COUNTS,
+    DESCRIBED,
     ILL_FORMED,
     LISTS,
     LITERAL,
@@ -31,6 +32,7 @@ from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled,
 __all__ = [
     "BESIDES",
     "COUNTS",
+    "DESCRIBED",
     "ILL_FORMED",
     "LISTS",
     "LITERAL",

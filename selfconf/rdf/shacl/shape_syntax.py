@@ -57,6 +57,8 @@ DEEPEST_PATH = 50
 
 ILL_FORMED = "This is not a well-formed shape."
 """What is said of a shape where no more is known."""
+DESCRIBED = frozenset((SH.property, SH.sparql))
+"""What has a node as its value that is described in the shape, and so no parameter."""
 WANTED: dict[IRI, str] = {
     **dict.fromkeys(COUNTS, "a whole number"),
     **dict.fromkeys(SWITCHES, "true or false"),
@@ -86,11 +88,11 @@ def unfit(predicate: IRI) -> str:
 def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[Term]) -> tuple[Triple, str] | None:
     """The first statement whose value cannot stand where it does, and a sentence.
 
-    A variable may stand wherever no list has to be: its value is an IRI or a literal.
+    A variable may stand wherever no list and no constraint has to be: its value is an IRI or a literal.
     """
     for triple in triples:
         shape, predicate, value = triple
-        if value in variables and predicate not in LISTS:
+        if value in variables and predicate not in LISTS | DESCRIBED:
             continue
         refused = _refused(document, value) if predicate == SH.sparql else None
         if refused is not None:
@@ -169,6 +171,8 @@ def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:
     """Whether a node may be the value of one of SHACL's properties that lead to nodes."""
     if predicate == SH.property:
         return len(document.values(value, SH.path)) == 1
+    if predicate == SH.sparql:
+        return len(document.values(value, SH.select)) == 1
     if predicate == SH.node:
         return not document.values(value, SH.path)
     return predicate != SH.path or is_path(document, value)

@@ -6,12 +6,12 @@ A parameter is a shape for its value.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from selfconf.model.immutable import replace
 from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, ShapeViolated
 from selfconf.model.template import Parameter, Role
-from selfconf.model.term import IRI, STRING, Literal, Term, sort_key
+from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
 from selfconf.model.wording import is_one_line
 from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
@@ -74,13 +74,20 @@ _PROBE = "urn:selfconf:probe"
 """The property by which pySHACL is asked about a value; a node of that name and a number has it."""
 
 
-def misfits(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
+def misfits(parameter: Parameter, values: Collection[Term], document: Document) -> dict[Term, str]:
     """The values, among some, that cannot stand for a parameter, each with the reason.
 
     A parameter is a shape for its value (`sh:nodeKind`, `sh:datatype`, `sh:in` ...). Values that pass the compiled
     tests of all its constraints conform; the others are judged by pySHACL. The reason is worded as for a property of a
     component, where the constraint is one of those; else as pySHACL, or the author by `sh:message`, words it.
     """
+    blank = [value for value in values if isinstance(value, BlankNode)]
+    found = dict[Term, str].fromkeys(blank, "it is a blank node, which is another one in each file")
+    return found | _misfits(parameter, [value for value in values if value not in found], document)
+
+
+def _misfits(parameter: Parameter, values: Iterable[Term], document: Document) -> dict[Term, str]:
+    """The values without blank nodes that do not conform to a parameter, each with the reason."""
     constraints = _constraints(parameter.iri, document)
     tests, covered = compiled(constraints)
     left = [value for value in values if covered != constraints.keys() or not _passes(tests, value)]

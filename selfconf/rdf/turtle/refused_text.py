@@ -40,13 +40,16 @@ def check_utf_8(octets: bytes, source: str) -> None:
         raise TurtleError(f"{said}; save the file in the encoding UTF-8", file=source, line=line, column=column)
 
 
-TAKES_RDF_1_2 = "this takes RDF 1.2, a statement about a statement or a text with a direction; RDF 1.1 is read"
-_SIGNS = (b"<<", b"{|", b"~", b"--ltr", b"--rtl")
+TAKES_RDF_1_2 = (
+    "this takes RDF 1.2, a statement about a statement, a text with a direction or a version; RDF 1.1 is read"
+)
+_SIGNS = (b"<<", b"{|", b"~", b"--ltr", b"--rtl", b"@version", b"VERSION")
 """One of these is in every text that takes Turtle 1.2; they may also be in a comment, a string or an IRI."""
 _TOKEN = re.compile(
     rf"{QUOTED}|{COMMENT}".encode() + rb'|<(?:[^<>"{}|^`\\\s]|\\[uU])*>'
     rb"|\\."
-    rb"|(?P<newer><<|\{\||~|@[A-Za-z]+(?:-[A-Za-z0-9]+)*--(?:ltr|rtl)\b)",
+    rb"|(?P<newer><<|\{\||~|@[A-Za-z]+(?:-[A-Za-z0-9]+)*--(?:ltr|rtl)\b"
+    rb"|@version\b|(?<![\w:.-])VERSION\b(?![:.-]))",
     re.DOTALL,
 )
 """What may hide one of the signs, and the signs where nothing hides them."""

@@ -33,6 +33,7 @@ from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.shacl import (
     BESIDES,
     COUNTS,
+    DESCRIBED,
     ILL_FORMED,
     LISTS,
     ONLY_WITH_A_PATH,
@@ -82,7 +83,11 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     shapes = _with_samples(graph)
     for role in roles:
         shapes.add((URIRef(role), RDF.type, SH.NodeShape))
-    faults = [fault for look in (_with_own_path, _literals) for fault in look(shapes, positions)]
+    for recruited in graph.objects(None, URIRef(SC.recruits)):
+        if not isinstance(recruited, Literal):
+            kind = SH.PropertyShape if (recruited, SH.path, None) in graph else SH.NodeShape
+            shapes.add((recruited, RDF.type, kind))
+    faults = [*_with_own_path(shapes, graph, positions), *_literals(shapes, positions)]
     faults += _faults(shapes, graph, positions)
     faults += [fault for look in (_alone, _patterns, _queries) for fault in look(graph, positions)]
     faults += _too_deep(shapes, roles, positions)
@@ -111,8 +116,10 @@ def _with_samples(graph: Graph) -> Graph:
     shapes = Graph()
     for subject, predicate, value in graph:
         sample = samples.get(value, value)
-        if str(predicate) in LISTS or (sample is None and (predicate == RDF.first or predicate == SH.hasValue)):
-            sample = value  # no parameter will do for a list, and any term as a member
+        if str(predicate) in LISTS | DESCRIBED or (
+            sample is None and (predicate == RDF.first or predicate == SH.hasValue)
+        ):
+            sample = value  # no parameter will do for a list or a constraint, and any term as a member
         if sample is not None:
             shapes.add((subject, predicate, sample))
     for prefix, namespace in graph.namespaces():
@@ -174,10 +181,10 @@ def _sampled(graph: Graph, shape: Node, predicate: Node | None) -> Node | None:
     return next((value for value in values if (value, RDF.type, URIRef(SC.Parameter)) in graph), None)
 
 
-def _with_own_path(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
+def _with_own_path(shapes: Graph, graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     """Node shapes, as roles are, with a path: beside one pySHACL evaluates none of the others either."""
-    for shape in set(shapes.subjects(SH.path)) & set(shapes.subjects(RDF.type, SH.NodeShape)):
-        for path in shapes.objects(shape, SH.path):
+    for shape in set(graph.subjects(SH.path)) & set(shapes.subjects(RDF.type, SH.NodeShape)):
+        for path in graph.objects(shape, SH.path):
             offsets = positions.triples.get((shape, SH.path, path))
             message = "A role is about its component itself, so it has no sh:path: write sh:property [ sh:path ... ]."
             yield at(positions, offsets.object if offsets else positions.offset(shape), "SC-T13", message)

@@ -60,6 +60,8 @@ def test_a_default_that_keeps_to_datatype_and_kind_is_read(stated: str) -> None:
         ("sh:datatype xsd:string ; sh:defaultValue :kitchen", "it is kitchen, not a string"),
         ("sh:minInclusive 7 ; sh:defaultValue 5", "it is 5, not at least 7"),
         ("sh:in ( 1 2 ) ; sh:defaultValue 5", "it is 5, not 1 or 2"),
+        ('sh:in ( :hall ) ; sh:defaultValue "hall"', 'it is "hall", not <.*#hall>'),
+        ("sh:defaultValue []", "it is a blank node, which is another one in each file"),
     ],
 )
 def test_a_default_that_its_parameter_does_not_allow_is_an_error(stated: str, reason: str) -> None:

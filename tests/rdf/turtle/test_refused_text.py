@@ -79,6 +79,7 @@ def test_turtle_1_2_is_refused_at_its_place_by_every_reader(value: str, column: 
         '""" "~ << """',
         '"\\"~" , ""',
         '"x"@en-GB , :a--ltr',
+        ':VERSION , :a.VERSION , "VERSION"@en',
     ],
 )
 def test_what_looks_like_turtle_1_2_and_is_not_is_read(value: str) -> None:
@@ -86,6 +87,15 @@ def test_what_looks_like_turtle_1_2_and_is_not_is_read(value: str) -> None:
     check_turtle_1_1(text.encode(), "a.ttl")
     (advertisement,), malformed = read_advertisements(text.encode(), "a.ttl")
     assert (advertisement.component.short, malformed) == ("k", [])
+
+
+@pytest.mark.parametrize("version", ['@version "1.2" .', 'VERSION "1.2"'])
+def test_a_version_is_refused_by_every_reader(version: str) -> None:
+    text = f"{version}\n{described(':a')}"
+    assert list(ox.parse(text, format=ox.RdfFormat.TURTLE))
+    for read in (read_advertisements, turtle.parse, read_ontology):
+        with pytest.raises(TurtleError, match=r"a\.ttl:1:1: not Turtle 1\.1"):
+            read(text.encode(), "a.ttl")
 
 
 def test_another_mistake_before_it_is_left_to_the_parser() -> None:

@@ -27,6 +27,7 @@ def told(text: str) -> list[tuple[str, int]]:
     ("constraint", "good", "bad"),
     [
         ("sh:nodeKind sh:IRI", ":kitchen", '"lit"'),
+        ("rdfs:comment 'of any kind'", ":kitchen", "[]"),
         ("sh:datatype xsd:integer", "3", '"x"'),
         ("sh:datatype xsd:integer", "3", '"x"^^xsd:integer'),
         ("sh:minInclusive 3", "3.0", "2"),

@@ -5,15 +5,18 @@ from __future__ import annotations
 import pytest
 from rdflib import SH, Graph
 
+from selfconf.errors import TemplateError
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
 from selfconf.rdf.positions import parse_with_positions
+from selfconf.rdf.tasks import read_task
+from selfconf.rdf.turtle import parse
 from selfconf.rdf.validation.well_formedness import (
     endless_lists,
     malformed_roles,
     shape_of_shapes,
 )
-from tests.lab import PREFIXES
+from tests.lab import PREFIXES, iri
 
 HEAD = PREFIXES.count("\n")
 LISTS = "@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> . "
@@ -42,6 +45,8 @@ def places(text: str) -> list[tuple[int, int]]:
         "sh:property [ sh:path ( :p :q ) ; sh:pattern '^a+$' ]",
         "sh:property [ sh:path ( :p :q ) ; sh:pattern 'a(b' ; sh:flags 'q' ]",
         "sh:sparql [ sh:select 'SELECT $this WHERE { $this a ?type }' ]",
+        "sc:recruits [ sh:path :p ; sh:minCount 1 ]",
+        "sc:recruits true",
         "sh:or ( [ sh:path [ sh:alternativePath ( :p ( :q :p ) ) ] ; sh:minCount 1 ] [ sh:class :K ] )",
     ],
 )
@@ -129,6 +134,24 @@ def test_a_shape_that_comes_back_to_itself_is_not_taken_to_be_deep() -> None:
 def test_a_parameter_is_judged_by_a_sample_of_its_datatype(kind: str, wrong: bool) -> None:
     text = PARAMETER.format(kind) + ":r a sc:Role ; sh:property [ sh:path :p ; sh:minCount :robot ] ."
     assert bool(malformed(text)) == wrong
+
+
+@pytest.mark.parametrize("kind", ["sh:datatype xsd:string", "sh:nodeKind sh:IRI", "rdfs:comment 'of any kind'"])
+@pytest.mark.parametrize("predicate", ["sh:property", "sh:sparql", "sh:path"])
+def test_no_parameter_stands_for_a_part_of_a_shape(predicate: str, kind: str) -> None:
+    text = f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :robot . :r a sc:Role ; {predicate} :robot .\n"
+    text += PARAMETER.format(kind)
+    assert {one.code for one in malformed(text)} == {"SC-T13"}
+    with pytest.raises(TemplateError):
+        read_task(parse(PREFIXES + text, "a.ttl"), iri("t"))
+
+
+@pytest.mark.parametrize("recruited", ["[ sh:path 'x' ]", "[ sh:path :p ; sh:class 5 ]"])
+def test_a_shape_of_what_is_recruited_is_looked_at(recruited: str) -> None:
+    text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sc:recruits {recruited} ."
+    assert {one.code for one in malformed(text)} == {"SC-T13"}
+    with pytest.raises(TemplateError):
+        read_task(parse(PREFIXES + text, "a.ttl"), iri("t"))
 
 
 @pytest.mark.parametrize("shape", ["sh:class 5", "sh:path :p"])
