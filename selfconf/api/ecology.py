@@ -64,8 +64,8 @@ class Components(Tabular, Mapping[IRI, Profile]):
 class Solutions(Tabular, Sequence[Mapping[str, Term]]):
     """The solutions of a SELECT query, each the values of its variables by name; prints as a table.
 
-    A value is an `IRI`, which is a string, a `BlankNode`, or a `Literal`, whose text is `lexical`, also that of a number.
-    A variable that has no value in a solution is left out there.
+    A value is an `IRI`, which is a string, a `BlankNode`, or a `Literal`, whose text is `lexical`, also that of a
+    number. A variable that has no value in a solution is left out there.
 
     >>> (solution,) = read("examples/clock").query("SELECT (COUNT(?c) AS ?n) WHERE { ?c a sc:Component }")
     >>> int(solution["n"].lexical)
