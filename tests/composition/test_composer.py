@@ -128,6 +128,14 @@ def test_subclasses_of_players_without_recruits_are_no_hint() -> None:
     assert composer.possible_under(ecology(only, locator("gps")), above)
 
 
+def test_a_recruit_whose_signal_is_of_a_subclass_of_what_is_wanted_is_a_hint() -> None:
+    recruiting = ":navigate a sc:Template ; sc:roles ( :control ) . :control a sc:Role ; sh:class :Controller"
+    composer = Composer(task(f"{recruiting} ; sc:recruits true ."))
+    given = ecology(locator("gps", "PlanarPose"), controller("cap"))
+    assert isinstance(composer.compose(given, NOBODY, None), Refusal)
+    assert composer.possible_under(given, Hierarchy([(iri("PlanarPose"), iri("Pose"))]))
+
+
 # The strategy `best`.
 
 
@@ -240,6 +248,10 @@ def test_the_partition_is_made_again_only_when_the_ecology_has_changed() -> None
     assert [
         len(candidates) for candidates in composer.partition({**given, **ecology(locator("odometry"))}).candidates
     ] == [2, 1]
+    grown = {**given}
+    composer.partition(grown)
+    grown |= ecology(locator("odometry"))
+    assert [len(candidates) for candidates in composer.partition(grown).candidates] == [2, 1]
 
 
 def test_a_partition_that_was_ended_in_the_middle_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -282,10 +294,25 @@ def test_a_component_of_a_role_that_has_candidates_does_not_help() -> None:
     assert helping(Composer(task(PLAIN)), given, "beacon", "cap") == {iri("cap"): (iri("control"),)}
 
 
+def test_where_no_reason_is_known_a_component_of_any_role_may_help() -> None:
+    composer, given = Composer(task(PLAIN)), ecology(locator("gps"), controller("cap"))
+    composer.partition(given)
+    unexplained = Refusal(composer.task.template.iri, ())
+    assert composer.usable({*given}, unexplained) == {iri("gps"): (iri("position"),), iri("cap"): (iri("control"),)}
+
+
 def test_a_component_that_feeds_what_is_not_fed_helps() -> None:
     given = ecology(locator("ear", "Echo"), locator("gps"), controller("cap"), controller("hat"))
     helped = helping(Composer(task(PLAIN)), given, "gps", "hat")
     assert helped == {iri("gps"): (iri("position"),), iri("hat"): (iri("control"),)}
+
+
+def test_a_component_of_a_role_that_shares_too_few_with_others_helps() -> None:
+    both = ":navigate a sc:Template ; sc:roles ( :r :s ) . :r a sc:Role ; sh:class :Locator ."
+    composer = Composer(task(f"{both} :s a sc:Role ; sh:class :Locator ."))
+    assert helping(composer, ecology(locator("gps"), locator("beacon")), "beacon") == {
+        iri("beacon"): (iri("r"), iri("s"))
+    }
 
 
 def test_what_could_help_as_a_recruit_is_told_without_a_role() -> None:

@@ -106,6 +106,15 @@ def test_to_take_a_near_miss_would_do_if_it_states_what_a_role_is_set_to(others:
     assert accepted_near_misses(room % (OLD + where, set_), ads) == [iri("fast")]
 
 
+@pytest.mark.parametrize(("place", "accepted"), [("hall", True), ("kitchen", True), ("garage", False)])
+def test_to_take_a_near_miss_would_do_if_it_is_where_another_component_is(place: str, accepted: bool) -> None:
+    where = " ; sh:property [ sh:path :at ; sh:in ( :room ) ]"
+    room = SHOWN.replace("sc:roles", "sc:parameter :room ; sc:roles") + '\n:room a sc:Parameter ; sc:name "room" .'
+    screens = [SCREEN.replace(":s a", f":{one} a").replace(":age 3", f":at :{one}") for one in ("hall", "kitchen")]
+    ads = seeing("fast", 5).replace(":age 3", f":age 3 ; :at :{place}") + "\n".join(screens)
+    assert accepted_near_misses(room % (OLD + where, where), ads) == [iri("fast")] * accepted
+
+
 def test_that_a_hierarchy_would_do_is_a_hint_where_none_was_seen() -> None:
     composer, ecology, refusal = refused(EYE, ":cam a sc:Component, :CeilingCamera .")
     told = explained(composer, ecology, refusal, BELOW, UNLIMITED)

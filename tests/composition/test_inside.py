@@ -117,6 +117,26 @@ def test_what_is_inside_has_the_unit_and_frame_that_the_composite_states(hint: s
 
 
 @pytest.mark.parametrize(
+    ("composite", "template", "refused"),
+    [
+        ("sc:unit unit:M", "sc:unit unit:M", ""),
+        ("sc:unit unit:CentiM", "sc:unit unit:M", "its input 'hint' is"),
+        ("sc:unit unit:M", "sc:frame :odom", "near"),
+        ("sc:frame :map", "sc:unit unit:CentiM", "near"),
+    ],
+)
+def test_a_port_of_a_composite_has_what_its_template_states_as_well(
+    composite: str, template: str, refused: str
+) -> None:
+    of_template = ':Length ; sc:of :scale ] ;\n    sc:hasOutput [ sc:name "size"'
+    text = SCALED.format(hint=f" ; {composite}", size="")
+    assert of_template in text
+    found, why = judged(text.replace(of_template, of_template.replace(":Length", f":Length ; {template}")))
+    assert [*found] == ([] if refused else [WHOLE])
+    assert refused in why.get(WHOLE, "")
+
+
+@pytest.mark.parametrize(
     ("values", "sentence"),
     [
         ({"robot": iri("Astrid")}, "the parameter 'speed' of its template localise needs a value"),
@@ -128,6 +148,15 @@ def test_values_with_which_there_is_no_inside_are_one_sentence(values: dict[str,
     ((_, why),) = insides(known(text), lambda one: document(text), holding(**values))
     assert isinstance(why, str)
     assert sentence in why
+
+
+def test_of_a_composite_without_an_inside_it_is_said_why() -> None:
+    text = COMPOSITE + TEMPLATE
+    ((component, why),) = insides(known(text), lambda one: document(text), holding(robot=iri("Astrid")))
+    assert component == WHOLE
+    assert isinstance(why, str)
+    assert why.startswith("its inside cannot be configured now: no component is eligible for the role tracker")
+    assert "inside of itself" not in why
 
 
 @pytest.mark.parametrize(
@@ -246,6 +275,7 @@ def test_of_what_is_lacking_it_is_said_which_task_holds_it_and_since_when() -> N
     assert "the task patrol (priority 2, configurator c1) holds it since " in said
     many = why_none(replace(LACKING, held=((iri("camera"), holder),) * (MANY + 2)))
     assert many.endswith("; and 2 more are held")
+    assert many.count("camera") == MANY
 
 
 NESTED = """

@@ -100,6 +100,18 @@ def test_a_recruit_whose_own_supplier_is_not_fed_is_named_with_that() -> None:
     assert said == "a, which is not fed itself: b, which issues a Raw for its input 'i', is not fed either"
 
 
+def test_a_recruit_does_not_lack_what_players_issue() -> None:
+    needy = NEEDY.format("").replace(" .", ' ; sc:hasOutput [ sc:name "raw" ; sc:signalType :Raw ] .')
+    more = 'sc:hasInput [ sc:name "j" ; sc:signalType :Dust ] ; sc:hasOutput'
+    unfed = converter("a", "Raw", "Scan").replace("sc:hasOutput", more)
+    (reason,) = refused(" ; sc:recruits true", needy, unfed).reasons
+    assert "no component that can be recruited issues a Dust for its input 'j'" in str(reason)
+
+
+def test_of_what_issues_something_akin_and_is_not_fed_itself_it_is_told_what_it_issues() -> None:
+    assert nearest(converter("sonar", "Raw", "Echo"))[0] == "sonar, which issues Echo, which is akin to Scan"
+
+
 def test_a_recruit_in_another_unit_or_that_is_not_accepted_is_named_with_that() -> None:
     said, _ = nearest(source("lidar", "Scan", " ; sc:unit unit:MilliM"), wanting=" ; sc:unit unit:M")
     assert said == "lidar, which issues what is in MilliM, not in M, a unit of the same dimension (output 'o')"

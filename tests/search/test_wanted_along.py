@@ -36,6 +36,11 @@ def test_what_sinks_lack_is_wanted_and_what_sources_issue_is_given() -> None:
     assert ways_along_interactions(given, 2) == []
 
 
+def test_of_a_source_that_issues_nothing_nothing_is_known() -> None:
+    given = problem(FEEDS, giver=(player("g"),), taker=(player("k", (B,)),))
+    assert ways_along_interactions(given, 1) == [WantedPorts(((B,),), None)]
+
+
 def test_each_choice_of_ports_is_a_way() -> None:
     given = problem(
         FEEDS, giver=(player("g", (), (A,)), player("h", (), (D,))), taker=(player("k", (B,)), player("l", (C,)))
