@@ -122,8 +122,8 @@ class InsideOfComposite:
 
     @property
     def patience(self) -> float:
-        """How many seconds it may take until the inside runs: its components may have to be started."""
-        return 0.0 if self.settled else STARTING_INSIDE
+        """How many seconds it may take until an inside runs that has begun: its components may have to be started."""
+        return 0.0 if self.settled or self.runner is None else STARTING_INSIDE
 
     def follow(self, message: Apply) -> None:
         """Begin with the inside, or tell it what it is connected to now; begin anew where values have changed."""

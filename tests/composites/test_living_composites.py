@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 
 from selfconf import files
+from selfconf.bus.memory import Faults
 from selfconf.composites.living_composites import LOOK_AT_REFUSED, NEXT_LIFE, OTHER_LIFE
-from selfconf.configurator import Phase
+from selfconf.configurator import Call, Phase
 from selfconf.deployment import TaskRunner
+from selfconf.deployment.components.calling import CALL
 from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.term import IRI
 from selfconf.rdf.advertisements import Advertisement
@@ -227,6 +229,18 @@ def test_of_two_sites_that_advertise_a_composite_one_goes_on_when_the_other_has_
     lab.crash(sites[having])
     lab.let_pass(10.0)
     assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
+
+
+def test_a_composite_that_a_call_has_not_reached_is_called_again(tmp_path: Path) -> None:
+    """Its inside has not begun, so there is nothing that the caller would have to wait for."""
+    lab = eye(tmp_path)
+    low = lab.agent(LOOK.replace("SINK", "Low"), ())
+    assert lab.until(lambda: low.state.phase is Phase.COMPOSING)
+    lab.network.faults = Faults(loss=1.0)
+    assert lab.until(lambda: (iri("eye"), Call.RESERVE) in low.state.pending)
+    lab.network.faults = Faults()
+    assert lab.until(lambda: low.state.phase is Phase.RUNNING, 2 * CALL)
+    assert not lab.acts("lost")
 
 
 def test_a_composite_that_lives_is_not_driven_out_by_one_that_comes_later(tmp_path: Path) -> None:
