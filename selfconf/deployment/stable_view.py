@@ -71,5 +71,6 @@ class StableView:
         return max(0.0, min(self._changed + self._calm(), self._began + LONGEST_UNREST) - self._now())
 
     def _calm(self) -> float:
-        has_new_link = self._hub_reopens or self._is_over_new_link or self._link() != self._before
+        # A link that is lost as this is asked was there in the calm before.
+        has_new_link = self._hub_reopens or self._is_over_new_link or self._link() not in ("", self._before)
         return CALM_OVER_NEW_LINK if has_new_link else CALM

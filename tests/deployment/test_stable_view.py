@@ -120,6 +120,15 @@ def test_a_site_that_comes_does_not_end_the_wait_of_one_that_has_just_begun_and_
     assert observed.unrest() == pytest.approx(CALM_OVER_NEW_LINK)
 
 
+def test_a_site_that_has_begun_in_calm_goes_on_at_once_with_what_it_loses_with_its_hub() -> None:
+    observed = Observed("a", "b")
+    observed.time += 2.0 * CALM
+    observed.link = ""
+    observed.go("a")
+    observed.link = "hub 2"
+    assert not observed.unrest()
+
+
 def test_unrest_that_does_not_end_is_waited_for_no_longer_than_a_while(observed: Observed) -> None:
     observed.go("a", "b")
     waited = 0.0
