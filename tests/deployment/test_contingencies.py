@@ -76,6 +76,25 @@ def test_a_component_of_which_a_task_cannot_do_without_is_searched_for_anew(lab:
     assert lab.ended[0] is not None
 
 
+def test_what_was_found_out_does_not_answer_once_a_component_that_was_lost_can_be_had_again(tmp_path: Path) -> None:
+    advertised = SPARE | {"third": SPARE["right"].replace(":right", ":third").replace("1", "0")}
+    lab = Lab(tmp_path, advertised=advertised)
+    lab.site("shared", *advertised)
+    for name in advertised:
+        lab.component(name)
+    agent = lab.agent(DRIVEN, (), at_leisure=at_once)
+    assert lab.running(agent)
+    lab.components["left"].fail("it is stuck")
+    assert lab.running(agent)
+    lab.let_pass(1.0)
+    contingencies, found, running = agent._search._contingencies, agent.ecology.discovery.found, agent.state.target
+    advertisements = {component: one.advertisement for component, one in found.items()}
+    both = contingencies.answer(advertisements, frozenset({iri("left"), iri("right")}), running)
+    assert both is not None
+    assert both.configuration.components == (iri("third"),)
+    assert contingencies.answer(advertisements, frozenset({iri("right")}), running) is None
+
+
 def test_a_task_waits_for_all_that_may_help_and_not_only_for_what_was_found_beforehand(tmp_path: Path) -> None:
     """What was free when that was found out has come to be held by others since."""
     advertised = SPARE | {"third": SPARE["right"].replace(":right", ":third")}

@@ -61,6 +61,12 @@ def test_a_request_that_comes_twice_is_served_once() -> None:
     assert served.ask(request) == Replies()
 
 
+def test_requests_that_were_answered_keep_none_out() -> None:
+    served = Served()
+    for _ in range(MOST_CALLS + 1):
+        assert served.ask(request_of(ALBUM)).samples
+
+
 def test_only_who_is_connected_is_answered() -> None:
     served = Served()
     assert json.loads(served.ask(request_of(ALBUM)).samples[0].payload) == {"by": "camera", "sent": None}
