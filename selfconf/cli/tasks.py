@@ -45,7 +45,7 @@ def run(given: argparse.Namespace) -> int:
             ]
             for task in found
         ]
-        head = ["task", "priority", "phase", "since", "configurator", "lives in", "components"]
+        head = ["task", "priority", "phase", "age", "configurator", "lives in", "components"]
         display(table(head, rows))
     elif not code:
         display(f"there is no task in ecology {ecology.name}")

@@ -41,6 +41,8 @@ def test_a_task_that_runs_is_listed_by_its_name_and_stopped_by_it(
     program.act("running")
     (task,) = run(capsys, "tasks", "--format", "json", *where).body
     assert (task["task"], task["priority"], task["phase"], task["detached"]) == ("noon", 3, "running", False)
+    head = run(capsys, "tasks", *where).out.splitlines()[0].split()
+    assert head[:4] == ["task", "priority", "phase", "age"]  # of the task: `status` says how long the phase has lasted
     again = run(capsys, "run", TEMPLATE, *where, "--name", "noon")
     assert again.is_one_sentence("a task 'noon' lives already")
     assert run(capsys, "stop", "midnight", *where).is_one_sentence("no task or configurator 'midnight' answers")
