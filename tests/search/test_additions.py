@@ -147,6 +147,19 @@ def test_of_equally_few_the_first_role_is_asked() -> None:
     assert [role.minimum for role in found.roles] == [1, 0, 1]
 
 
+def test_two_of_one_role_are_fewer_than_one_of_each_of_three() -> None:
+    roles = {
+        "many": [component("a", outputs="x:X"), component("b", outputs="y:Y z:Z")],
+        "two": [component("c", outputs="y:Y")],
+        "three": [component("d", outputs="z:Z")],
+        "user": [component("user", "x:X y:Y z:Z")],
+    }
+    counts = dict.fromkeys(("many", "two", "three"), (0, 2))
+    found = with_additions(problem(roles, "many>user two>user three>user", counts=counts))
+    assert isinstance(found, Problem)
+    assert [role.minimum for role in found.roles] == [2, 0, 0, 1]
+
+
 @pytest.mark.parametrize(("interactions", "joining"), [("", ["m1"]), ("many>screen", [])])
 def test_a_role_is_asked_for_of_which_only_recruits_need_what_it_issues(interactions: str, joining: list[str]) -> None:
     """Where it feeds another role as well, that needs nothing of it; in no interaction, all that fit join it."""
