@@ -33,7 +33,7 @@ def site_logs(ecology: str | None, folder: Path | None = None) -> list[Path]:
     if ecology is not None:
         checked_name(ecology, "an ecology")
     folders = _folders(ecology) if folder is None else {folder}
-    found = sorted(path for one in folders if one.is_dir() for path in one.glob(f"{ecology or '*'}@*.log"))
+    found = sorted(path for one in folders for path in one.glob(f"{ecology or '*'}@*.log"))
     if ecology is None:
         found = _of_one_ecology(found)
     if not found:

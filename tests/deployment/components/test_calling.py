@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.bus.port import Replies, Request
+from selfconf.bus.port import Replies, Request, Sample
 from selfconf.configurator.state import Phase
 from selfconf.deployment.components import calling
 from selfconf.deployment.components.calling import CALL, STARTING
 from selfconf.model.run_event import ComponentLost
-from selfconf.protocol.codec import decode
+from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk
 from selfconf.protocol.messages import CallAnswer, Cause, Reserve, Verdict
 from selfconf.rdf.turtle import document as turtle
@@ -175,6 +175,16 @@ def test_each_answer_to_a_call_is_read_once(lab: Lab, monkeypatch: pytest.Monkey
     assert lab.running(agent)
     assert len(read) == 2 * len(lab.active())
     assert len(set(read)) == len(read)
+
+
+@pytest.mark.parametrize("lives", [("meant", "other"), ("other", "meant")])
+def test_of_several_lives_that_answer_the_one_counts_that_was_meant(lab: Lab, lives: tuple[str, str]) -> None:
+    drive = iri("astrid-drive")
+    said = (encode(CallAnswer(Verdict.DONE, drive, life, 1)) for life in lives)
+    replies = Replies(tuple(Sample(lab.keys.call(drive, "apply"), payload) for payload in said))
+    answer = lab.agent()._calls._calling.answer_in(replies, "meant")
+    assert answer is not None
+    assert answer.life == "meant"
 
 
 def test_every_call_names_the_life_that_is_meant_so_that_no_other_life_obeys_it(lab: Lab) -> None:
