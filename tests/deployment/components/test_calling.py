@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from selfconf.deployment.components.calling import CALL, STARTING
 from selfconf.model.run_event import ComponentLost
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import component_chunk
-from selfconf.protocol.messages import CallAnswer, Cause, Reserve, Verdict
+from selfconf.protocol.messages import CallAnswer, Cause, Release, Reserve, Verdict
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import SC
 from selfconf.sdk.component import Refused
@@ -175,6 +176,16 @@ def test_each_answer_to_a_call_is_read_once(lab: Lab, monkeypatch: pytest.Monkey
     assert lab.running(agent)
     assert len(read) == 2 * len(lab.active())
     assert len(set(read)) == len(read)
+
+
+def test_a_component_has_obeyed_a_release_once_this_configurator_holds_it_no_more(lab: Lab) -> None:
+    drive, calls = iri("astrid-drive"), lab.agent()._calls._calling
+    message = Release(**calls.claim(drive, 1))
+    call = calling._PendingCall(calls, drive, message, None)
+    held = CallAnswer(Verdict.DONE, drive, message.life, 1, True, supervisor=message.supervisor, task=message.task)
+    assert not call._has_obeyed(held)
+    assert call._has_obeyed(replace(held, supervisor="that of another configurator of the task"))
+    assert call._has_obeyed(replace(held, task="another task"))
 
 
 @pytest.mark.parametrize("lives", [("meant", "other"), ("other", "meant")])

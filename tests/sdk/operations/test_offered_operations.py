@@ -133,6 +133,14 @@ def test_an_answer_that_was_promised_ends_when_an_actuator_comes_to_rest(under_w
     assert served.runtime.active
 
 
+def test_an_actuator_that_rests_refuses_to_be_called() -> None:
+    served, callers = Served(), {"takePhoto" + CALL_MARK: (ALBUM,)}
+    served.stage.call(apply(2, callers=callers, rests=True))
+    assert served.ask(request_of(ALBUM)).errors == ("camera is at rest",)
+    served.stage.call(apply(2, callers=callers))
+    assert served.ask(request_of(ALBUM)).samples
+
+
 def test_a_promise_that_comes_to_another_one_is_no_answer() -> None:
     """A request would wait forever, and after 64 of them no other one would be served."""
     promise: Future[Any] = Future()
