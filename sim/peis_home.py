@@ -5,7 +5,8 @@
 One thread owns PyBullet and calls the components. Each control period of 0.1 s of simulated time the sensors look,
 the components hear what has arrived, and the physics goes on. In real time the period ends by the clock. With
 `--speed max` it ends as soon as the drive has answered the newest pose, or after `PATIENCE` seconds of real time if
-it does not answer, so that the run is fast while Astrid navigates and real time while the configurator works.
+it does not answer or nothing tells poses, so that the run is fast while Astrid navigates and real time while the
+configurator works.
 
 It ends when Astrid has stood still at a place long enough to have arrived, when simulated time is up, or when
 it is asked to. What happened goes to stdout, a line of JSON for each event, and in full to the record.
@@ -104,21 +105,18 @@ class PeisHome:
         if self.speed == float("inf"):
             deadline = time.monotonic() + PATIENCE
             while not self.told() and (left := deadline - time.monotonic()) > 0:
-                if self.drive.active and self.drive.heard >= self._asked > float("-inf"):
+                if self._source() and self.drive.active and self.drive.heard >= self._asked > float("-inf"):
                     break
                 self.host.poll(left)
             return
         deadline = self._began + (self.world.time + PERIOD) / self.speed
-        while not self.told() and (left := deadline - time.monotonic()) > 0:
+        while (left := deadline - time.monotonic()) > 0 and not self.told():
             self.host.poll(left)
         if left <= -1.0:  # this machine cannot keep up: let the clock fall back instead of hurrying after it
             self._began -= left
 
     def _move(self) -> None:
-        source = (
-            "tracker" if any(camera.active for camera in self.cameras) else "odometry" if self.odometry.active else ""
-        )
-        self.logbook.write(self.world.time, self.world.pose(), source)
+        self.logbook.write(self.world.time, self.world.pose(), self._source())
         self.drive.tick()
         self._drove += PERIOD if self._moved else 0.0
         if self._drove >= self._covered_at:
@@ -128,6 +126,12 @@ class PeisHome:
         for _ in range(round(PERIOD / TIME_STEP)):
             self.world.step()
             self.logbook.touched.update(touch.other for touch in self.world.contacts())
+
+    def _source(self) -> str:
+        """Whose poses count: `tracker` or `odometry`, or an empty string while nothing tells poses."""
+        if any(camera.active for camera in self.cameras):
+            return "tracker"
+        return "odometry" if self.odometry.active else ""
 
     def _tell_progress(self) -> None:
         if self._moved and self.world.time >= self._next_word:

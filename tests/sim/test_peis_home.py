@@ -1,12 +1,21 @@
-"""The apartment's Turtle: every term is explained, and the rooms make the home of the paper."""
+"""The apartment's Turtle: every term is explained, and the rooms make the home of the paper. And its program."""
 
 from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 import pytest
 from rdflib import OWL, RDF, RDFS, SKOS, Graph, URIRef
 
+from selfconf.bus.memory import Network
+from selfconf.sdk import Host
 from sim.home.apartment import HOME, PEIS_HOME, Apartment
 from sim.home.route import RouteMap
+
+if TYPE_CHECKING:
+    from sim.peis_home import PeisHome
 
 TERMS = sorted({s for s in Graph().parse(PEIS_HOME).subjects() if str(s).startswith(str(HOME))})
 
@@ -63,3 +72,43 @@ def test_sparql_can_ask_which_furniture_is_in_the_apartment_and_in_which_room(pl
              ?room home:isIn home:peis-home }"""
     )
     assert (HOME.sofa, HOME["living-room"]) in {(row[0], row[1]) for row in rows}
+
+
+@pytest.fixture
+def playing(apartment: Apartment) -> Iterator[Callable[[float], PeisHome]]:
+    """Makes the program's world at a speed, in an ecology that has no configurator."""
+    pytest.importorskip("pybullet", reason="PyBullet is not installed: install the extra sim on Python 3.10 or 3.11")
+    from sim.peis_home import PeisHome
+
+    made: list[PeisHome] = []
+
+    def make(speed: float) -> PeisHome:
+        made.append(PeisHome(Host(Network(0).node(), "lab"), apartment, 1, speed, "bedroom", gui=False))
+        return made[-1]
+
+    yield make
+    for home in made:
+        home.host.close()
+        home.world.close()
+
+
+@pytest.mark.sim
+def test_the_world_ends_that_is_told_to_while_the_sensors_look(playing: Callable[[float], PeisHome]) -> None:
+    home = playing(1.0)
+    answers = iter([False])
+    home.told.heed_no_more()
+    home.told = lambda: next(answers, True)  # type: ignore[assignment]
+    assert home.run(1.0) == "told to end"
+
+
+@pytest.mark.sim
+def test_as_fast_as_it_goes_is_real_time_while_nothing_tells_poses(
+    playing: Callable[[float], PeisHome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = playing(float("inf"))
+    home.told.heed_no_more()
+    monkeypatch.setattr("sim.equipment.MotorDrive.active", True)
+    home.odometry.told = home.drive.heard = 0.0  # the last pose of a source that is gone, and the answer to it
+    began = time.monotonic()
+    assert home.run(1.0) == "time is up"
+    assert time.monotonic() - began >= 1.0
