@@ -60,9 +60,9 @@ class Crew:
 
     def _listen(self, name: str, process: subprocess.Popen[str]) -> None:
         assert process.stdout is not None
-        for text in process.stdout:
-            self._lines.put(Line(name, text.rstrip("\n")))
-        process.wait()
+        with process:
+            for text in process.stdout:
+                self._lines.put(Line(name, text.rstrip("\n")))
         self._lines.put(Line(name, None))
 
     def lines(self, seconds: float) -> Iterator[Line]:

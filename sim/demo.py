@@ -224,7 +224,7 @@ def _navigate(given: DemoOptions) -> int:
         if given.serve:
             stage.linger()
     if account.end is None:
-        raise DemoError("the world ended without a result")
+        raise DemoError("Astrid has not arrived: there is no configuration for her task")
     _tell("")
     for sentence in summary(account):
         _tell(sentence)

@@ -6,6 +6,7 @@ import importlib.util
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -220,6 +221,17 @@ def test_a_signal_that_is_ignored_as_by_nohup_ends_no_demo(tmp_path: Path, monke
     assert run(DemoOptions(tmp_path)) == 0
     assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     assert signal.getsignal(signal.SIGTERM) not in (signal.SIG_IGN, signal.SIG_DFL)
+
+
+@pytest.mark.usefixtures("handlers")
+def test_a_refused_task_is_what_the_demo_ends_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    examples = shutil.copytree("examples", tmp_path / "examples")
+    (examples / "peis-home" / "thinking-cap.ttl").unlink()
+    monkeypatch.setattr("sim.demo.EXAMPLES", examples)
+    assert run(DemoOptions(tmp_path, speed=float("inf"), pictures="none")) == 1
+    assert "there is no configuration for her task" in capfd.readouterr().err
 
 
 @at_night
