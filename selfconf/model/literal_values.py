@@ -76,6 +76,17 @@ _DERIVED = {
 """Those of them whose values are values of another, too (XSD 1.1, part 2, section 3.4)."""
 
 
+def in_lexical_space(lexical: str, datatype: str) -> bool:
+    """Whether a text may be one of a datatype of numbers or short texts; of any other datatype, that is not known.
+
+    Whether a whole number is within the bounds of its datatype is not looked at.
+    """
+    pattern = _LEXICAL.get(datatype) or TEXT_PATTERNS.get(datatype)
+    if pattern is None or pattern.fullmatch(lexical):
+        return True
+    return datatype in FLOATING and lexical in LIMITLESS
+
+
 def number_of(lexical: str, datatype: str) -> Decimal | None:
     """The number that a text of a datatype stands for, exactly as it is written; None if it stands for none.
 

@@ -4,7 +4,8 @@ rdflib makes a value of each literal as soon as there is one. What strangers wri
 commented on stderr: selfconf itself reports a literal that is none of its datatype, where it matters. So
 
 * markup stays text, as its value would be a document that nothing compares;
-* a decimal is finite: Python's decimals have infinity and not-a-number, which raise in comparisons;
+* what Python reads as a number or a date and XML Schema does not, such as 1_0, or an xsd:decimal that is infinite
+  or not a number, is none;
 * what 64 bits do not hold is no xsd:long and no xsd:unsignedLong, whose ranges rdflib does not know;
 * what is no boolean is false, without a warning.
 """
@@ -12,14 +13,15 @@ commented on stderr: selfconf itself reports a literal that is none of its datat
 from __future__ import annotations
 
 import logging
-from decimal import Decimal
 from xml.parsers import expat
 
 from rdflib import RDF, XSD, Literal, URIRef
 
-from selfconf.model.literal_values import TRUTH, number_of
+from selfconf.model.literal_values import FLOATING, TRUTH, in_lexical_space, number_of
 
 _MARKUP = frozenset((RDF.HTML, RDF.XMLLiteral))
+_AS_RDFLIB_WRITES = frozenset(("inf", "-inf", "nan"))
+"""What rdflib makes of INF, -INF and NaN in the graphs that it parses itself, as the shapes are."""
 _IN_64_BITS = frozenset((XSD.long, XSD.unsignedLong))
 
 
@@ -37,7 +39,7 @@ def literal(text: str, datatype: URIRef | None, language: str | None = None) -> 
     if datatype == XSD.boolean and text not in TRUTH:
         return _literal(text, datatype, False, ill_typed=True)
     found = Literal(text, lang=language, datatype=datatype, normalize=False)
-    if isinstance(found.value, Decimal) and not found.value.is_finite():
+    if datatype is not None and not _is_written(text, str(datatype)):
         return _literal(text, datatype, None, ill_typed=True)
     if datatype in _IN_64_BITS and number_of(text, str(datatype)) is None:
         return _literal(text, datatype, found.value, ill_typed=True)
@@ -49,6 +51,10 @@ def _literal(text: str, datatype: URIRef | None, value: object, ill_typed: bool)
     found = Literal(text)
     found._datatype, found._value, found._ill_typed = datatype, value, ill_typed
     return found
+
+
+def _is_written(text: str, datatype: str) -> bool:
+    return in_lexical_space(text, datatype) or (datatype in FLOATING and text in _AS_RDFLIB_WRITES)
 
 
 def _is_xml(text: str) -> bool:
