@@ -16,6 +16,8 @@ MARGIN, HEAD, FOOT = 28, 84, 62
 """Height in pixels of the title's and the legend's part of a picture, and the space beside them."""
 
 TITLE, SUBTITLE, ENTRY = Style(25, bold=True), Style(15.5, GREY), Style(15)
+SMALLEST = 0.6
+"""The scale below which the letters of the legend can no longer be read."""
 _WIDTHS = {"line": 34.0, "area": 28.0, "ring": 19.0, "target": 19.0}
 
 
@@ -51,19 +53,32 @@ def compose(picture: Image.Image, run: RunRecord, legend: Sequence[Entry]) -> Im
     room = picture.width - 2 * MARGIN
     write(root, MARGIN, 42, shortened(run.title, TITLE, room), TITLE)
     write(root, MARGIN, 67, shortened(run.subtitle, SUBTITLE, room), SUBTITLE)
-    x, y = float(MARGIN), picture.height - 27.0
-    swatches = sum(_WIDTHS[entry.kind] + 10.0 for entry in legend)
-    words = sum(width(entry.text, ENTRY) + 30.0 for entry in legend) - 30.0
-    # Long names make the letters of the legend smaller, down to where they could no longer be read.
-    scale = max(0.6, min(1.0, (room - swatches) / max(words, 1.0)))
-    style = replace(ENTRY, size=ENTRY.size * scale)
-    for entry in legend:
-        swatch(root, x, y - 5.0, entry)
-        x += _WIDTHS[entry.kind] + 10.0
-        text = shortened(entry.text, style, max(40.0, picture.width - x - 10.0))
-        write(root, x, y, text, style)
-        x += width(text, style) + 30.0 * scale
+    lines = rows(legend, room)
+    style = replace(ENTRY, size=ENTRY.size * max(SMALLEST, min(1.0, *(_scale(line, room) for line in lines))))
+    for number, line in enumerate(lines):
+        x, y = float(MARGIN), picture.height - (27.0 if len(lines) == 1 else 32.0 - 22.0 * number)
+        for entry in line:
+            swatch(root, x, y - 5.0, entry)
+            x += _WIDTHS[entry.kind] + 10.0
+            text = shortened(entry.text, style, max(40.0, picture.width - x - 10.0))
+            write(root, x, y, text, style)
+            x += width(text, style) + 30.0 * style.size / ENTRY.size
     return over(picture, root)
+
+
+def rows(legend: Sequence[Entry], room: float) -> list[Sequence[Entry]]:
+    """Return the legend in one row, or in two where one would need letters too small to be read."""
+    if _scale(legend, room) >= SMALLEST or len(legend) < 2:
+        return [legend]
+    halves = ([legend[:first], legend[first:]] for first in range(1, len(legend)))
+    return max(halves, key=lambda pair: min(_scale(row, room) for row in pair))
+
+
+def _scale(row: Sequence[Entry], room: float) -> float:
+    """Return by how much the letters of a row have to be scaled to fill a room, given in pixels."""
+    swatches = sum(_WIDTHS[entry.kind] + 10.0 for entry in row)
+    words = sum(width(entry.text, ENTRY) + 30.0 for entry in row) - 30.0
+    return (room - swatches) / max(words, 1.0)
 
 
 def over(picture: Image.Image, root: Element) -> Image.Image:

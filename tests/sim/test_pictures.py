@@ -31,6 +31,7 @@ from sim.pictures import (
     Wiring,
     draw,
     film,
+    legend,
 )
 from sim.pictures.camera_strip import chosen, plate, strip
 from sim.pictures.colours import BLUE, FAIL, ORANGE, linear, rgb, to_linear, to_screen
@@ -419,3 +420,15 @@ def test_the_strip_shows_tracking_the_last_sight_and_lost() -> None:
     assert [stage for _, stage in chosen(sights[:1])] == ["tracking"]
     with pytest.raises(ValueError, match="at least one image"):
         strip([])
+
+
+def test_the_legend_of_a_narrow_picture_takes_two_rows_and_shows_every_entry() -> None:
+    entries = [
+        legend.Entry("line", "#0072b2", "pose from the person tracker"),
+        legend.Entry("target", "#cc2233", "FAIL: Astrid has left the view of the stereo camera"),
+        legend.Entry("line", "#e69f00", "pose from odometry"),
+        legend.Entry("area", "#56b4e9", "view of the camera"),
+        legend.Entry("ring", "#009e73", "goal"),
+    ]
+    assert legend.rows(entries, 1144.0) == [entries]
+    assert legend.rows(entries, 544.0) == [entries[:2], entries[2:]]
