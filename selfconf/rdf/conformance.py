@@ -112,7 +112,7 @@ def violations(
         raise TemplateError(f"{called} is not evaluated: {reason}", file=source)
     try:
         # The limit last: the processor time of a thread that judges meanwhile, and is waited for, would count.
-        with linear_patterns(), only_ordered(), sparql_corrections(), processor_limit(SHAPE_SECONDS), _silent():
+        with _corrected(), processor_limit(SHAPE_SECONDS):
             judge = _Judge(subjects, shapes, shape)
             found: dict[Focus, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
@@ -217,6 +217,13 @@ class _Shares:
 
 
 @contextmanager
+def _corrected() -> Iterator[None]:
+    """In the block, pySHACL and rdflib judge as the recommendations say, in linear time, and print nothing."""
+    with linear_patterns(), only_ordered(), sparql_corrections(), _silent():
+        yield
+
+
+@contextmanager
 def _silent() -> Iterator[None]:
     """No warning that a shape comes back to itself, and no errors in the log, which are raised besides.
 
@@ -264,7 +271,7 @@ def _in_english(messages: Iterable[rdflib.term.Node]) -> str:
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
     """The report of pySHACL and its text."""
     index_constraints()
-    with linear_patterns(), sparql_corrections(), _silent():
+    with _corrected():
         _, report, text = validate(
             subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST_TRIAL
         )

@@ -101,6 +101,7 @@ def suitable(parameter: Parameter, values: frozenset[Term], document: Document) 
     """The values of a set that can stand for a parameter; pySHACL judges only what the compiled tests do not cover."""
     constraints = _constraints(parameter.iri, document)
     tests, covered = compiled(constraints)
+    values = frozenset([value for value in values if not isinstance(value, BlankNode)])
     if covered == constraints.keys():
         return frozenset([value for value in values if _passes(tests, value)])
     return values - _judged(parameter, values, document).keys()
