@@ -194,13 +194,14 @@ class _PendingCall:
     def __init__(self, calling: Calling, component: IRI, message: CallMessage, unanswered: Unanswered | None) -> None:
         self._calling, self._component, self._message = calling, component, message
         self._unanswered = unanswered
-        self._left = CALL_ATTEMPTS
-        """How often the call may be made, with the last time."""
+        self._made = 0
+        """How often the call was made."""
         self._first = self._last = calling.bus.now()
         """When it was made for the first time, and for the last."""
 
     def make(self) -> None:
         """Make the call, once more where it was made before."""
+        self._made += 1
         self._last = self._calling.bus.now()
         if not isinstance(self._message, Release):
             self._calling.lives.called(self._component)
@@ -249,24 +250,13 @@ class _PendingCall:
             self._calling.answered(self._component, self._message, answer)
             return
         current = self._message.epoch == self._calling.state().epoch
-        if current or self._calling.stands(self._component, self._message):
-            if self._takes_longer(answer, replies):
-                self._calling.bus.later(PAUSE, self._inspect)
-                return
-            self._left = self._calls_left(answer)
-            if self._left:
-                self.make()
-                return
-        if not (current or self._hasty):
-            return
-        if answer is not None and answer.stopping:
-            detail = "its code has not come to rest"
-        else:  # a program in another language may answer what is no answer: its author needs to know why
-            _, problems = _read(replies)
-            detail = next(
-                (f"its answer cannot be read: {problem}" for problem in problems.values()), "it does not answer"
-            )
-        self._calling.unreachable(self._component, self._message, detail)
+        counts = current or self._calling.stands(self._component, self._message)
+        if counts and self._takes_longer(answer, replies):
+            self._calling.bus.later(PAUSE, self._inspect)
+        elif counts and self._is_made_again(answer):
+            self.make()
+        elif current or self._hasty:
+            self._calling.unreachable(self._component, self._message, _what_is_wrong(answer, replies))
 
     def _takes_longer(self, answer: CallAnswer | None, replies: Replies) -> bool:
         """Whether to ask once more in a moment: its inside is being started, or itself, for all that is known."""
@@ -276,11 +266,9 @@ class _PendingCall:
         # It may be in `started`; if its life ends, it is lost at once.
         return not replies.errors and not self._hasty and elapsed < STARTING
 
-    def _calls_left(self, answer: CallAnswer | None) -> int:
-        """How often the call may be made again, to a component that answers but has not obeyed."""
-        if answer is None or self._hasty:
-            return 0
-        return self._left - 1 if self._left > 1 else int(self._works_on(answer))
+    def _is_made_again(self, answer: CallAnswer | None) -> bool:
+        """Whether to make the call once more, to a component that answers but has not obeyed."""
+        return answer is not None and not self._hasty and (self._made < CALL_ATTEMPTS or self._works_on(answer))
 
     def _has_obeyed(self, answer: CallAnswer) -> bool:
         """Whether a component's state shows that it has obeyed the call of this configurator."""
@@ -316,6 +304,14 @@ def _read(replies: Replies) -> tuple[list[CallAnswer], dict[str, str]]:
         except PeerError as error:
             problems[sample.key] = str(error)
     return answers, problems
+
+
+def _what_is_wrong(answer: CallAnswer | None, replies: Replies) -> str:
+    """Why a component counts as out of reach, in words."""
+    if answer is not None and answer.stopping:
+        return "its code has not come to rest"
+    _, problems = _read(replies)  # a program in another language may answer what is no answer: its author needs to know
+    return next((f"its answer cannot be read: {problem}" for problem in problems.values()), "it does not answer")
 
 
 def _configurator(answer: CallAnswer) -> str:
