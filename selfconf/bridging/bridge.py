@@ -12,7 +12,7 @@ import itertools
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Protocol
 
@@ -24,11 +24,7 @@ from selfconf.sdk import Component, Host
 
 
 class ForeignWorld(Protocol):
-    """The other side of a bridge."""
-
-    def open(self, bridge: Bridge) -> None:
-        """Begin to look for what lives there, and tell the bridge. Raises NetworkError where it cannot be reached."""
-        ...
+    """The other side of a bridge; from its beginning it looks for what lives there, and tells the bridge."""
 
     def close(self) -> None:
         """Look no more, and end all that is under way; every component has come to rest before."""
@@ -121,25 +117,24 @@ class Bridge:
         return component in self._living
 
     @contextmanager
-    def living(self, world: ForeignWorld, ecology: str, session: Callable[[], Bus]) -> Iterator[None]:
-        """Bridge a world to an ecology inside the `with` block, by a session that is opened for it.
+    def living(
+        self, open_world: Callable[[Bridge], ForeignWorld], ecology: str, session: Callable[[], Bus]
+    ) -> Iterator[None]:
+        """Bridge a world to an ecology inside the `with` block; world and session are opened for it.
 
         Raises NetworkError where the ecology or the world cannot be reached.
         """
         self._host = Host(session(), ecology, self.complain, self._ontologies)
         thread = threading.Thread(target=self._run, args=(self._host,), name="code of foreign components")
         thread.start()
-        opened = False
-        try:
-            world.open(self)
-            opened = True
-            yield
-        finally:  # the components first: at rest they ask nothing of their world any more
-            self._ended = True
-            self._host.code.wake_up()
-            thread.join()
-            if opened:
-                world.close()
+        with ExitStack() as worlds:
+            try:
+                worlds.callback(open_world(self).close)
+                yield
+            finally:  # the components first: at rest they ask nothing of their world any more
+                self._ended = True
+                self._host.code.wake_up()
+                thread.join()
 
     def _run(self, host: Host) -> None:
         """Run the code of the components until the bridge ends; one that has to leave leaves alone."""

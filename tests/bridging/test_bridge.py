@@ -24,8 +24,9 @@ class World:
     def __init__(self) -> None:
         self.steps: list[str] = []
 
-    def open(self, bridge: Bridge) -> None:
+    def open(self, bridge: Bridge) -> World:
         self.steps.append("open")
+        return self
 
     def close(self) -> None:
         self.steps.append("close")
@@ -52,7 +53,7 @@ def document(*kinds: IRI) -> ImportedDocument:
 def test_what_is_foreign_lives_while_it_is_there(living: LivingStage, tmp_path: Path) -> None:
     world, complaints = World(), list[str]()
     bridge = Bridge(tmp_path, complaints.append)
-    with bridge.living(world, living.ecology, living.node):
+    with bridge.living(world.open, living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         (path,) = tmp_path.iterdir()
         assert path.read_text().startswith("# Bridged from 'a\\nb'.\n\n@prefix sc:")
@@ -71,7 +72,7 @@ def test_what_is_foreign_lives_while_it_is_there(living: LivingStage, tmp_path: 
 def test_components_come_to_rest_before_their_world_ends(living: LivingStage, tmp_path: Path) -> None:
     world = World()
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(world, living.ecology, living.node):
+    with bridge.living(world.open, living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         assert bridge.begin_life(LAMP, Lamp(world.steps)).result() is None
         answers = living.apply(LAMP)
@@ -81,7 +82,7 @@ def test_components_come_to_rest_before_their_world_ends(living: LivingStage, tm
 
 def test_what_is_advertised_anew_lives_no_more_by_what_was_said_before(living: LivingStage, tmp_path: Path) -> None:
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(World(), living.ecology, living.node):
+    with bridge.living(World().open, living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         assert bridge.begin_life(LAMP, Lamp([])).result() is None
         bridge.advertise(LAMP, document(IRI("urn:c:Lantern")))
@@ -92,7 +93,7 @@ def test_what_is_advertised_anew_lives_no_more_by_what_was_said_before(living: L
 
 def test_what_cannot_live_says_why(living: LivingStage, tmp_path: Path) -> None:
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(World(), living.ecology, living.node):
+    with bridge.living(World().open, living.ecology, living.node):
         bridge.advertise(LAMP, document())
         reason = bridge.begin_life(LAMP, Lamp([])).result()
     assert reason is not None
@@ -101,7 +102,7 @@ def test_what_cannot_live_says_why(living: LivingStage, tmp_path: Path) -> None:
 
 def test_what_is_withdrawn_before_it_lives_is_said_to_have_gone(living: LivingStage, tmp_path: Path) -> None:
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(World(), living.ecology, living.node):
+    with bridge.living(World().open, living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         bridge.withdraw(LAMP)
         assert bridge.begin_life(LAMP, Lamp([])).result() == "it has gone before it could live here"
@@ -113,7 +114,7 @@ def test_what_is_withdrawn_before_it_lives_is_said_to_have_gone(living: LivingSt
 def test_a_component_that_has_to_leave_leaves_alone(living: LivingStage, tmp_path: Path) -> None:
     complaints: list[str] = []
     bridge = Bridge(tmp_path, complaints.append)
-    with bridge.living(World(), living.ecology, living.node):
+    with bridge.living(World().open, living.ecology, living.node):
         bridge.advertise(LAMP, document(IRI("urn:c:Lamp")))
         assert bridge.begin_life(LAMP, Lamp([])).result() is None
         other = living.node()
@@ -127,7 +128,10 @@ def test_a_component_that_has_to_leave_leaves_alone(living: LivingStage, tmp_pat
 @pytest.mark.slow
 def test_a_network_that_is_not_there_is_said_to_be_missing(tmp_path: Path) -> None:
     world = World()
-    with pytest.raises(NetworkError), Bridge(tmp_path, print).living(world, "lab", lambda: client(["tcp/127.0.0.1:1"])):
+    with (
+        pytest.raises(NetworkError),
+        Bridge(tmp_path, print).living(world.open, "lab", lambda: client(["tcp/127.0.0.1:1"])),
+    ):
         pass
     assert world.steps == []
 
@@ -148,7 +152,7 @@ def test_what_is_advertised_anew_before_it_lives_lives_by_the_new_code_alone(
 ) -> None:
     other = IRI("urn:c:other")
     bridge = Bridge(tmp_path, lambda words: None)
-    with bridge.living(World(), living.ecology, living.node):
+    with bridge.living(World().open, living.ecology, living.node):
         occupied = Occupied()
         component = ImportedComponent(other, (IRI("urn:c:Other"),), outputs=(ImportedPort("light", (LIGHT,)),))
         bridge.advertise(other, ImportedDocument("", "other", (component.described(),), {}))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from selfconf import files
@@ -12,7 +13,9 @@ from selfconf.bridging import Bridge, ForeignWorld
 from selfconf.model.immutable import replace
 
 
-def serve_bridge(world: ForeignWorld, site: SiteOptions, complain: Callable[[str], None]) -> None:
+def serve_bridge(
+    open_world: Callable[[Bridge], ForeignWorld], site: SiteOptions, complain: Callable[[str], None]
+) -> None:
     """Bridge a world to an ecology until SIGINT, SIGTERM or SIGHUP. Raises AuthorError and NetworkError.
 
     `site` is what the site of the bridge begins with, but for what it serves.
@@ -20,7 +23,7 @@ def serve_bridge(world: ForeignWorld, site: SiteOptions, complain: Callable[[str
     with temporary_folder("selfconf-bridge-") as folder:
         bridge = Bridge(folder, complain, site.ontologies)
         options = replace(site, paths=(folder,))
-        serve(options, complain, lambda ecology, session: bridge.living(world, ecology, session))
+        serve(options, complain, lambda ecology, session: bridge.living(open_world, ecology, session))
 
 
 def serve_things(
@@ -43,20 +46,23 @@ def serve_things(
         ThingCredentials,
         ThingSettings,
         ThingWorld,
+        host_of,
         is_url,
         read_credentials,
         unreadable_file,
     )
 
     for source in sources:
-        if not is_url(source):
+        if is_url(source):
+            host_of(source)
+        else:
             files.existing(Path(source))
     wrong = [unreadable_file(source) for source in sources]
     if wrong[0] is not None and all(wrong):
         raise wrong[0]
     told = ThingCredentials() if credentials is None else read_credentials(credentials)
     settings = ThingSettings(rate, told, frozenset(hosts), site.ontologies)
-    serve_bridge(ThingWorld(sources, settings), site, complain)
+    serve_bridge(partial(ThingWorld, sources, settings), site, complain)
 
 
 def serve_nodes(
@@ -73,4 +79,5 @@ def serve_nodes(
 
     for left_out in ros2.learn(definitions or ros2.named_folders()):
         complain(str(left_out))
-    serve_bridge(RosWorld(lambda: client([endpoint], wanted="router of ROS 2"), domain), site, complain)
+    connect = partial(client, [endpoint], wanted="router of ROS 2")
+    serve_bridge(partial(RosWorld, connect, domain), site, complain)

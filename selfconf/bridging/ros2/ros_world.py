@@ -73,26 +73,22 @@ class RosNode:
 class RosWorld:
     """The other side of a bridge to ROS 2."""
 
-    def __init__(self, connect: Callable[[], ZenohBus], domain: int) -> None:
-        """`connect` opens a node of the network of ROS 2; it may raise NetworkError."""
-        self._connect, self._number = connect, domain
+    def __init__(self, connect: Callable[[], ZenohBus], domain: int, bridge: Bridge) -> None:
+        """Begin to follow the tokens of the domain; `connect` opens a node of its network. Raises NetworkError."""
+        ros2.load()  # here it holds up nothing
+        self._number, self._bridge, self._bus = domain, bridge, connect()
+        self._domain = RosDomain(self._bus, domain, bridge.complain)
+        self._reached = True
         self._nodes: dict[NodeIdentity, RosNode] = {}
         self._by_name: dict[IRI, NodeIdentity] = {}
         self._on_topic: dict[str, dict[str, RosToken]] = {}
         """The tokens of the publishers and subscriptions of each topic and type, by their keys."""
-
-    def open(self, bridge: Bridge) -> None:
-        """Begin to follow the tokens of the domain. Raises NetworkError."""
-        ros2.load()  # here it holds up nothing
-        self._bridge, self._bus = bridge, self._connect()
-        self._domain = RosDomain(self._bus, self._number, bridge.complain)
-        self._reached = True
         begun = threading.Event()
 
         def begin() -> None:
             self._bus.watch_link(self._link_changed)
             self._bus.announce(bridge_token(self._domain).key())
-            self._bus.watch(f"{ROOT}/{self._number}/**", self._changed, many=True)
+            self._bus.watch(f"{ROOT}/{domain}/**", self._changed, many=True)
             begun.set()
 
         self._bus.wake_up(begin)

@@ -2,11 +2,19 @@
 
 `ThingWorld` is the world of the things that some sources describe, and `ThingSettings` how it treats them;
 `read_credentials` reads the `ThingCredentials` by which it is let in;
-`is_url` tells the sources that are fetched, `unreadable_file` why a file describes no thing. It needs
-aiohttp, the extra `wot`.
+`is_url` tells the sources that are fetched, `host_of` from where, `unreadable_file` why a file describes no thing. It
+needs aiohttp, the extra `wot`.
 """
 
 from selfconf.bridging.wot.credentials import ThingCredentials, read_credentials
-from selfconf.bridging.wot.thing_world import ThingSettings, ThingWorld, is_url, unreadable_file
+from selfconf.bridging.wot.thing_world import ThingSettings, ThingWorld, host_of, is_url, unreadable_file
 
-__all__ = ["ThingCredentials", "ThingSettings", "ThingWorld", "is_url", "read_credentials", "unreadable_file"]
+__all__ = [
+    "ThingCredentials",
+    "ThingSettings",
+    "ThingWorld",
+    "host_of",
+    "is_url",
+    "read_credentials",
+    "unreadable_file",
+]

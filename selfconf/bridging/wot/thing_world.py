@@ -15,7 +15,7 @@ import threading
 from collections.abc import Coroutine, Sequence
 from dataclasses import field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
 from selfconf.bridging.bridge import Bridge
@@ -43,6 +43,7 @@ DESCRIPTIONS = (".json", ".jsonld")
 """The endings of files in a folder that are descriptions."""
 NAMESPACE = "urn:selfconf:wot:"
 """What the IRIs of things begin with to which their descriptions give none."""
+_T = TypeVar("_T")
 MOST_THINGS = 2000
 """How many things one bridge stands for."""
 LETTING_GO = 0.5
@@ -74,21 +75,24 @@ class ThingSettings:
 class ThingWorld:
     """The other side of a bridge to things."""
 
-    def __init__(self, sources: Sequence[str], settings: ThingSettings) -> None:
-        """Raises AuthorError for a source that is to be fetched and is no URL."""
-        self._sources, self._settings = sources, settings
-        of_sources = {_host_of(source) for source in sources if is_url(source)}
+    def __init__(self, sources: Sequence[str], settings: ThingSettings, bridge: Bridge) -> None:
+        """Begin to read the sources, and to look for the things in them.
+
+        Raises AuthorError for a source that is to be fetched and is no URL.
+        """
+        self._sources, self._settings, self._bridge = sources, settings, bridge
+        of_sources = {host_of(source) for source in sources if is_url(source)}
         self._hosts = of_sources.union(host.lower() for host in settings.hosts)  # as `urlsplit` has those of forms
         self._told: set[str] = set()
         self._outages: dict[str, set[str]] = {}
         """The complaints about each source since it was fetched last."""
-
-    def open(self, bridge: Bridge) -> None:
-        """Begin to read the sources, and to look for the things in them."""
+        self._watches: dict[IRI, ThingWatch] = {}
+        self._found: dict[str, list[DescribedThing]] = {}
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="things")
         self._thread.start()
-        self._call(self._open(bridge))
+        self._client = self._call(_opened_client(settings.limits))
+        self._readings = self._call(self._begin())
 
     def close(self) -> None:
         """End every request and every look."""
@@ -97,16 +101,13 @@ class ThingWorld:
         self._thread.join()
         self._loop.close()
 
-    def _call(self, work: Coroutine[Any, Any, None]) -> None:
-        asyncio.run_coroutine_threadsafe(work, self._loop).result()
+    def _call(self, work: Coroutine[Any, Any, _T]) -> _T:
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result()
 
     # On the loop.
 
-    async def _open(self, bridge: Bridge) -> None:
-        self._bridge, self._client = bridge, ThingClient(self._settings.limits)
-        self._watches: dict[IRI, ThingWatch] = {}
-        self._found: dict[str, list[DescribedThing]] = {}
-        self._readings = [asyncio.ensure_future(self._follow(source)) for source in self._sources]
+    async def _begin(self) -> list[asyncio.Task[None]]:
+        return [asyncio.create_task(self._follow(source)) for source in self._sources]
 
     async def _close(self) -> None:
         tasks = asyncio.all_tasks() - {asyncio.current_task()}
@@ -305,6 +306,10 @@ class ThingWatch:
         self._trouble = kind
 
 
+async def _opened_client(limits: ThingLimits) -> ThingClient:
+    return ThingClient(limits)  # its sessions belong to the loop that runs
+
+
 def _kind(trouble: str) -> str:
     """What a complaint is compared by: without what follows its first colon, which may be other words each time.
 
@@ -347,7 +352,7 @@ def is_url(source: str) -> bool:
     return source.lower().startswith(("http://", "https://"))
 
 
-def _host_of(url: str) -> str:
+def host_of(url: str) -> str:
     """The host to which a URL leads. Raises AuthorError for what is none."""
     try:
         origin(url)

@@ -13,16 +13,12 @@ import selfconf as sc
 from selfconf.api.sites import bridge_program
 from selfconf.api.sites.bridge_program import serve_bridge, serve_things
 from selfconf.api.sites.site_program import SiteOptions
+from selfconf.bridging import Bridge, ForeignWorld
 
 
-class World:
+def unopened(bridge: Bridge) -> ForeignWorld:
     """A world that must not be opened."""
-
-    def open(self, bridge: object) -> None:
-        raise AssertionError("nothing is to be opened")
-
-    def close(self) -> None:
-        raise AssertionError("nothing was opened")
+    raise AssertionError("nothing is to be opened")
 
 
 @pytest.mark.parametrize(("ecology", "name"), [("no/name", None), ("home", "no/name"), (None, None)])
@@ -32,7 +28,7 @@ def test_a_name_that_is_none_ends_it(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     said: list[str] = []
     with pytest.raises(sc.SelfconfError):
-        serve_bridge(World(), SiteOptions(ecology=ecology, name=name), said.append)
+        serve_bridge(unopened, SiteOptions(ecology=ecology, name=name), said.append)
     assert said == []
     assert list(tmp_path.iterdir()) == []
 
@@ -49,7 +45,7 @@ def test_its_folder_is_locked_so_that_it_is_not_removed_for_its_age(monkeypatch:
         served.append(folder)
 
     monkeypatch.setattr(bridge_program, "serve", serve)
-    serve_bridge(World(), SiteOptions(ecology="home"), print)
+    serve_bridge(unopened, SiteOptions(ecology="home"), print)
     assert not served[0].exists()
 
 
@@ -63,7 +59,9 @@ def test_sources_and_credentials_have_to_be_there(tmp_path: Path) -> None:
             serve_things(sources, 1.0, credentials, (), SiteOptions(ecology="home"), print)
 
 
-def test_files_of_which_none_can_be_read_end_it_and_a_folder_may_fill_later(tmp_path: Path) -> None:
+def test_files_of_which_none_can_be_read_end_it_as_does_what_is_no_url_and_a_folder_may_fill_later(
+    tmp_path: Path,
+) -> None:
     pytest.importorskip("aiohttp", reason="the extra `wot` is not installed")
     bad, worse, lamp = (tmp_path / f"{name}.json" for name in ("bad", "worse", "lamp"))
     bad.write_text("lamp")
@@ -76,6 +74,7 @@ def test_files_of_which_none_can_be_read_end_it_and_a_folder_may_fill_later(tmp_
         ([bad, worse], r"bad\.json:1:1: this is not JSON"),
         ([bad, lamp], "give ecology='NAME'"),
         ([bad, tmp_path / "things"], "give ecology='NAME'"),
+        (["http://[::1/"], "is no http or https URL"),
         ([bad, "http://127.0.0.1:1/"], "give ecology='NAME'"),
     ):
         with pytest.raises(sc.SelfconfError, match=words):

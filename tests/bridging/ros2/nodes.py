@@ -7,6 +7,7 @@ import subprocess
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -158,7 +159,7 @@ def bridging_domain(stage: LivingStage, folder: Path) -> Iterator[BridgedDomain]
     """Bridge a domain inside the `with` block; its router is that of the ecology, which has other keys."""
     folder.mkdir(exist_ok=True)
     found = BridgedDomain(stage, folder)
-    world = RosWorld(lambda: client([stage.endpoint]), DOMAIN)
+    world = partial(RosWorld, partial(client, [stage.endpoint]), DOMAIN)
     with found.bridge.living(world, stage.ecology, stage.node):
         try:
             yield found

@@ -8,16 +8,17 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
+from typing import cast
 
 import pytest
 
 from selfconf.bridging.bridge import Bridge
-from selfconf.bridging.ros2.domain import RosDomain
 from selfconf.bridging.ros2.ros_world import LOOK_WHETHER_IT_LIVES, TOKENS_COMPLETE, RosWorld
 from selfconf.bridging.ros2.tokens import RosNodeId, RosToken
 from selfconf.bus.memory import Network
-from selfconf.bus.zenoh import client
+from selfconf.bus.zenoh import ZenohBus, client
 from selfconf.errors import NetworkError
 from selfconf.importing import ImportedDocument
 from selfconf.model.term import IRI
@@ -168,9 +169,9 @@ class BegunLives:
 
 def test_a_node_that_is_made_anew_in_its_process_lives_as_the_new_one_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     network, bridge = Network(1), BegunLives()
-    world, bus = RosWorld(lambda: pytest.fail("it is linked"), DOMAIN), network.node()
-    for name, part in (("_bus", bus), ("_bridge", bridge), ("_domain", RosDomain(bus, DOMAIN, bridge.complain))):
-        monkeypatch.setattr(world, name, part, raising=False)
+    bus = network.node()
+    monkeypatch.setattr(bus, "watch_link", lambda changed: None, raising=False)
+    world = RosWorld(lambda: cast(ZenohBus, bus), DOMAIN, cast(Bridge, bridge))
     token = RosToken(RosNodeId(DOMAIN, "a", 0), "", "talker").key()
     for seconds, alive in ((0.0, True), (LOOK_WHETHER_IT_LIVES - 0.1, False), (0.0, True)):
         network.run(lambda: False, seconds)
@@ -233,7 +234,7 @@ def test_a_router_that_goes_and_comes_is_named_though_no_task_holds_a_node(livin
     back = "the router of ROS 2 is reached again"
     complaints: list[str] = []
     bridge, port = Bridge(tmp_path, complaints.append), free_port()
-    world = RosWorld(lambda: client([f"tcp/127.0.0.1:{port}"]), DOMAIN)
+    world = partial(RosWorld, partial(client, [f"tcp/127.0.0.1:{port}"]), DOMAIN)
     with ExitStack() as ecology:
         with router_process(port):
             ecology.enter_context(bridge.living(world, living.ecology, living.node))
@@ -245,7 +246,7 @@ def test_a_router_that_goes_and_comes_is_named_though_no_task_holds_a_node(livin
 
 @pytest.mark.slow
 def test_a_router_that_is_not_there_is_said_to_be_missing(living: LivingStage, tmp_path: Path) -> None:
-    world = RosWorld(lambda: client(["tcp/127.0.0.1:1"]), DOMAIN)
+    world = partial(RosWorld, partial(client, ["tcp/127.0.0.1:1"]), DOMAIN)
     bridge = Bridge(tmp_path, lambda words: None)
     with pytest.raises(NetworkError), bridge.living(world, living.ecology, living.node):
         pass

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from selfconf.bridging.bridge import Bridge
@@ -53,7 +54,7 @@ def bridging(stage: LivingStage, folder: Path, *sources: str, settings: ThingSet
     """Bridge the things of some sources inside the `with` block."""
     folder.mkdir(exist_ok=True)
     found = Bridged(stage, folder, settings.ontologies)
-    with found.bridge.living(ThingWorld(sources, settings), stage.ecology, stage.node):
+    with found.bridge.living(partial(ThingWorld, sources, settings), stage.ecology, stage.node):
         yield found
     assert until(lambda: not stage.hangs)
 
