@@ -12,6 +12,7 @@ which; on its own host a site goes on with its own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,6 +48,8 @@ FAULT_AGAIN = 600.0
 """After how many seconds a fault that lasts is reported again."""
 WARNED = 0.05
 """Seconds between the word that a hub is about to be opened anew and that."""
+RENEWED_TOGETHER = 2.0
+"""Seconds after which a hub is opened anew for a renewed certificate: a program looks at its own once a second."""
 GONE_AFTER = 10.0
 """Seconds after which a site that is away is taken to be gone: its lives blink where a hub is opened anew."""
 INTRODUCTIONS = (0.05, 0.3, 1.0, 3.0)
@@ -146,6 +149,10 @@ class Doorkeeper:
         self._admitted = set[Certificate]()
         """The good certificates that were shown in these moments, and since when that is noted."""
         self._admitted_at = bus.now()
+        self._latest: dict[Process, tuple[datetime, datetime]] = {}
+        """From and until when the latest certificate is valid that each holder has shown."""
+        self._opens_for_renewed = False
+        """Whether the hub is to be opened anew soon, as certificates were renewed."""
         self._shown, self._stamps = stamp(self._credentials.certificate), dict[Path, FileStamp]()
         """The stamp of the certificate that the hub shows, and those of the folder of keys when all was looked at."""
         self._look_at_all = bus.now()
@@ -167,7 +174,9 @@ class Doorkeeper:
     def _introduced(self, request: Request) -> None:
         """A client shows a certificate: the hub lets it in if the authority has issued it."""
         try:
-            known = self._admit(decode(request.payload, Introduction).certificate)
+            shown = decode(request.payload, Introduction).certificate
+            known = self._admit(shown)
+            self._note_renewal(Certificate.read(shown.encode()))
             if not known:
                 self._renew_rules_soon()
             known = known and not self._warned  # the hub is about to be opened anew, perhaps as it does not know it yet
@@ -199,6 +208,24 @@ class Doorkeeper:
             self._folder.admit(self._keys.ecology, shown.pem)
             self._admitted.add(shown)
         return self.rules.knows(shown.principals)
+
+    def _note_renewal(self, shown: Certificate) -> None:
+        """Have the hub opened anew soon after a component, or a site of this host, has renewed its certificate.
+
+        Zenoh ends a link when the certificate expires by which it was made: lives would seem to end, without a warning.
+        """
+        holder, validity = shown.principals, (shown.begins, shown.ends)
+        before = self._latest.setdefault(holder, validity)
+        self._latest[holder] = max(before, validity)
+        is_beside = holder[0].kind is PrincipalKind.SITE and holder[0].name in self._beside()
+        has_life_here = is_beside or holder[0].kind is PrincipalKind.COMPONENT
+        if validity > before and has_life_here and not self._opens_for_renewed:
+            self._opens_for_renewed = True
+            self._bus.later(RENEWED_TOGETHER, self._open_for_renewed)
+
+    def _open_for_renewed(self) -> None:
+        self._opens_for_renewed = False
+        self._open_anew()
 
     def _renew_rules_soon(self) -> None:
         """Have the rules made anew once what is done now is done, however many show their certificates meanwhile."""
@@ -263,8 +290,11 @@ class Doorkeeper:
         return rules_of(self._keys.ecology, self._name, processes, vouched, shown, beside)
 
     def _advertised(self) -> _Advertised:
-        beside = frozenset(self._hub.sites()) - {self._name}
-        return _Advertised(dict(self._own()), self._others.advertised(), beside, self._others.away(GONE_AFTER))
+        return _Advertised(dict(self._own()), self._others.advertised(), self._beside(), self._others.away(GONE_AFTER))
+
+    def _beside(self) -> frozenset[str]:
+        """The other sites of this host."""
+        return frozenset(self._hub.sites()) - {self._name}
 
     def _undisputed(self, advertised: Mapping[str, frozenset[IRI]], gone: frozenset[str]) -> dict[str, frozenset[IRI]]:
         """The components that each site speaks for; complains of those that have become disputed by sites that live.

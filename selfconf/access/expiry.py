@@ -2,8 +2,9 @@
 
 Links have to be made anew with another certificate, and Zenoh does that by itself: the other end closes a link as the
 certificate of this end expires, and the next link is made with what lies in the file by then. But sites let in a
-client that has *shown* a good certificate, so a renewed one is shown as soon as it is there. Nothing is noticed of it.
-One that is not good is withheld from Zenoh, which would try to make links with it all the time.
+client that has *shown* a good certificate, so a renewed one is shown as soon as it is there. The hub is then opened
+anew (`doorkeeper`), with a warning, as the end of the old certificate would come without one. One that is not good is
+withheld from Zenoh, which would try to make links with it all the time.
 """
 
 from __future__ import annotations

@@ -24,7 +24,14 @@ from selfconf.access import (
     first_rules,
     keys_folder,
 )
-from selfconf.access.doorkeeper import GONE_AFTER, INTRODUCE_AGAIN, KNOWN_FOR, LOOK_AT_ALL, RAREST_RETRY
+from selfconf.access.doorkeeper import (
+    GONE_AFTER,
+    INTRODUCE_AGAIN,
+    KNOWN_FOR,
+    LOOK_AT_ALL,
+    RAREST_RETRY,
+    RENEWED_TOGETHER,
+)
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request, Urgency
 from selfconf.bus.zenoh import RefusalLog
@@ -435,3 +442,32 @@ def test_who_has_expired_is_out_of_the_rules(door: Door, tmp_path: Path, monkeyp
     monkeypatch.setattr(certificates, "_now", lambda: bob.ends + timedelta(seconds=1.0))
     door.pass_time(LOOK_AT_ALL + 1.5)
     assert "conf.bob" not in door.principals
+
+
+def test_a_hub_is_opened_anew_for_the_renewed_certificates_of_components_and_sites_of_its_host(
+    door: Door, tmp_path: Path
+) -> None:
+    """Zenoh ends a link as the certificate expires by which it was made, and lives would seem to end unannounced."""
+
+    components = [Principal.component(one) for one in (LAMP, BELL)]
+    attic, cellar = (Principal(PrincipalKind.SITE, name) for name in ("attic", "cellar"))
+    alice = Principal(PrincipalKind.CONFIGURATOR, "alice")
+
+    def openings(number: int, *principals: Principal) -> int:
+        """How often the hub is opened anew as principals show the certificate of this number."""
+        door.enforced.clear()
+        for one in principals:
+            folder = tmp_path / f"{one.common_name} {number}"
+            if not folder.exists():
+                door.folder.issue(one, folder, days=number)
+            door.introduce((folder / "certificate.pem").read_text())
+        door.pass_time(RENEWED_TOGETHER + 0.1)
+        return len(door.enforced)
+
+    door.sites.append("attic")
+    openings(1, *components, attic, cellar, alice)  # once, as all are new to it
+    assert openings(1, *components, attic, cellar, alice) == 0
+    assert openings(2, *components) == 1
+    assert openings(2, attic) == 1
+    assert openings(2, cellar, alice) == 0, "links to other hosts are made anew by these, and that of alice is her own"
+    assert openings(1, *components) == 0, "those of before"

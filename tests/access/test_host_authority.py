@@ -7,7 +7,7 @@ import os
 import stat
 import time
 from contextlib import suppress
-from datetime import datetime, timezone, tzinfo
+from datetime import datetime, timedelta, timezone, tzinfo
 from pathlib import Path
 
 import pytest
@@ -139,6 +139,39 @@ def test_a_component_has_no_certificate_for_longer_than_its_site(authority: Auth
     authority.renew(attic.path, days=30.0)
     HostAuthority(attic).renew_components()
     assert not component.own().half_over(), "it is renewed when half of its time has passed"
+
+
+def test_the_components_of_a_host_are_renewed_together(
+    authority: Authority, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The hub is opened anew each time."""
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic", days=0.5)
+    attic = KeysFolder(tmp_path / "attic")
+    lamp = KeysFolder(HostAuthority(attic).component(Principal.component(IRI("urn:lamp"))))
+    authority.renew(attic.path)
+    bell = KeysFolder(HostAuthority(attic).component(Principal.component(IRI("urn:bell"))))
+    before = lamp.own(), bell.own()
+    HostAuthority(attic).renew_components()
+    assert (lamp.own(), bell.own()) == before
+    later = datetime.now(timezone.utc) + timedelta(days=0.3)
+    monkeypatch.setattr(certificates, "_now", lambda: later)
+    assert [one.half_over() for one in before] == [True, False]
+    HostAuthority(attic).renew_components()
+    assert lamp.own() != before[0]
+    assert bell.own() != before[1]
+
+
+def test_a_component_is_not_renewed_again_and_again_as_its_site_expires(
+    authority: Authority, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic", days=0.5)
+    attic = KeysFolder(tmp_path / "attic")
+    lamp = KeysFolder(HostAuthority(attic).component(Principal.component(IRI("urn:lamp"))))
+    before, later = lamp.own(), datetime.now(timezone.utc) + timedelta(days=0.3)
+    monkeypatch.setattr(certificates, "_now", lambda: later)
+    assert before.half_over()
+    HostAuthority(attic).renew_components()
+    assert lamp.own() == before, "it would be good for no longer"
 
 
 def test_a_site_whose_certificate_has_expired_issues_none_and_says_so(
