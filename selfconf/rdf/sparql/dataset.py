@@ -142,6 +142,8 @@ class Dataset:
             return self._store.query(text, base_iri=base, prefixes=lent)
         except (SyntaxError, ValueError, OSError) as error:
             raise QueryError(f"not a SPARQL query: {mistake(text, str(error), lent)}") from None
+        except RuntimeError as error:  # it calls a function that is not there
+            raise QueryError(f"this query cannot be answered: {error}") from None
 
 
 def _in_union(said: ox.Quad) -> ox.Quad:

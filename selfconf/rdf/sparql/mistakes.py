@@ -31,6 +31,8 @@ def why_not_asked(text: str, prefixes: Mapping[str, str]) -> str | None:
         ox.Store().query(text, prefixes=dict(prefixes))
     except SyntaxError as error:
         return f"This is not SPARQL: {mistake(text, str(error), prefixes)}."
+    except RuntimeError as error:  # it calls a function that is not there
+        return f"This query cannot be answered: {error}."
     return None
 
 
@@ -81,5 +83,5 @@ def _unpaired(text: str) -> tuple[int, int, str] | None:
 
 def _short(text: str) -> str:
     """The first word of a text, in quotes."""
-    word = (text.split(maxsplit=1) or [""])[0]
+    word = text.split(maxsplit=1)[0]
     return f"'{word if len(word) <= LONGEST_EXCERPT else word[:LONGEST_EXCERPT] + '...'}'"

@@ -6,6 +6,7 @@ import pyoxigraph as ox
 import pytest
 
 from selfconf.errors import QueryError
+from selfconf.model.term import Literal
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.turtle import document as turtle
@@ -88,6 +89,24 @@ def test_what_several_chosen_graphs_say_is_found_once() -> None:
         iri("c")
     ]
     assert values(dataset, f"SELECT ?o FROM NAMED <{iri('c')}> {{ <urn:x> <urn:p> ?o }}") == []
+
+
+def test_graphs_that_are_given_count_instead_of_those_that_the_query_chooses(dataset: Dataset) -> None:
+    drive = iri("astrid-drive")
+    asked = f"SELECT ?g FROM <{iri('pippi-drive')}> {{ GRAPH ?g {{ ?c a sc:Component }} }}"
+    answer = dataset.query(asked, named_graphs=(drive,))
+    assert isinstance(answer, ox.QuerySolutions)
+    assert [solution[0].value for solution in answer] == [drive]
+    answer = dataset.query("ASK { ?c a sc:Component }", named_graphs=(drive,))
+    assert not answer, "the default graph is empty"
+
+
+def test_what_was_replaced_has_left_the_union_though_others_came_meanwhile() -> None:
+    dataset = Dataset()
+    for turn, name in enumerate(("a", "b", "a")):
+        dataset.add(iri(name), [(iri(name), iri("turn"), Literal(str(turn)))])
+        dataset.replace(iri("now"), f'<urn:now> <urn:turn> "{turn}" .'.encode())
+        assert values(dataset, "SELECT ?turn { <urn:now> <urn:turn> ?turn }") == [str(turn)]
 
 
 def test_prefixes_of_ones_own_may_be_given(dataset: Dataset) -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from selfconf.errors import QueryError
 from selfconf.rdf.sparql.dataset import Dataset
+from selfconf.rdf.sparql.mistakes import why_not_asked
 
 
 @pytest.mark.parametrize(
@@ -53,3 +54,12 @@ def test_the_cause_is_told_in_a_few_words(text: str, words: str) -> None:
 def test_prefixes_that_are_lent_need_no_declaration() -> None:
     with pytest.raises(QueryError, match="it ends too soon"):
         Dataset().query("SELECT ?c { ?c a rob:Arm ; my:is 1", {"my": "urn:my#"})
+
+
+def test_a_function_that_is_not_there_is_named() -> None:
+    calls = "SELECT $this { $this <urn:load> ?load FILTER(<urn:heavy>(?load)) }"
+    assert (
+        why_not_asked(calls, {}) == "This query cannot be answered: The custom function <urn:heavy> is not supported."
+    )
+    with pytest.raises(QueryError, match="cannot be answered: The custom function <urn:heavy> is not supported"):
+        Dataset().query(calls)
