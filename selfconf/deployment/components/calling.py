@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from functools import partial
 from typing import TypedDict
 
 from selfconf.bus.port import Replies
@@ -106,8 +107,8 @@ class Calling:
     def call(self, component: IRI, message: CallMessage, unanswered: Unanswered | None = None) -> None:
         """Make a call; what has become of it is stepped, as `Answered`.
 
-        `unanswered` is called where no answer has come in time, with what there is to do then otherwise: to ask for
-        the component's state.
+        `unanswered` is called once, where no answer has come in time, or none to the question for the component's
+        state, with what there is to do otherwise: to ask for the state, or to give up.
         """
         self._latest[component] = message
         _PendingCall(self, component, message, unanswered).make()
@@ -216,10 +217,18 @@ class _PendingCall:
         elif replies.errors:
             call, epoch = _CALL_OF[type(self._message)], self._message.epoch
             self._calling.step(Answered(self._component, call, epoch, Verdict.REFUSED, detail=replies.errors[0]))
-        elif self._unanswered is not None and not replies.complete:
-            self._unanswered(self._inspect)
+        elif not replies.complete:
+            self._do_unanswered(self._inspect)
         else:
             self._inspect()
+
+    def _do_unanswered(self, otherwise: Callable[[], None]) -> None:
+        """Do once what the caller does where no answer comes; it is given what there is to do otherwise."""
+        unanswered, self._unanswered = self._unanswered, None
+        if unanswered is not None:
+            unanswered(otherwise)
+        else:
+            otherwise()
 
     def _said(self, replies: Replies) -> CallAnswer | None:
         """What the life that is meant has answered; what another one says does not count while it may answer."""
@@ -256,7 +265,12 @@ class _PendingCall:
         elif counts and self._is_made_again(answer):
             self.make()
         elif current or self._hasty:
-            self._calling.unreachable(self._component, self._message, _what_is_wrong(answer, replies))
+            detail = _what_is_wrong(answer, replies)
+            give_up = partial(self._calling.unreachable, self._component, self._message, detail)
+            if answer is None:
+                self._do_unanswered(give_up)  # its process may have ended while it was to answer
+            else:
+                give_up()
 
     def _takes_longer(self, answer: CallAnswer | None, replies: Replies) -> bool:
         """Whether to ask once more in a moment: its inside is being started, or itself, for all that is known."""

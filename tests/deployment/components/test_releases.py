@@ -19,15 +19,16 @@ from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, iri
 
 
 @pytest.mark.parametrize(
-    ("seconds", "in_time"),
+    ("seconds", "in_time", "is_silent"),
     [
-        pytest.param(0.3, True, id="soon"),
-        pytest.param(TERMINATION + 0.1, True, id="killed"),
-        pytest.param(2 * SITE_ENDS, False, id="late"),
+        pytest.param(0.3, True, True, id="soon"),
+        pytest.param(TERMINATION + 0.1, True, True, id="killed"),
+        pytest.param(2 * SITE_ENDS, False, True, id="late"),
+        pytest.param(0.0, True, False, id="its process has ended as it was to answer"),
     ],
 )
 def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(
-    tmp_path: Path, seconds: float, in_time: bool
+    tmp_path: Path, seconds: float, in_time: bool, is_silent: bool
 ) -> None:
     """It is out of control if the site takes too long for that."""
     lab = Lab(tmp_path)
@@ -60,7 +61,8 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(
     assert "tracker" in lab.active()
     runtime = lab.runtimes["tracker"]
     runtime.calls.close()
-    runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
+    if is_silent:
+        runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
     agent.stop()
     assert lab.until(lambda: bool(lab.ended))
     assert ended == [End(tracker, runtime.life)]
