@@ -59,11 +59,12 @@ from selfconf.deployment.components import (
     Reachability,
     Waking,
 )
+from selfconf.deployment.improvement import Improvement
 from selfconf.deployment.lasting_losses import LastingLosses
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.readiness import Readiness
 from selfconf.deployment.record import DeploymentRecord
-from selfconf.deployment.retries import Retries
+from selfconf.deployment.retries import RetriesWhileRefused, RetriesWhileRunning
 from selfconf.deployment.run_reports import AT_LEISURE, RunReports
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
@@ -146,7 +147,9 @@ class TaskRunner:
         self._discovery = TaskDiscovery(context, self.name, self._liveness, request.without_configurator)
         self._search = TaskSearch(context, request, self._liveness, self._give_up)
         self._lasting_losses = LastingLosses(context)
-        self._retries = Retries(context, self._lives, request.upgrade)
+        self._retries_while_refused = RetriesWhileRefused(context, self._lives)
+        self._retries_while_running = RetriesWhileRunning(context, self._lives)
+        self._improvement = Improvement(context, request.upgrade)
         self._record = DeploymentRecord(
             bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
         )
@@ -243,7 +246,7 @@ class TaskRunner:
     def _take(self, event: Event) -> None:
         before, known = self.state.phase, self.state.lost
         if isinstance(event, Appeared):
-            self._retries.appeared()
+            self._retries_while_refused.appeared()
         self.state, effects = step(self.state, event)
         if self.state.lost is not known:
             self._notice(known)
@@ -254,22 +257,22 @@ class TaskRunner:
             self._carry_out(effect)
         if self.state.phase is Phase.RUNNING:
             self._run_on(event)
-            if self.state.phase is not before or self.state.lost is not known:
-                self._retries.await_recovery()
+            if self.request.upgrade is not None and (self.state.phase is not before or self.state.lost is not known):
+                self._retries_while_running.plan()
         if self.state.phase is not before:
             self._changed_phase(before)
 
     def _run_on(self, event: Event) -> None:
         """Be ready for what may be lost next, and for what would be rather had, after an event while the task runs."""
         if isinstance(event, Appeared) and self.state.target is not None:
-            self._retries.settle(event.lives)
+            self._improvement.settle(event.lives)
             self._search.prepare()
             if event.lives:
                 self._readiness.prepare_soon()
         if isinstance(event, Composed):
             self._search.prepare()  # what was found, or is held by others, may be other than before
             if self.state.left_to_others:
-                self._retries.look_whether_free()
+                self._improvement.look_whether_free()
 
     def _carry_out(self, effect: Effect) -> None:
         """Do what the machine wants done. What breaks there must not leave a task half deployed: it is taken down."""
@@ -285,10 +288,10 @@ class TaskRunner:
         log.debug("%s -> %s", before.value, self.state.phase.value)
         self.since = self.clock()
         if self.state.phase is Phase.RUNNING:
-            self._retries.runs()
+            self._retries_while_refused.runs()
         if self.state.phase is Phase.REFUSED and self.state.patient:
             self.reports.note(TaskWaiting(self.state.refusal, self.losses))
-            self._retries.await_another_chance()
+            self._retries_while_refused.plan()
 
     @property
     def _out_of_control(self) -> tuple[IRI, ...]:
@@ -355,7 +358,7 @@ class TaskRunner:
                 self.reports.note(TaskRunning(effect.configuration, self.state.epoch))
                 self._readiness.prepare()
                 self._search.prepare()
-                self._retries.settle()
+                self._improvement.settle()
             case Finish():
                 self._finish(effect)
 

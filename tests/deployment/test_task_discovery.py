@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.configurator.state import Phase
-from selfconf.deployment.retries import LET_GO_OF
+from selfconf.deployment.improvement import LET_GO_OF
 from selfconf.deployment.runner import RETURN
 from selfconf.render.run_events import event_body
 from tests.deployment.tasks import DRIVEN, SPARE, TASK, contended

@@ -12,7 +12,7 @@ import pytest
 from selfconf.bus.port import Undo
 from selfconf.configurator.events import Appeared, Improvable
 from selfconf.deployment import TaskRunner
-from selfconf.deployment.retries import LET_GO_OF
+from selfconf.deployment.improvement import LET_GO_OF
 from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Outcome

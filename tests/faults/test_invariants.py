@@ -161,7 +161,7 @@ MUTATIONS = {
     "nobody waits in vain": Mutation(
         {
             "selfconf.deployment.components.component_messages.ComponentMessages._freed": nothing,
-            "selfconf.deployment.retries.Retries._forgive": nothing,
+            "selfconf.deployment.retries.RetriesWhileRefused._try_again": nothing,
         },
         (SECOND, Action(4.0, "stop_task", "task-1")),
     ),
@@ -214,7 +214,9 @@ MUTATIONS = {
         (*BETTER, Action(5.5, "refuse", "tracker"), LATER),
         upgrades=True,
     ),
-    "the better is reached": Mutation({"selfconf.deployment.retries.Retries.settle": nothing}, BETTER, upgrades=True),
+    "the better is reached": Mutation(
+        {"selfconf.deployment.improvement.Improvement.settle": nothing}, BETTER, upgrades=True
+    ),
     "nothing breaks": Mutation({f"{LIVENESS}.Liveness._ended": breaks}, (Action(2.0, "crash", "pippi"),)),
 }
 
