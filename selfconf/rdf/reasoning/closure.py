@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
-from selfconf.model.term import IRI, BlankNode, Term
-from selfconf.rdf.turtle import Document, Triple
+from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import FIRST, OWL, RDFS, REST
 
 HIERARCHY = (RDFS.subClassOf, OWL.equivalentClass, RDFS.subPropertyOf, OWL.equivalentProperty)
@@ -61,21 +61,21 @@ def edges(triples: Iterable[Triple], below: IRI, same: IRI) -> Iterator[tuple[IR
 
     An equivalence is a pair in each direction.
     """
-    above_blank: dict[Term, list[Term]] = {}
+    above_blank: dict[Node, list[Node]] = {}
     below_blank: list[tuple[IRI, BlankNode]] = []
     for subject, predicate, value in triples:
-        if predicate not in (below, same):
+        if predicate not in (below, same) or isinstance(value, Literal):
             continue
         for lower, higher in ((subject, value), (value, subject))[: 1 + (predicate == same)]:
             if isinstance(lower, BlankNode):
                 above_blank.setdefault(lower, []).append(higher)
-            elif isinstance(lower, IRI) and isinstance(higher, IRI):
-                yield lower, higher
-            elif isinstance(lower, IRI) and isinstance(higher, BlankNode):
+            elif isinstance(higher, BlankNode):
                 below_blank.append((lower, higher))
+            else:
+                yield lower, higher
     for named, blank in below_blank:
-        seen: set[Term] = {named, blank}
-        waiting: list[Term] = [blank]
+        seen: set[Node] = {named, blank}
+        waiting: list[Node] = [blank]
         while waiting:
             for higher in above_blank.get(waiting.pop(), ()):
                 if higher in seen:

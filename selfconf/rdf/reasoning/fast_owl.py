@@ -64,7 +64,7 @@ def _of_owl(term: object) -> bool:
 
 
 def reasonable_owl_rl(triples: Sequence[Triple]) -> Iterator[Triple]:
-    """What holds between named terms in the OWL 2 RL closure of an ontology that suits."""
+    """The OWL 2 RL closure of an ontology that suits."""
     from reasonable import PyReasoner  # an extra
 
     from selfconf.rdf.rdflib_terms import from_rdflib, to_rdflib
@@ -73,7 +73,7 @@ def reasonable_owl_rl(triples: Sequence[Triple]) -> Iterator[Triple]:
     reasoner.from_graph(to_rdflib([*triples, *_of_lists(triples)]))
     for subject, predicate, value in reasoner.reason():
         terms = from_rdflib(subject), from_rdflib(predicate), from_rdflib(value)
-        if isinstance(terms[0], IRI) and isinstance(terms[1], IRI) and isinstance(terms[2], IRI):
+        if isinstance(terms[1], IRI) and not isinstance(terms[0], Literal):
             yield terms[0], terms[1], terms[2]
 
 

@@ -62,7 +62,7 @@ class Pattern:
 
     def _length_for(self, steps: int) -> int:
         """The length of the texts, to a power of two, that cannot cost more steps of backtracking; -1 if all may."""
-        anchored = _anchored(self._tree) and not self.flags & re.MULTILINE
+        anchored = _anchored(self._tree) and not self._tree.state.flags & re.MULTILINE
         lengths = (0, *(1 << power for power in range(21)))
         return max((n for n in lengths if (n or 1) ** (not anchored) * _ways(self._tree, n) <= steps), default=-1)
 

@@ -60,6 +60,7 @@ def test_what_has_no_name_is_left_out() -> None:
         ":A rdfs:subClassOf [ rdfs:subClassOf :B ] .",
         ":A rdfs:subClassOf [ rdfs:subClassOf [ rdfs:subClassOf :C ] ] . :C rdfs:subClassOf :B .",
         ":A owl:equivalentClass _:x . :B owl:equivalentClass _:x .",
+        ":A rdfs:subClassOf [ rdfs:subClassOf _:x ] . _:x owl:equivalentClass _:y . _:y rdfs:subClassOf :B .",
         ":A rdfs:subClassOf _:x . _:y rdfs:subClassOf _:x ; owl:equivalentClass _:x ; rdfs:subClassOf :B , 5 .",
     ],
 )
@@ -100,6 +101,17 @@ def test_a_class_lies_below_the_named_classes_that_it_is_an_intersection_of(text
     found = of(f"{text} :A a owl:Class .", mode)
     assert found.superclasses(iri("A")) == {iri("A"), iri("B"), iri("C")}
     assert not found.matches(iri("B"), iri("A"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":A owl:disjointWith [ owl:intersectionOf ( :B :C ) ] .",
+        "[ owl:intersectionOf ( :B :C ) ] rdfs:subClassOf :A .",
+    ],
+)
+def test_a_class_that_does_not_lie_below_an_intersection_does_not_lie_below_its_members(text: str) -> None:
+    assert of(text).superclasses(iri("A")) == {iri("A")}
 
 
 def test_owl_rl_says_no_less_than_subclass_mode_and_hands_out_no_values() -> None:

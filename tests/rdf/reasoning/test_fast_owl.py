@@ -87,6 +87,19 @@ def test_the_ontologies_of_selfconf_suit_and_both_reasoners_infer_one_hierarchy(
 
 
 @pytest.mark.parametrize(
+    ("ontology", "lower", "higher"),
+    [
+        (":p rdfs:subPropertyOf [ rdfs:subPropertyOf :q ] .", "p", "q"),
+        (":A owl:intersectionOf ( :C [ rdfs:subClassOf :B ] ) .", "A", "B"),
+    ],
+)
+def test_what_has_no_name_leads_on_to_what_has_one(ontology: str, lower: str, higher: str) -> None:
+    document = turtle.parse(PREFIXES + ontology, "o.ttl")
+    assert quick_owl.suits(list(document.triples()))
+    assert (IRI("urn:x:" + lower), IRI("urn:x:" + higher)) in hierarchy_of([document], quick_owl.reasonable_owl_rl)
+
+
+@pytest.mark.parametrize(
     "axiom",
     [
         ":p owl:sameAs :q .",
@@ -95,6 +108,7 @@ def test_the_ontologies_of_selfconf_suit_and_both_reasoners_infer_one_hierarchy(
         ":A owl:hasKey ( :p ) .",
         ":A owl:onProperty :p ; owl:someValuesFrom :B .",
         ":p rdfs:subPropertyOf rdfs:subClassOf .",
+        "rdf:type rdfs:subPropertyOf :p .",
         "owl:Thing rdfs:subClassOf :A .",
         ":A owl:equivalentClass owl:Thing .",
         ":A owl:unionOf ( :B owl:Thing ) .",

@@ -37,6 +37,12 @@ def test_what_costs_little_is_asked_of_re(text: str) -> None:
     assert pattern._automaton is None
 
 
+def test_where_each_line_is_a_beginning_longer_texts_cost_more() -> None:
+    lengths = [Pattern(expression, 0)._short for expression in (r"^\n*a", r"(?m)^\n*a", r"\n*a")]
+    assert lengths[0] > lengths[1] == lengths[2]
+    assert Pattern(r"^\n*a", re.MULTILINE)._short == lengths[1]
+
+
 def test_beyond_regular_languages_many_texts_cost_little_more_than_one() -> None:
     pattern = Pattern(BEYOND, 0)
     began = time.process_time()
