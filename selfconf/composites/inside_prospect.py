@@ -97,5 +97,8 @@ class InsideProspect:
 
 
 def _spent(loss: Loss) -> frozenset[str]:
-    """The life in which a component was lost, perhaps without a name; none where one has ended that was not named."""
-    return frozenset() if loss.cause is Cause.CRASH and not loss.life else frozenset((loss.life,))
+    """The life in which a component was lost, perhaps without a name.
+
+    None where a life seemed to end: one that is seen again was only cut off.
+    """
+    return frozenset() if loss.cause is Cause.CRASH else frozenset((loss.life,))

@@ -111,10 +111,14 @@ def test_a_component_that_did_not_live_counts_once_it_does_however_late_it_is_lo
     assert prospect.able()
 
 
-def test_a_component_of_which_a_life_has_ended_counts_in_the_next_one(tmp_path: Path) -> None:
-    prospect = Prospect(tmp_path, loss=Loss(Cause.CRASH, "it has begun another life"))
+@pytest.mark.parametrize("life", ["lens1", ""], ids=["and which was only cut off", "and which was not named"])
+def test_a_component_of_which_a_life_has_ended_counts_as_soon_as_it_lives(tmp_path: Path, life: str) -> None:
+    prospect = Prospect(tmp_path, loss=Loss(Cause.CRASH, "it does not live any more", life))
     prospect.lab.let_pass(1.0)
     assert prospect.able()
+    prospect.lab.crash("lens")
+    prospect.lab.let_pass(3.0)
+    assert not prospect.able()
 
 
 def test_a_component_that_another_task_held_is_not_lost(tmp_path: Path) -> None:

@@ -261,7 +261,7 @@ def _advertised(folder: Path) -> dict[IRI, Advertisement]:
     return {one.component: one for path in folder.iterdir() for one in files.advertisements(path)[0]}
 
 
-@pytest.mark.parametrize("how", ["free", "new life", "another"])
+@pytest.mark.parametrize("how", ["free", "new life", "same life", "another"])
 def test_a_task_that_upgrades_returns_to_a_composite_once_its_inside_can_act_again(tmp_path: Path, how: str) -> None:
     lab = eye(tmp_path)
     task = LOOK.replace("SINK", "Low").replace("sh:class :Eye", "sh:or ( [ sh:class :Eye ] [ sh:class :Plain ] )")
@@ -270,6 +270,8 @@ def test_a_task_that_upgrades_returns_to_a_composite_once_its_inside_can_act_aga
     middle = None
     if how == "free":
         middle = looking(lab, "Middle", 1, "Lens")
+    elif how == "same life":
+        lab.network.pause(lab.node_of("lens"))
     else:
         lab.runtimes["lens"].fail("it is dirty")
     lab.let_pass(60.0)
@@ -278,6 +280,8 @@ def test_a_task_that_upgrades_returns_to_a_composite_once_its_inside_can_act_aga
     assert len(fails) == 1
     if middle is not None:
         middle.stop()
+    elif how == "same life":
+        lab.network.resume(lab.node_of("lens"))
     elif how == "new life":
         lab.crash("lens")
         lab.component("lens")
