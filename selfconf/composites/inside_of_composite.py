@@ -143,7 +143,7 @@ class InsideOfComposite:
             self.runner.rewire(rests)
 
     def _begin(self, message: Apply) -> None:
-        self._values = dict(message.values)
+        self._values, self.prospect = dict(message.values), None
         self._beginnings += 1
         try:
             request = self._request_with(self._values, lambda: self._wires.keys())

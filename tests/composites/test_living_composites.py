@@ -314,6 +314,20 @@ def test_a_composite_whose_inside_lacks_what_its_own_task_holds_is_tried_again_a
     assert looking(lab, "High", 0).state.phase is Phase.RUNNING
 
 
+def test_a_composite_whose_inside_was_refused_once_lives_on_after_one_that_has_run(tmp_path: Path) -> None:
+    lab = eye(tmp_path)
+    middle = looking(lab, "Middle", 1, "Lens")
+    assert looking(lab, "Low", 0).state.phase is Phase.REFUSED
+    middle.stop()
+    lab.let_pass(3.0)
+    high = looking(lab, "High", 0)
+    assert high.state.phase is Phase.RUNNING
+    (composite,) = lab.composites["home"].living.values()
+    high.stop()
+    lab.let_pass(2 * LOOK_AT_REFUSED)
+    assert list(lab.composites["home"].living.values()) == [composite]
+
+
 def played(agent: TaskRunner) -> set[IRI]:
     """The components of what a task has deployed."""
     return set() if agent.configuration is None else set(agent.configuration.components)
