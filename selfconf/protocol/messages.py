@@ -228,7 +228,7 @@ class End:
 
     component: IRI
     life: Label = ""
-    """The life that is meant; empty: whichever the site has started."""
+    """The life that is meant; empty: whichever the site has started, as a person has it ended: that is no crash."""
 
 
 @immutable

@@ -27,6 +27,8 @@ class ComponentProcess:
         self._closed = False
         self.crash_counted = False
         """Whether its end, which may be still to come, was counted as a crash."""
+        self.end_wanted = False
+        """Whether a person has it ended: that is no crash, whatever a task has lost by it."""
         self.silent_since = -math.inf
         """When one of its pipes has ended; long ago as long as none has."""
 

@@ -4,12 +4,13 @@
     running --end, trouble--> ending --gone--> idle, or pausing if it was for trouble
 
 A process that ends with 0 has wanted to, and one that ends with 2 has said why it cannot run (its component lives
-already, for one); every other end is a crash. So is each end after which a task that held a component of the process
-has it started again, and each before any of its components has lived: both would go on forever. After a crash the
-program is started again with a pause, until it has crashed too often (`selfconf.site.restart_limit`); after an end by 0
-or 2 only when it is asked for, and then not before the pause is over. The pause after a first crash ends when the
-program is asked for, as a task may stand still without it; further ones do not, else a task that asks at once would
-leave no pauses. What still runs of the process is ended first: there is never more than one.
+already, for one); every other end is a crash, but for one that a person has asked for (`selfconf site restart`). So is
+each end after which a task that held a component of the process has it started again, and each before any of its
+components has lived: both would go on forever. After a crash the program is started again with a pause, until it has
+crashed too often (`selfconf.site.restart_limit`); after an end by 0 or 2 only when it is asked for, and then not before
+the pause is over. The pause after a first crash ends when the program is asked for, as a task may stand still without
+it; further ones do not, else a task that asks at once would leave no pauses. What still runs of the process is ended
+first: there is never more than one.
 """
 
 from __future__ import annotations
@@ -146,10 +147,11 @@ class ComponentProgram:
             else:
                 self._launch()
 
-    def end(self, gone: Callable[[], None], again: bool = False) -> None:
+    def end(self, gone: Callable[[], None], again: bool = False, *, wanted: bool = False) -> None:
         """End the process: TERM, after `TERMINATION` seconds KILL; then call `gone`. It can be started again.
 
         Where it is being ended already, what has been asked to follow stays: a start, after which it is waited for.
+        `wanted` is that a person has it ended.
         """
         self._end_pause()
         if self._process is None:
@@ -158,6 +160,7 @@ class ComponentProgram:
             self._ending.when_gone.append(gone)
         else:
             self._ending = _Ending(self._bus.now(), again, [gone])
+            self._process.end_wanted = wanted
             if self._process.group.frozen():
                 self._process.group.kill()  # it would have to go on, and might act, before it could end by itself
             else:
@@ -178,7 +181,9 @@ class ComponentProgram:
     def _count_lost(self, life: str) -> None:
         """Count the end of the process in which a task has lost a life, unless it has counted."""
         process = self._process or self._last
-        if life and process is not None and not process.crash_counted and process.was_life(life):
+        if not life or process is None or process.crash_counted or process.end_wanted:
+            return
+        if process.was_life(life):
             self._count_crash(process)
 
     def _count_crash(self, process: ComponentProcess) -> None:

@@ -99,15 +99,16 @@ class ComponentProcesses:
     def end(self, component: IRI, life: str = "", ended: Callable[[], None] = lambda: None) -> None:
         """End the process of a component, and call `ended` once it is gone; it can be started again.
 
-        With it end the other components of the process. Raises PeerError if this site has not started it, or if `life`
-        is not the life that it has started.
+        Tasks name the `life` that they mean; without one a person has it ended, which is no crash. With it end the
+        other components of the process. Raises PeerError if this site has not started it, or if `life` is not the life
+        that it has started.
         """
         program = self.by_component.get(component)
         if program is None:
             raise PeerError(f"this site has not started {component}")
         if life and not program.is_life(component, life):
             raise PeerError(f"this site has not started the life {life} of {component}")
-        program.end(ended)
+        program.end(ended, wanted=not life)
 
     def close(self) -> None:
         """End every process, with all that it has started: what runs after `ENDING` seconds, all in all, is killed.

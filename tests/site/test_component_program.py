@@ -252,6 +252,18 @@ def test_what_a_site_has_ended_for_a_task_counts_as_a_crash_when_that_task_asks_
     assert live(network, lambda: bool(ended))
 
 
+def test_what_a_person_has_ended_counts_as_no_crash_though_a_task_has_lost_it_by_that(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED), more="; sc:restarts 0 ")
+    made.start(SLEEPER)
+    for run in (1, 2):
+        assert live(network, lambda run=run: len(runs(tmp_path)) == run)
+        life = given_life(made)
+        made.processes.end(SLEEPER)
+        made.start(SLEEPER, life)
+
+
 def test_a_process_that_is_frozen_before_it_lives_is_ended_and_started_again(
     network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
