@@ -1,6 +1,6 @@
 """Side by side on families that the search was not tuned on at first, and on those that chose between its ideas.
 
-    python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--half HALF] [--write]
+    python -m benchmarks.search.further [--smoke] [--limit SECONDS] [--seeds N] [--only FAMILY] [--set SET] [--write]
 
 Each engine runs in a process of its own, on the problems of `families/sets.py`, and is asked two questions: which
 configuration is the first one, or that there is none, which is what selfconf answers; and, where there is one, for any
@@ -53,26 +53,26 @@ experiments](../search-log.md) says why it lost, and what helped."""
 
 
 class Asked(NamedTuple):
-    """An instance, which half it is of, and how the engines did: asked for the first configuration, and for any."""
+    """An instance, which set it is of, and how the engines did: asked for the first configuration, and for any."""
 
-    half: str
+    set: str
     first: Row
     any: Row | None
     """None where there is no configuration, or none is known."""
 
 
-def asked(half: str, instance: Instance, installed: Sequence[str], limit: float, times: int = 3) -> Asked:
+def asked(set_: str, instance: Instance, installed: Sequence[str], limit: float, times: int = 3) -> Asked:
     """Ask all engines both questions about an instance; raises AssertionError if they disagree."""
     problem = made(instance.make)
     able = [e for e in first.ENGINES if e.partition(",")[0] in installed and e not in SLOW and first.able(e, problem)]
     found = _timed(problem, able, limit, times, first.ENGINES)
     least = Row(instance, found, _agreed(instance, found))
     if not least.answer:
-        return Asked(half, least, None)
+        return Asked(set_, least, None)
     ours = Measured(found["selfconf"].seconds, found["selfconf"].answer and True)
     general = [engine for engine in anything.GENERAL if engine in installed]
     found = _timed(problem, general, limit, times, anything.ENGINES, {"selfconf": ours})
-    return Asked(half, least, Row(instance, found, _agreed(instance, found)))
+    return Asked(set_, least, Row(instance, found, _agreed(instance, found)))
 
 
 SLOW = ("clingo, weights",)
@@ -123,17 +123,17 @@ def undecided(rows: Sequence[Row]) -> int:
 
 
 def summary(everything: Sequence[Asked]) -> str:
-    """A line for each family, and one for each half."""
+    """A line for each family, and one for each set."""
     lines = [
-        "| half | family | instances | first: median | worst | undecided | any: median | worst |",
+        "| set | family | instances | first: median | worst | undecided | any: median | worst |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
     ]
-    for half in dict.fromkeys(one.half for one in everything):
-        of_half = [one for one in everything if one.half == half]
-        for family in [*dict.fromkeys(one.first.instance.family for one in of_half), None]:
-            some = [one for one in of_half if family in (None, one.first.instance.family)]
+    for set_ in dict.fromkeys(one.set for one in everything):
+        of_set = [one for one in everything if one.set == set_]
+        for family in [*dict.fromkeys(one.first.instance.family for one in of_set), None]:
+            some = [one for one in of_set if family in (None, one.first.instance.family)]
             least = [one.first for one in some]
-            cells = [half, family or "**all**", str(len(some)), *_middle(least), str(undecided(least))]
+            cells = [set_, family or "**all**", str(len(some)), *_middle(least), str(undecided(least))]
             lines.append(f"| {' | '.join([*cells, *_middle([one.any for one in some if one.any is not None])])} |")
     return "\n".join(lines)
 
@@ -144,23 +144,23 @@ def _middle(rows: Sequence[Row]) -> tuple[str, str]:
 
 
 def verdict(everything: Sequence[Asked]) -> Iterator[str]:
-    """Whether the goals are met, half by half."""
-    for half in dict.fromkeys(one.half for one in everything):
-        least = [one.first for one in everything if one.half == half]
+    """Whether the goals are met, set by set."""
+    for set_ in dict.fromkeys(one.set for one in everything):
+        least = [one.first for one in everything if one.set == set_]
         some = ratios(least)
         if some:
             met = statistics.median(some) <= MEDIAN and max(some) <= WORST and not undecided(least)
             yield (
-                f"* {half}, the first configuration or the proof that there is none: {statistics.median(some):.2f}"
+                f"* {set_}, the first configuration or the proof that there is none: {statistics.median(some):.2f}"
                 f" times the best other engine in the median, {max(some):.2f} at worst, {undecided(least)} undecided"
                 f" that another engine decides ({len(some)} instances). The goal of {MEDIAN:g}, {WORST:g} and none is"
                 f" {'met' if met else 'missed'}; {sum(one > WORST for one in some)} instances take more than"
                 f" {WORST:g} times the best."
             )
-        some = ratios([one.any for one in everything if one.half == half and one.any is not None])
+        some = ratios([one.any for one in everything if one.set == set_ and one.any is not None])
         if some:
             yield (
-                f"* {half}, the others asked for any configuration: {statistics.median(some):.2f} times in the median,"
+                f"* {set_}, the others asked for any configuration: {statistics.median(some):.2f} times in the median,"
                 f" {max(some):.2f} at worst ({len(some)} instances). The goal of {ANY:g} in the median is"
                 f" {'met' if statistics.median(some) <= ANY else 'missed'}."
             )
@@ -199,19 +199,19 @@ def main() -> int:
     parser.add_argument("--limit", type=float, help=f"seconds for each answer ({LIMIT:g}; 0.3 with --smoke)")
     parser.add_argument("--seeds", type=int, default=SEEDS, help=f"instances of each size ({SEEDS})")
     parser.add_argument("--only", default="", help="families whose name contains this")
-    parser.add_argument("--half", choices=SETS, help="only the families of this half")
+    parser.add_argument("--set", choices=SETS, help="only the families of this set")
     parser.add_argument("--write", action="store_true", help="write the page")
     options = parser.parse_args()
     limit = options.limit or (0.3 if options.smoke else LIMIT)
     seeds = 1 if options.smoke else options.seeds
     engines = anything.installed()
     everything: list[Asked] = []
-    for half, families in {"smoke": SMALLEST}.items() if options.smoke else SETS.items():
+    for set_, families in {"smoke": SMALLEST}.items() if options.smoke else SETS.items():
         chosen = {name: sizes for name, sizes in families.items() if options.only in name}
-        if options.half not in (None, half):
+        if options.set not in (None, set_):
             continue
         for instance in instances(chosen, range(SEED, SEED + seeds)):
-            everything.append(asked(half, instance, engines, limit, 1 if options.smoke else 3))
+            everything.append(asked(set_, instance, engines, limit, 1 if options.smoke else 3))
             for row in everything[-1][1:]:
                 if row is not None:
                     print(table([row]).splitlines()[-1], flush=True)
