@@ -3,110 +3,18 @@
 from __future__ import annotations
 
 import os
-from contextlib import ExitStack
 from dataclasses import replace
 
 import pytest
 
-from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.tasks.living_task import LivingTask
-from selfconf.api.tasks.living_tasks import LivingTasks
-from selfconf.bus.memory import MemoryBus, Network
-from selfconf.bus.port import Request
+from selfconf.bus.memory import MemoryBus
 from selfconf.errors import NetworkError
 from selfconf.model.term import IRI
-from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys, checked_name
-from selfconf.protocol.messages import CallAnswer, Status, TaskRecord, Verdict
+from selfconf.protocol.messages import CallAnswer
 from selfconf.this_machine import LocalSite, announce
+from tests.api.tasks.simulated_tasks import AT_REST, DRIVE, HERE, KEYS, PATROL, TIDY, Tasks
 from tests.suspended_run import suspended_run
-
-KEYS = Keys("lab")
-HERE = "tcp/127.0.0.1:7001"
-TEMPLATE = IRI("urn:t:navigate")
-DRIVE = IRI("urn:c#drive")
-AT_REST = CallAnswer(Verdict.DONE, DRIVE, "l1", place="process 7 on lab")
-PATROL, TIDY = TaskRecord("patrol~1", 1, beginning=5.0, wanted=TEMPLATE), TaskRecord("tidy~2", 1, wanted=TEMPLATE)
-
-
-class Tasks:
-    """Configurators that run tasks, and sites that keep them, on a network of their own."""
-
-    def __init__(self) -> None:
-        self.network = Network()
-        self.asked = LivingTasks(SynchronousBus(self.network.node()), KEYS, [HERE])
-        self.kept: list[TaskRecord] = []
-
-    def configurator(
-        self,
-        name: str,
-        task: str,
-        *components: IRI,
-        answers: bool = True,
-        speaks_of: str = "",
-        outside: IRI | None = None,
-        phase: str = "running",
-        beginning: float = 0.0,
-    ) -> MemoryBus:
-        """A configurator that runs a task, perhaps the inside of a composite, until it is stopped."""
-        node = self.network.node()
-        node.announce(KEYS.configurator_life(name, "1"))
-        speaker = speaks_of or name
-        status = Status(speaker, phase, TEMPLATE, 3, 1.5, components=components, task=task, outside=outside)
-        status = replace(status, beginning=beginning)
-
-        def answer(request: Request) -> None:
-            if answers:
-                request.reply(KEYS.configurator_call(name, "status"), encode(status))
-            request.finish()
-
-        def stop(request: Request) -> None:
-            request.reply(KEYS.configurator_call(name, "stop"), encode(status))
-            request.finish()
-            node.later(0.1, node.close)
-
-        node.serve(KEYS.configurator_call(name, "status"), answer)
-        node.serve(KEYS.configurator_call(name, "stop"), stop)
-        return node
-
-    def component(self, component: IRI, *states: CallAnswer, answers: bool = True) -> MemoryBus:
-        """A component that is in one state after the other whenever it is asked; in the last one it stays."""
-        node, left = self.network.node(), list(states)
-        node.announce(KEYS.life(component, "l1"))
-
-        def tell(request: Request) -> None:
-            state = left.pop(0) if len(left) > 1 else left[0]
-            request.reply(KEYS.call(component, "state"), encode(state))
-            request.finish()
-
-        node.serve(KEYS.call(component, "state"), tell if answers else lambda request: None)
-        return node
-
-    def site(self, *records: TaskRecord, keeps: bool = True) -> None:
-        """A site that keeps tasks, or says that it cannot."""
-        node = self.network.node()
-
-        def tell(request: Request) -> None:
-            for record in records:
-                request.reply(KEYS.kept_tasks(), encode(record))
-            request.finish()
-
-        def keep(request: Request) -> None:
-            if keeps:
-                self.kept.append(decode(request.payload, TaskRecord))
-                request.reply(request.key, b"")
-            else:
-                request.refuse("the disk is full")
-            request.finish()
-
-        node.serve(KEYS.kept_tasks(), tell)
-        node.serve(KEYS.keep(), keep)
-
-
-@pytest.fixture
-def tasks() -> Tasks:
-    """An empty ecology."""
-    return Tasks()
 
 
 def test_tasks_that_run_and_tasks_that_are_kept_are_listed_once_each(tasks: Tasks) -> None:
@@ -386,95 +294,6 @@ def test_what_another_configurator_holds_is_nothing_to_the_end_of_a_task(tasks: 
     tasks.configurator("c1", TIDY.task)
     tasks.component(DRIVE, held_by("c2", PATROL.task))
     assert tasks.asked.stop("tidy") == ("tidy",)
-
-
-def test_a_task_is_handed_over_once(tasks: Tasks) -> None:
-    tasks.site(TIDY)
-    assert tasks.asked.detach(PATROL) == "patrol"
-    assert tasks.kept == [PATROL]
-    with pytest.raises(NetworkError, match="a task 'tidy' lives already"):
-        tasks.asked.detach(replace(TIDY, task="tidy~3"))
-
-
-def test_a_name_that_a_task_has_gets_the_first_number_that_is_free(tasks: Tasks) -> None:
-    tasks.configurator("c1", "patrol~1")
-    tasks.site(replace(TIDY, task="patrol-2~1"), TIDY)
-
-    def claimed(wanted: str) -> str:
-        with tasks.asked.claim(wanted, numbered=True) as claim:
-            return claim.name
-
-    assert list(map(claimed, ("watch", "tidy", "patrol"))) == ["watch", "tidy-2", "patrol-3"]
-    tasks.configurator("c2", f"{'x' * 64}~1")
-    assert checked_name(claimed("x" * 64), "a task").endswith("x-2")
-
-
-def test_a_name_that_must_be_the_wanted_one_is_refused_where_a_task_has_it(tasks: Tasks) -> None:
-    tasks.configurator("c1", "patrol~1")
-    with tasks.asked.claim("watch") as claimed:
-        assert claimed.name == "watch"
-        for taken in ("patrol", "watch"):
-            with pytest.raises(NetworkError, match=f"a task '{taken}' lives already"):
-                tasks.asked.claim(taken)
-
-
-def test_tasks_that_begin_before_they_see_each_other_have_names_of_their_own(tasks: Tasks) -> None:
-    with ExitStack() as stack:
-        claims = [stack.enter_context(tasks.asked.claim("patrol", numbered=True)) for _ in range(3)]
-        assert [claim.name for claim in claims] == ["patrol", "patrol-2", "patrol-3"]
-    with tasks.asked.claim("patrol") as claimed:
-        assert claimed.name == "patrol"
-
-
-def test_of_tasks_that_begin_with_one_name_on_several_hosts_the_first_goes_on(tasks: Tasks) -> None:
-    """They claim the name before they see each other, and look once more before they run."""
-    tasks.configurator("c1", "patrol~1", phase="idle", beginning=5.0)
-    tasks.configurator("c2", "watch~2", beginning=7.0)
-    tasks.configurator("c3", "inside~3", outside=DRIVE)
-    for task, beginning in (("patrol~1", 5.0), ("patrol~4", 4.0), ("patrol~0", 5.0), ("inside~4", 9.0)):
-        tasks.asked.check_alone(task, beginning)
-    for task, beginning in (("patrol~4", 6.0), ("patrol~4", 5.0), ("watch~4", 4.0)):
-        with pytest.raises(NetworkError, match="lives already"):
-            tasks.asked.check_alone(task, beginning)
-
-
-@pytest.mark.parametrize("beginning", [4.0, 6.0])
-def test_of_tasks_that_are_handed_over_with_one_name_on_several_hosts_the_first_is_kept(
-    tasks: Tasks, beginning: float
-) -> None:
-    """They claim the name before the sites keep any of them."""
-    tasks.site()
-    other, node = replace(PATROL, task="patrol~9", beginning=beginning), tasks.network.node()
-
-    def tell(request: Request) -> None:
-        for record in (other, *tasks.kept) if tasks.kept else ():
-            request.reply(KEYS.kept_tasks(), encode(record))
-        request.finish()
-
-    node.serve(KEYS.kept_tasks(), tell)
-    if beginning > PATROL.beginning:
-        assert tasks.asked.detach(PATROL) == "patrol"
-        assert tasks.kept == [PATROL, replace(other, revision=2, ended=True)], "it may have looked before"
-    else:
-        with pytest.raises(NetworkError, match="a task 'patrol' lives already"):
-            tasks.asked.detach(PATROL)
-        assert tasks.kept == [PATROL, replace(PATROL, revision=2, ended=True)]
-
-
-def test_a_task_that_no_site_can_keep_is_refused_and_called_off(tasks: Tasks) -> None:
-    tasks.site(keeps=False)
-    with pytest.raises(NetworkError, match="the disk is full"):
-        tasks.asked.detach(PATROL)
-
-
-def test_a_name_is_claimed_as_soon_as_each_has_had_the_time_of_one_question(tasks: Tasks) -> None:
-    tasks.configurator("c1", "watch~3")
-    for key in (KEYS.configurator_call("c2", "status"), KEYS.kept_tasks()):
-        tasks.network.node().serve(key, lambda request: None)
-    began = tasks.network.time
-    with tasks.asked.claim("watch", numbered=True) as claimed:
-        assert claimed.name == "watch-2"
-    assert tasks.network.time - began < 1.5 * ROLL_CALL
 
 
 @pytest.mark.parametrize("elsewhere", [False, True])

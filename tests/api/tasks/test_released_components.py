@@ -9,13 +9,7 @@ import pytest
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.api.tasks.released_components import COMING_TO_REST, ReleasedComponents
 from selfconf.model.term import IRI
-from tests.api.tasks.test_living_tasks import AT_REST, DRIVE, KEYS, PATROL, Tasks
-
-
-@pytest.fixture
-def tasks() -> Tasks:
-    """A network with components."""
-    return Tasks()
+from tests.api.tasks.simulated_tasks import AT_REST, DRIVE, KEYS, PATROL, Tasks
 
 
 @pytest.fixture
