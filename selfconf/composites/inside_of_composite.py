@@ -28,6 +28,7 @@ from selfconf.composites.inside_prospect import InsideProspect
 from selfconf.composition import why_none
 from selfconf.deployment import Outside, RunRequest, TaskRunner
 from selfconf.errors import SelfconfError
+from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
 from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal, Undecided
@@ -191,7 +192,7 @@ class InsideOfComposite:
     def end(self) -> None:
         """Take the inside down; `ending` lasts as long as that takes."""
         self._again = None
-        if self.runner is not None and not self.ending:
+        if self.runner is not None:
             self.ending = True
             self.runner.stop()
 
@@ -203,14 +204,14 @@ class InsideOfComposite:
 
     def _report(self, beginning: int, event: RunEvent) -> None:
         log.info("%s: %s", self.profile.component.short, event.act)
-        if beginning != self._beginnings or self.runner is None or self.ending or self._again is not None:
+        if beginning != self._beginnings or self.runner is None or self._again is not None:
             return
         if isinstance(event, ComponentLost | ComponentReleased) and event.component in self._standing:
             lacking, standing = self._standing[event.component], self._standing
             self._bus.later(REPLACING, partial(self._tell_silence, lacking, standing))
         if not isinstance(event, TaskRunning):
             return
-        self._standing = self._issuing()
+        self._standing = self._issuing(event.configuration)
         before, self.issued = self.issued, self.runner.issued_outside()
         called_by, self.callers = self.callers, self.runner.calling_outside()
         if not self.settled:
@@ -218,27 +219,24 @@ class InsideOfComposite:
         elif (self.issued, self.callers) != (before, called_by):
             self._tell_moved()
 
-    def _issuing(self) -> dict[IRI, frozenset[str]]:
-        """The components inside that issue outputs of the composite, or feed what does, with these outputs."""
-        configuration, whole = None if self.runner is None else self.runner.configuration, self.profile.component
-        connections = () if configuration is None else configuration.connections
+    def _issuing(self, inside: Configuration) -> dict[IRI, frozenset[str]]:
+        """The components inside, each with the outputs of the composite that it issues, or feeds what does."""
         found: dict[IRI, frozenset[str]] = {}
         before: dict[IRI, frozenset[str]] | None = None
         while found != before:
             before = dict(found)
-            for one in connections:
-                issued = frozenset({one.input}) if one.sink == whole else found.get(one.sink, frozenset())
-                if issued and one.source != whole:
-                    found[one.source] = found.get(one.source, frozenset()) | issued
+            for one in inside.connections:
+                is_own = one.sink == self.profile.component
+                issued = frozenset({one.input}) if is_own else found.get(one.sink, frozenset())
+                found[one.source] = found.get(one.source, frozenset()) | issued
         return found
 
     def _tell_silence(self, lacking: frozenset[str], standing: Mapping[IRI, frozenset[str]]) -> None:
         """Tell that nothing stands behind some outputs, unless the inside runs anew, or has ended, since they did."""
-        before = self.issued
         if self._standing is standing:
-            self.issued = {**before, **dict.fromkeys(lacking & before.keys(), ())}
-        if self.settled and self.issued != before:
-            self._tell_moved()
+            before, self.issued = self.issued, {**self.issued, **dict.fromkeys(lacking, ())}
+            if self.issued != before:
+                self._tell_moved()
 
     def _tell_moved(self) -> None:
         moved = self._bus.publisher(self.runtime.keys.moved(self.profile.component), Urgency.EVENT)

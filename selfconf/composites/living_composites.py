@@ -92,7 +92,6 @@ class Composites:
         for composite in self.living.values():
             composite.close()
         self.living.clear()
-        self._begun_as.clear()
 
     def _become(self, known: Mapping[IRI, Advertisement], found: Mapping[IRI, Inside], why: Mapping[IRI, str]) -> None:
         self._advertisements, self._able = known, found
@@ -120,7 +119,7 @@ class Composites:
         advertised no more: perhaps its file is being saved.
         """
         composite = self.living.get(component)
-        if composite is None or composite.runtime.active or composite.runner is not None:
+        if composite is None or composite.runner is not None:
             return
         if component not in self._able or self._advertisements[component] != self._begun_as[component]:
             self._end(component)
@@ -129,7 +128,6 @@ class Composites:
         """Let a composite live no more, and again after a while if its inside can be configured by then."""
         composite = self.living.pop(component)
         composite.close()
-        del self._begun_as[component]
         self._between_lives.add(component)
         self._bus.later(NEXT_LIFE, partial(self._begin_life, component, composite))
 
@@ -192,17 +190,18 @@ class Composites:
         """
         self._look_later(component)
         composite = self.living.get(component)
-        if composite is None or composite.prospect is None or composite.runner is not None:
+        if composite is None or composite.prospect is None:
             return
+        prospect = composite.prospect
         usable = {one: a for one, a in self._advertisements.items() if a.profile.inside is None or one in self._able}
 
         def able() -> None:
-            held = composite.runner is not None or composite.runtime.activation.holds
-            if not held and self.living.get(component) is composite:
+            begun = composite.prospect is not prospect or composite.runtime.activation.holds
+            if not begun and self.living.get(component) is composite:
                 self._pauses[component] = min(2 * self._pause(composite), LONGEST_LOOK)
                 self._end(component)
 
-        composite.prospect.look(usable, able)
+        prospect.look(usable, able)
 
     def _request(self, inside: Inside, values: Mapping[str, Term], fed: Callable[[], Set[str]]) -> RunRequest:
         component, composer = inside.composite, inside.composer_with(values)

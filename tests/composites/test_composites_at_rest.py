@@ -19,7 +19,7 @@ BASE = {
         sc:hasParameter [ sc:name "speed" ; sc:parameterType :Speed ] .
         :driving a sc:Template ; sc:parameter :speed ; sc:roles ( :pilot :motor ) ;
             sc:hasInput [ sc:name "goal" ; sc:signalType :Goal ; sc:of :pilot ] .
-        :speed a sc:Parameter ; sc:name "speed" .
+        :speed a sc:Parameter ; sc:name "speed" ; sh:nodeKind sh:Literal .
         :pilot a sc:Role ; sh:class :Pilot ; sc:feeds :motor ;
             sc:sets [ sc:parameterType :Speed ; sc:value :speed ] .
         :motor a sc:Role ; sh:class :Motor .""",

@@ -9,9 +9,10 @@ import pytest
 from selfconf.api.task import template
 from selfconf.composites import InsideOfComposite
 from selfconf.composites.inside_of_composite import REPLACING
-from selfconf.deployment.components.audits import AUDIT
+from selfconf.deployment.components.audits import AUDIT, Audits
 from selfconf.discovery import EcologyView
-from selfconf.model.run_event import ComponentActivated, ComponentLost, InputConnected
+from selfconf.errors import SelfconfError
+from selfconf.model.run_event import ComponentActivated, ComponentLost, ComponentReleased, InputConnected
 from selfconf.model.term import IRI
 from selfconf.testing import MemoryEcology
 from selfconf.testing.memory_ecology import ECOLOGY_NAME, REPORT_LAG
@@ -53,7 +54,10 @@ def test_what_fails_inside_is_repaired_inside_and_the_task_outside_hears_nothing
     assert house.acting() == {"c2", "t1", "h1"}
 
 
-def test_who_follows_a_composite_is_told_when_another_component_stands_behind_its_output() -> None:
+def test_who_follows_a_composite_is_told_when_another_component_stands_behind_its_output(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(Audits, "go_on", lambda audits: None)  # it is told, and does not find out
     house = House()
     run = house.run(SERVICE)
     house.crash("t1")
@@ -82,6 +86,19 @@ def test_an_output_is_told_to_lack_what_stood_behind_it_half_a_second_after_the_
         assert inside.issued["pose"]
         house.ecology.advance(0.6 * REPLACING)
     assert inside.issued == {"pose": ()}
+
+
+def test_what_an_inside_reports_late_says_nothing_of_the_one_that_runs_now() -> None:
+    house = House()
+    run = house.run(SERVICE)
+    inside = house.ecology._composites.living[SERVED]
+    assert inside.runner is not None
+    before = inside.runner.request
+    run.stop()
+    house.ecology.run(template(TASK)).started()
+    before.report(ComponentReleased(IRI("urn:c:t1"), "", ""))
+    house.ecology.advance(2 * REPLACING)
+    assert inside.issued["pose"]
 
 
 def test_an_output_that_falls_silent_inside_is_repaired_inside() -> None:
@@ -126,6 +143,18 @@ def test_when_the_inside_is_refused_the_composite_fails_with_the_reason() -> Non
     assert event.detail == "its inside is refused: no component is eligible for the role eye"
     assert run.ended
     assert house.acting() == set()
+
+
+def test_a_composite_says_what_is_wrong_with_the_search_for_its_inside() -> None:
+    house = House()
+    run = house.run(SERVICE)
+    inside = house.ecology._composites.living[SERVED]
+    assert inside.runner is not None
+    inside.runner._give_up(SelfconfError("the shape of the role eye cannot be judged"))
+    house.ecology.advance(3.0)
+    assert [event.detail for event in run.events if isinstance(event, ComponentLost)] == [
+        "its inside is refused: the shape of the role eye cannot be judged"
+    ]
 
 
 OPTIONAL_HINT = SERVICE.replace(":Hint ] ; sc:hasOutput", ":Hint ; sc:optional true ] ; sc:hasOutput", 1)
@@ -210,6 +239,13 @@ def test_composites_nest_and_what_moves_inside_the_inner_one_is_told_outside_the
     house.crash("c2")
     (_, failed) = [event for event in run.events if isinstance(event, ComponentLost)]
     assert failed.detail.startswith("its inside is refused: no component is eligible for the role part")
+
+
+def test_a_composite_is_not_inside_of_itself_where_something_else_can_be() -> None:
+    house = House()
+    outer = OUTER.replace(":KIND", ":Positions").replace(":Whole ;", ":Whole, :Positions ; sc:preference 9 ;")
+    run = house.run(SERVICE, outer, task=TASK.replace(":Positions", ":Whole"))
+    assert (run.running, house.navigator.source) == (True, "t1")
 
 
 @pytest.mark.parametrize(

@@ -8,17 +8,21 @@ from pathlib import Path
 import pytest
 
 from selfconf import files
+from selfconf.api.reading import described_in
 from selfconf.bus.memory import Faults
+from selfconf.composites import Composites
 from selfconf.composites.living_composites import LOOK_AT_REFUSED, NEXT_LIFE, OTHER_LIFE
 from selfconf.configurator import Call, Phase
 from selfconf.deployment import TaskRunner
 from selfconf.deployment.components.calling import CALL
 from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.term import IRI
+from selfconf.protocol.codec import encode
 from selfconf.rdf.advertisements import Advertisement
 from tests.deployment.simulated import slow_code
 from tests.lab import PREFIXES as LAB_PREFIXES
 from tests.lab import Lab, iri, write_advertisements
+from tests.sdk.stage import US, reserve
 
 EYE = {
     "eye": """:eye a sc:Component, :Eye ; sc:hasOutput [ sc:name "seen" ; sc:signalType rob:Text ] ;
@@ -111,6 +115,37 @@ def test_a_task_that_is_refused_as_another_holds_what_is_inside_says_which_one(t
     assert low.state.phase is Phase.REFUSED
     (lost,) = low.losses.values()
     assert "; lens-1: the task look (priority 1, configurator " in lost
+
+
+def test_the_inside_of_a_composite_takes_only_what_its_own_site_advertises(tmp_path: Path) -> None:
+    better = EYE["lens"].replace(":lens-1 a", ":lens-0 sc:preference 9 ; a")
+    lab = Lab(tmp_path, advertised=EYE | {"better": better})
+    lab.site("home", *EYE)
+    lab.site("inn", "better")
+    for name in ("lens", "better", "low"):
+        lab.component(name)
+    lab.let_pass(3.0)
+    assert looking(lab, "Low", 0).state.phase is Phase.RUNNING
+    assert lab.active() == {"lens", "low"}
+
+
+def test_a_composite_lives_once_however_often_its_site_reads_the_same(tmp_path: Path) -> None:
+    lab = Lab(tmp_path)
+    advertised = _advertised(write_advertisements(tmp_path / "home", advertisements=EYE))
+    composites, lives = Composites(lab.network.node(), "lab", described_in, lab.complaints.append), list[str]()
+    lab.network.node().watch(lab.keys.lives(iri("eye")), lambda key, alive: lives.append(key))
+    for _ in range(2):
+        composites.refresh(advertised)
+    lab.let_pass(5.0)
+    assert len(lives) == 1
+
+
+def test_why_a_composite_does_not_live_is_said_once(tmp_path: Path) -> None:
+    lab = eye(tmp_path, {name: text for name, text in EYE.items() if name != "lens"})
+    assert len(lab.complaints) == 1
+    lab.composites["home"].refresh(_advertised(tmp_path / "home"))
+    lab.let_pass(3.0)
+    assert len(lab.complaints) == 1
 
 
 @pytest.mark.parametrize("fails", [True, False])
@@ -307,11 +342,34 @@ def test_a_composite_whose_inside_lacks_what_its_own_task_holds_is_tried_again_a
         lab.let_pass(300.0)
         tried.append(len(lab.acts("lost")) - before)
     assert (low.state.phase, low.configuration) == (Phase.REFUSED, None)
-    assert tried[0] < 300.0 / LOOK_AT_REFUSED
+    assert max(tried[2:]) < tried[0] < 300.0 / LOOK_AT_REFUSED
     assert max(tried[2:]) <= 300.0 / TRY_AGAIN / 4, "the pause of the task doubles as well, while nothing begins anew"
     low.stop()
     lab.let_pass(3.0)
     assert looking(lab, "High", 0).state.phase is Phase.RUNNING
+    lab.runtimes["lens"].fail("it is dirty")
+    lab.let_pass(3.0)
+    lab.crash("lens")
+    lab.component("lens")
+    before = list(lab.composites["home"].living.values())
+    lab.let_pass(2 * LOOK_AT_REFUSED)
+    assert list(lab.composites["home"].living.values()) != before, "it has run, so the pause is as short as the first"
+
+
+def test_a_composite_that_is_reserved_by_now_begins_no_new_life(tmp_path: Path) -> None:
+    lab = eye(tmp_path)
+    middle, composites = looking(lab, "Middle", 1, "Lens"), lab.composites["home"]
+    assert looking(lab, "Low", 0).state.phase is Phase.REFUSED
+    middle.stop()
+    lab.let_pass(3.0)
+    before = list(composites.living.values())
+    caller = lab.network.node()
+    caller.announce(US)
+    caller.ask(lab.keys.call(iri("eye"), "reserve"), encode(reserve()), 1.0, lambda replies: None)
+    lab.let_pass(0.1)
+    composites.refresh(composites._advertisements)
+    lab.let_pass(3.0)
+    assert list(composites.living.values()) == before
 
 
 def test_a_composite_whose_inside_was_refused_once_lives_on_after_one_that_has_run(tmp_path: Path) -> None:
