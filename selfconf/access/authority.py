@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -164,7 +165,29 @@ class Authority(KeysFolder):
                 if name != MAIN:  # the folder itself is to be of use in any case
                     self._check_name(principal)
                 self._issued(principal, folder, new_key(), (), DAYS)
+                self._forget_expired()
         return replace(KeysFolder(folder).credentials(kinds), folder=self.path)
+
+    def _forget_expired(self) -> None:
+        """Remove what has expired of programs that were given this folder: a site of a random name comes with each run.
+
+        What was issued into other folders stays on record.
+        """
+        own = self.path / "own"
+        for folder in own.iterdir():
+            if folder.name not in KNOWN and self._has_expired(folder / f"{OWN}.pem"):
+                shutil.rmtree(folder, ignore_errors=True)
+        for noted in (self.path / "issued").glob("*.folder"):
+            issued = noted.with_suffix(".pem")
+            if Path(os.fsdecode(content(noted))).parent == own.resolve() and self._has_expired(issued):
+                issued.unlink(missing_ok=True)
+                noted.unlink(missing_ok=True)
+
+    def _has_expired(self, path: Path) -> bool:
+        """Whether there is a certificate in a file that has expired."""
+        with suppress(AuthorError):
+            return self._expired(read_certificate(path))
+        return False
 
     def _shown(self, ecology: str) -> Iterable[Certificate]:
         """What was shown to sites of an ecology, and what programs that are given this folder need not show."""

@@ -4,7 +4,8 @@
     authority.key     its key, which makes certificates for any name, so it stays on one machine
     issued/           the certificates it has issued, by common name and serial, and into which folder it wrote each
     certificate.pem   the certificate of the holder of this folder, with certificate.key
-    own/NAME/         in the folder of an authority: the certificates of programs that are given the folder itself
+    own/NAME/         in the folder of an authority: the certificates of programs that are given the folder itself;
+                      these and their records are removed once they have expired
     components.pem    the authority of one host, with components.key: it issues to the components that its sites start
     components/NAME/  their certificates, each for all components of one process
     admitted/NAME/    certificates that others have shown to the sites of an ecology

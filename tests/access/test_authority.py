@@ -56,6 +56,27 @@ def test_what_is_half_over_is_renewed_by_itself(authority: Authority, monkeypatc
     assert serial() != first
 
 
+def test_what_has_expired_of_programs_with_the_folder_of_the_authority_is_removed(
+    authority: Authority, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each run with advertisements of its own is a site of a random name."""
+
+    def kept() -> tuple[set[str], set[str]]:
+        issued = {path.stem.partition("~")[0] for path in (authority.path / "issued").iterdir()}
+        return {path.name for path in (authority.path / "own").iterdir()}, issued
+
+    authority.issue(ALICE, tmp_path / "alice")
+    for number in range(3):
+        authority.credentials((SITE,), f"s{number}")
+    mains, runs = {"conf.main", "read.main"}, {"site.s0", "site.s1", "site.s2"}
+    assert kept() == (mains | runs, mains | runs | {"read.alice"})
+    later = certificates._now() + timedelta(days=8)
+    monkeypatch.setattr(certificates, "_now", lambda: later)
+    authority.credentials((SITE,), "s3")
+    assert kept() == (mains | {"site.s3"}, {"site.s3", "read.alice"})
+    assert authority.credentials((SITE,), "s0").name == "site.s0"
+
+
 def test_what_was_issued_while_the_clock_was_ahead_is_made_anew(
     authority: Authority, monkeypatch: pytest.MonkeyPatch
 ) -> None:
