@@ -19,7 +19,7 @@ from selfconf.model.partition import Mention
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest, SelfTest
-from selfconf.rdf.shacl import ValueTest, exclude
+from selfconf.rdf.shacl import ValueTest, exclude, passes_all
 from selfconf.rdf.tasks import shape_statements, suitable
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, SH, TYPE
@@ -138,8 +138,8 @@ class StatedOnPath:
         return frozenset(filter(self.passes, _NONE.union(*lists).intersection(*lists))) if lists else None
 
     def passes(self, value: Term) -> bool:
-        """Whether a value is like what each single value has to be."""
-        return all(one.passes(value) for one in self._each)
+        """Whether a value is like what each single value has to be, and that is found in time."""
+        return passes_all(self._each, value)
 
     @property
     def contradictory(self) -> bool:

@@ -191,6 +191,15 @@ class Count:
 RoleTest = ClassTest | SelfTest | PropertyTest | ParameterTest | Count
 
 
+def obstacles(tests: Iterable[RoleTest], profile: Profile, hierarchy: Hierarchy) -> list[Obstacle]:
+    """Everything by which some tests keep a component out, in their order; only that, where it cannot be judged."""
+    try:
+        found = [test.obstacle(profile, hierarchy) for test in tests]
+    except MatchTooCostly as error:
+        return [NotJudged(str(error))]
+    return [reason for reason in found if reason is not None]
+
+
 @immutable
 class CompiledRole:
     """The tests of a role, and whether they say all that its shape says."""
@@ -216,11 +225,7 @@ class CompiledRole:
 
     def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[Obstacle]:
         """Everything that keeps a component out, in the order of the shape; only that, where it cannot be judged."""
-        try:
-            found = [test.obstacle(profile, hierarchy) for test in self.tests]
-        except MatchTooCostly as error:
-            found = [NotJudged(str(error))]
-        yield from (reason for reason in found if reason is not None)
+        yield from obstacles(self.tests, profile, hierarchy)
 
     def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
         """For each free parameter that the component constrains, the values it allows (perhaps none)."""

@@ -15,7 +15,7 @@ from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Output, Profile
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.eligibility.logical_constraints import MOST_COMBINATIONS
-from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest
+from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest, obstacles
 from selfconf.rdf.vocabulary import SC
 
 _SUPPOSED = IRI("urn:selfconf:supposed")
@@ -40,9 +40,7 @@ def could_conform(
         for path, stated in known.items()
     ]
     tried = list(islice(product(*choices), MOST_COMBINATIONS + 1))
-    return len(tried) > MOST_COMBINATIONS or any(
-        all(test.obstacle(_stating(some), hierarchy) is None for test in asked) for some in tried
-    )
+    return len(tried) > MOST_COMBINATIONS or any(not obstacles(asked, _stating(some), hierarchy) for some in tried)
 
 
 def _known(output: Output, stated: IRI, named: bool) -> StatedValues:

@@ -2,12 +2,12 @@
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
 makes tests of the constraints that can be; two `exclude` each other if no value passes both, and one may be
-`passed_by_none` at all. `misfit`, `unfit`, `of_values`, `said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`,
-`ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and `ILL_FORMED` say what may stand as a value of SHACL's own
-properties. `component_parameters` are the predicates by which a document constrains by components of its own. `pattern`
-is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is `MatchTooCostly`.
-`shacl_pattern` is one with the flags of SHACL, and `pattern_fault` why a text is none. Judging by pySHACL is
-`selfconf.rdf.conformance`, which loads it.
+`passed_by_none` at all. `passes_all` asks for a value that passes several. `misfit`, `unfit`, `of_values`,
+`said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
+`ILL_FORMED` say what may stand as a value of SHACL's own properties. `component_parameters` are the predicates by which
+a document constrains by components of its own. `pattern` is a regular expression that a text cannot make expensive
+(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL, and
+`pattern_fault` why a text is none. Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, pattern_fault, shacl_pattern
@@ -27,7 +27,7 @@ from selfconf.rdf.shacl.shape_syntax import (
     said_twice,
     unfit,
 )
-from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude, passed_by_none
+from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude, passed_by_none, passes_all
 
 __all__ = [
     "BESIDES",
@@ -49,6 +49,7 @@ __all__ = [
     "misfit",
     "of_values",
     "passed_by_none",
+    "passes_all",
     "pattern",
     "pattern_fault",
     "said_alone",

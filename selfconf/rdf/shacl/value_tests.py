@@ -15,7 +15,7 @@ from types import ModuleType
 from selfconf.model.immutable import immutable
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
-from selfconf.rdf.shacl.patterns import pattern_fault, shacl_pattern
+from selfconf.rdf.shacl.patterns import MatchTooCostly, pattern_fault, shacl_pattern
 from selfconf.rdf.vocabulary import RDFS, SH, XSD
 
 _KINDS: Mapping[IRI, tuple[type, ...]] = {
@@ -59,6 +59,14 @@ class ValueTest:
     def passes(self, value: Term) -> bool:
         """Whether a value is as wanted. Raises MatchTooCostly for a pattern that takes too long to find out about."""
         return _passes(self, value)
+
+
+def passes_all(tests: Iterable[ValueTest], value: Term) -> bool:
+    """Whether a value passes all of some tests, and that is found in time."""
+    try:
+        return all(test.passes(value) for test in tests)
+    except MatchTooCostly:
+        return False
 
 
 @immutable

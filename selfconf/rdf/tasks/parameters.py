@@ -13,7 +13,7 @@ from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, Shape
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
 from selfconf.model.wording import is_one_line
-from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters
+from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, component_parameters, passes_all
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.tasks.roles import mentions
 from selfconf.rdf.turtle import Document
@@ -90,7 +90,7 @@ def _misfits(parameter: Parameter, values: Iterable[Term], document: Document) -
     """The values without blank nodes that do not conform to a parameter, each with the reason."""
     constraints = _constraints(parameter.iri, document)
     tests, covered = compiled(constraints)
-    left = [value for value in values if covered != constraints.keys() or not _passes(tests, value)]
+    left = [value for value in values if covered != constraints.keys() or not passes_all(tests, value)]
     found = _judged(parameter, left, document) if constraints and left else {}
     if SH.message in constraints:
         return found
@@ -103,16 +103,8 @@ def suitable(parameter: Parameter, values: frozenset[Term], document: Document) 
     tests, covered = compiled(constraints)
     values = frozenset([value for value in values if not isinstance(value, BlankNode)])
     if covered == constraints.keys():
-        return frozenset([value for value in values if _passes(tests, value)])
+        return frozenset([value for value in values if passes_all(tests, value)])
     return values - _judged(parameter, values, document).keys()
-
-
-def _passes(tests: Iterable[ValueTest], value: Term) -> bool:
-    """Whether a value passes all tests, and that is found in time."""
-    try:
-        return all(test.passes(value) for test in tests)
-    except MatchTooCostly:
-        return False
 
 
 def _worded(

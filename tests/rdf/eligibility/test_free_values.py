@@ -247,6 +247,17 @@ def test_of_the_values_that_candidates_state_those_that_fail_another_test_are_to
     assert found.mentions[0] == (Mention(iri("par"), never=values("Astrid")),)
 
 
+def test_a_value_of_which_it_takes_too_long_to_find_out_is_like_one_that_fails() -> None:
+    other = """
+        :t a sc:Template ; sc:roles ( :role :any ) ; sc:parameter :par . :par a sc:Parameter ; sc:name "par" .
+        :any a sc:Role ; sh:property [ sh:path rob:support ; sh:in ( :par ) ] .
+    """
+    costly = f"{'a' * 60}!"
+    shape = rf':role a sc:Role ; {ONE_OF} ; sh:property [ sh:path rob:support ; sh:pattern "^(?=(\\w+)+$)" ] .'
+    found = partitioner(other + shape).partition(read([f':here a sc:Component, :Other ; rob:support "{costly}" .']))
+    assert found.mentions[0] == (Mention(iri("par"), never=frozenset((Literal(costly),))),)
+
+
 @pytest.mark.parametrize(
     "shape",
     [

@@ -69,6 +69,12 @@ def test_a_unit_is_known_where_the_input_asks_for_one(said: str, unit: IRI | Non
     assert possible(said, unit=unit) is expected
 
 
+def test_what_takes_too_long_to_find_out_could_not_conform() -> None:
+    shape = f"{OF_UNIT} ; sh:pattern '^urn:(?=([a-z:]+)+$)'"
+    assert possible(shape, unit=UNIT)
+    assert not possible(shape, unit=IRI(f"urn:{'a' * 60}!"))
+
+
 def test_of_what_is_not_known_it_states_what_is_asked_for() -> None:
     assert possible("sh:path <urn:x:latency> ; sh:has 3")
     assert possible("sh:path <urn:x:latency> ; sh:most 0")

@@ -21,18 +21,31 @@ from tests.lab import PREFIXES, iri
     [
         ("sh:minCount 'one'", "minCount"),
         ("sh:closed 1", "closed"),
+        ("sh:closed :always", "closed"),
         ("sh:in 5", "in"),
         ("sh:class 'A'", "class"),
+        ("sh:class [ ]", "class"),
         ("sh:nodeKind :Kind", "nodeKind"),
         ("sh:property [ sh:class :A ]", "property"),
         ("sh:pattern '('", "pattern"),
         ("sh:pattern 'a{99999999999}'", "pattern"),
         ("sh:pattern 3", "pattern"),
+        ("sh:pattern :p", "pattern"),
         ("sh:or ( )", "or"),
         ("sh:languageIn ( :en )", "languageIn"),
+        ("sh:languageIn ( 'en' 5 )", "languageIn"),
         ("sh:ignoredProperties ( :a 5 )", "ignoredProperties"),
         ("sh:node 'x'", "node"),
         ("sh:node [ sh:path :p ]", "node"),
+        ("sh:path 'p'", "path"),
+        ("sh:path ( )", "path"),
+        ("sh:path ( :p )", "path"),
+        ("sh:path ( :p 5 )", "path"),
+        ("sh:path [ ]", "path"),
+        ("sh:path [ rdfs:label :p ]", "path"),
+        ("sh:path [ sh:inversePath 5 ]", "path"),
+        ("sh:path [ sh:inversePath :p ; sh:zeroOrMorePath :q ]", "path"),
+        ("sh:path [ sh:alternativePath ( :p ) ]", "path"),
     ],
 )
 def test_a_value_that_cannot_stand_there_is_named_with_its_statement(said: str, predicate: str) -> None:
@@ -72,6 +85,11 @@ def test_what_a_shape_says_once_is_what_the_shape_of_shapes_wants_once() -> None
     shapes = graph.subjects(SHACL.maxCount, rdflib.Literal(1))
     once = {IRI.unchecked(path) for shape in shapes for path in graph.objects(shape, SHACL.path)}
     assert {one for one in once if one in SH} - PATH_FORMS - {SH.alternativePath, SH.path} == STATED_ONCE
+
+
+def test_what_a_pattern_means_depends_on_its_flags() -> None:
+    document = parse(f"{PREFIXES}:r sh:pattern '(' ; sh:flags 'q' .", "r.ttl")
+    assert misfit(document, list(document.triples()), frozenset()) is None
 
 
 def test_of_a_constraint_in_sparql_the_query_is_named() -> None:

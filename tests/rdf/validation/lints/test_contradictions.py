@@ -152,6 +152,7 @@ def test_a_contradiction_is_found_wherever_its_two_sides_stand(shape: str) -> No
         "sh:property [ sh:path :p ; sh:minCount 1 ] ; sh:not [ sh:path :p ; sh:minCount 2 ]",
         "sh:property [ sh:path :p ; sh:in ( 1 01 ) ; sh:minCount 2 ]",
         "sh:property [ sh:path :p ; sh:hasValue 01 ; sh:pattern '^0' ]",
+        f"sh:property [ sh:path :p ; sh:hasValue '{'a' * 60}!' ; sh:pattern '^(?=([a-z]+)+$)' ]",
         "sh:or ( [ sh:nodeKind sh:Literal ] [ sh:class :A ] )",
         f"sh:closed true ; sh:ignoredProperties ( {TYPE} sc:hasInput )",
         "sh:property [ sh:path sc:preference ; sh:hasValue 5 ]",
