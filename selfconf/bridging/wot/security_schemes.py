@@ -71,7 +71,9 @@ def proof_of_identity(name: str, definition: Any, told: Mapping[str, str], where
     field = scheme.get("name", "Authorization" if place == "header" else "")
     if not isinstance(field, str) or not _is_token(field):
         raise UnusableFormError(f"its security scheme {name[:40]!r} does not say the name of its {place}")
-    return ProofOfIdentity(place, field, _AS_TEXT[kind](told))
+    # The word before a bearer token is that of a header; a query has the token alone (RFC 6750, section 2.3).
+    alone = kind == "bearer" and place != "header"
+    return ProofOfIdentity(place, field, told["token"] if alone else _AS_TEXT[kind](told))
 
 
 def _is_token(name: str) -> bool:

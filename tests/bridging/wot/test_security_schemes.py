@@ -17,6 +17,7 @@ TOLD = {"username": "me", "password": "secret", "token": "secret", "key": "secre
         ({"scheme": "basic"}, "header", ("Authorization", "Basic bWU6c2VjcmV0")),
         ({"scheme": "bearer"}, "header", ("Authorization", "Bearer secret")),
         ({"scheme": "bearer", "name": "X-T"}, "header", ("X-T", "Bearer secret")),
+        ({"scheme": "bearer", "in": "cookie", "name": "t"}, "cookie", ("Cookie", "t=secret")),
         ({"scheme": "apikey", "name": "api"}, "query", None),
         ({"scheme": "apikey", "in": "cookie", "name": "id"}, "cookie", ("Cookie", "id=secret")),
     ],
@@ -26,6 +27,12 @@ def test_a_scheme_adds_what_it_asks_for(definition: Any, place: str, header: Any
     assert proof is not None
     assert (proof.place, proof.header) == (place, header)
     assert "secret" not in repr(proof)
+
+
+def test_a_bearer_token_stands_alone_in_a_query() -> None:
+    proof = proof_of_identity("s", {"scheme": "bearer", "in": "query", "name": "access_token"}, TOLD, "http://a")
+    assert proof is not None
+    assert (proof.place, proof.name, proof.text) == ("query", "access_token", "secret")
 
 
 def test_no_security_adds_nothing() -> None:
