@@ -6,7 +6,8 @@
 
 For a bridge, which lives as what it describes: `gather` finds the `SourceDocument`s, `document_at` makes one of what
 a URL has answered, asked for what is `ACCEPTED`, within `FETCH_SECONDS` and up to `LARGEST_SOURCE` bytes.
-`described_things` reads each `DescribedThing` of them and notes in an `ImportLedger` what it leaves out;
+`described_things` reads each `DescribedThing` of them and notes in an `ImportLedger` what it leaves out, of which
+`THINGS_MISSED` stands for whole things;
 `one_or_several` are the values of a member of its description, and `event_ports` names the outputs of its events. An
 `ImportedComponent` with its `ImportedPort`s and `ImportedOperation`s is a component; as an `ImportedDocument`,
 `described_text` writes it as Turtle, in which a `NestedNode` has no name and a `TermList` is a list. `NodeReader` makes
@@ -37,7 +38,7 @@ from selfconf.importing.naming import slug
 from selfconf.importing.ros2 import ROS2, InterfaceKind, NodeInterface, NodeReader, feedback_port
 from selfconf.importing.sources import ACCEPTED, FETCH_SECONDS, LARGEST_SOURCE, SourceDocument, document_at, gather
 from selfconf.importing.turtle_text import described_text
-from selfconf.importing.wot import DescribedThing, described_things, event_ports, one_or_several
+from selfconf.importing.wot import THINGS_MISSED, DescribedThing, described_things, event_ports, one_or_several
 
 __all__ = [
     "ACCEPTED",
@@ -45,6 +46,7 @@ __all__ = [
     "IMPORT_FORMATS",
     "LARGEST_SOURCE",
     "ROS2",
+    "THINGS_MISSED",
     "DescribedThing",
     "FileState",
     "ImportLedger",

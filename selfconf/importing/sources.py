@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 from codecs import BOM_UTF8
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from http.client import HTTPException, HTTPResponse
 from pathlib import Path
 from time import monotonic
@@ -30,6 +30,7 @@ FETCH_SECONDS = 20.0
 """How long a URL may take to answer in full."""
 ACCEPTED = "application/td+json, application/tm+json, application/ld+json, application/json, text/turtle, */*;q=0.1"
 _URL = re.compile(r"https?://", re.IGNORECASE)
+_NEXT = re.compile(r';\s*rel\s*=\s*(next(?![\w-])|"([^"]*\s)?next[\s"])', re.IGNORECASE)
 Unreadable = Callable[[AuthorError], None]
 """Receives what is wrong with a source that cannot be read; the others are imported all the same."""
 
@@ -41,6 +42,8 @@ class SourceDocument:
     shown: str
     name: str
     octets: bytes
+    has_next: bool = False
+    """Whether it is one of several pages, of which another follows."""
 
     def text(self) -> str:
         """The text of the document, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
@@ -104,7 +107,7 @@ def _fetched(url: str) -> SourceDocument:
     deadline = monotonic() + FETCH_SECONDS
     try:
         with http_opener().open(Request(url, headers={"Accept": ACCEPTED}), timeout=FETCH_SECONDS) as reply:
-            octets = _body(url, reply, deadline)
+            octets, links = _body(url, reply, deadline), reply.headers.get_all("Link", ())
     except HTTPError as error:
         error.close()
         where = error.headers.get("Location")
@@ -112,13 +115,14 @@ def _fetched(url: str) -> SourceDocument:
         raise AuthorError(f"{url} answers {error.code}{moved}") from None
     except (OSError, HTTPException, ValueError) as error:
         raise AuthorError(f"cannot fetch {url}: {getattr(error, 'reason', None) or error}") from None
-    return document_at(url, octets)
+    return document_at(url, octets, links)
 
 
-def document_at(url: str, octets: bytes) -> SourceDocument:
-    """What a URL has answered, named after the end of its path."""
+def document_at(url: str, octets: bytes, links: Iterable[str] = ()) -> SourceDocument:
+    """What a URL has answered, named after the end of its path; `links` are its headers `Link` (RFC 8288)."""
     parts = urlsplit(url)
-    return SourceDocument(url, parts.path.rstrip("/").rpartition("/")[2] or parts.hostname or "thing", octets)
+    name = parts.path.rstrip("/").rpartition("/")[2] or parts.hostname or "thing"
+    return SourceDocument(url, name, octets, any(_NEXT.search(link) for link in links))
 
 
 def _body(url: str, reply: HTTPResponse, deadline: float) -> bytes:

@@ -14,6 +14,12 @@ from selfconf.errors import AuthorError
 from selfconf.importing import sources
 from selfconf.importing.sources import SourceDocument, gather
 
+PAGE_LINKS = {
+    "/page1": '</page2>; rel="next"',
+    "/page2": '</page1>; rel=prev, </page3>; title="3"; rel="last next"',
+    "/page3": '</next>; rel="canonical"; title="next"',
+}
+
 
 class Things(BaseHTTPRequestHandler):
     """A thing that describes itself, one that has moved, and one whose description does not end."""
@@ -27,6 +33,10 @@ class Things(BaseHTTPRequestHandler):
             self.send_response(200)
             self.end_headers()
             self.wfile.write(b"{}")
+        elif self.path.startswith("/page"):
+            self.send_response(200)
+            self.send_header("Link", PAGE_LINKS[self.path])
+            self.end_headers()
         elif self.path == "/half.json":
             self.send_response(200)
             self.send_header("Content-Length", "9")
@@ -128,6 +138,11 @@ def test_text_that_is_not_utf_8_is_named_with_its_place() -> None:
 def test_a_url_is_fetched_and_named_after_its_last_part(server: str) -> None:
     (found,), errors = gathered(f"{server}/lamp.json")
     assert (found.name, found.octets, errors) == ("lamp.json", b"{}", [])
+
+
+def test_of_a_url_that_answers_a_page_it_is_known_whether_another_follows(server: str) -> None:
+    found, errors = gathered(*(f"{server}{path}" for path in PAGE_LINKS))
+    assert ([one.has_next for one in found], errors) == ([True, True, False], [])
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from yarl import URL
 
 from selfconf.bridging.wot.credentials import origin
 from selfconf.bridging.wot.forms import JSON, ThingForm
-from selfconf.importing import LARGEST_SOURCE
+from selfconf.importing import ACCEPTED, LARGEST_SOURCE, SourceDocument, document_at
 from selfconf.model.immutable import immutable
 
 CONNECTIONS = 32
@@ -95,10 +95,11 @@ class ThingClient:
         for session in (self._requests, self._followed, self._actions):
             await session.close()
 
-    async def fetch(self, form: ThingForm, seconds: float) -> bytes:
-        """The bytes of an answer, whatever they say, within so many seconds. Raises ThingError."""
+    async def fetch(self, url: str, seconds: float) -> SourceDocument:
+        """What a URL answers, whatever that says, within so many seconds. Raises ThingError."""
+        form = ThingForm(url, "GET", ACCEPTED)
         async with self._asked(self._requests, form, seconds) as answer:
-            return await self._body(form, answer)
+            return document_at(url, await self._body(form, answer), answer.headers.getall("Link", ()))
 
     async def read(self, form: ThingForm) -> ThingAnswer:
         """What a thing answers. Raises ThingError."""

@@ -20,20 +20,20 @@ from urllib.parse import urlsplit
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.wot.credentials import ThingCredentials, origin
-from selfconf.bridging.wot.forms import ThingForm, ThingForms
+from selfconf.bridging.wot.forms import ThingForms
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
 from selfconf.bridging.wot.thing_client import NO_ANSWER, ThingClient, ThingError, ThingLimits
 from selfconf.bridging.wot.thing_component import ThingComponent
 from selfconf.errors import AuthorError
 from selfconf.importing import (
-    ACCEPTED,
     FETCH_SECONDS,
+    THINGS_MISSED,
     DescribedThing,
     ImportedDocument,
     ImportLedger,
+    Omission,
     SourceDocument,
     described_things,
-    document_at,
     gather,
 )
 from selfconf.model.immutable import immutable, replace
@@ -131,16 +131,17 @@ class ThingWorld:
         fetched: list[SourceDocument] = []
         if is_url(source):
             try:
-                octets = await self._client.fetch(ThingForm(source, "GET", ACCEPTED), FETCH_SECONDS)
+                fetched.append(await self._client.fetch(source, FETCH_SECONDS))
             except ThingError as error:
                 sentence = f"cannot fetch a description: {error}"
                 self._tell(sentence)
                 self._outages.setdefault(source, set()).add(sentence)
                 return None
             self._told -= self._outages.pop(source, set())  # the next time is news
-            fetched.append(document_at(source, octets))
-        found, unreadable = await asyncio.to_thread(_things_in, source, fetched)  # it may take long, but never waits
-        for wrong in unreadable:
+        found, unreadable, missed = await asyncio.to_thread(
+            _things_in, source, fetched
+        )  # it may take long, never waits
+        for wrong in (*unreadable, *missed):
             self._tell(str(wrong))
         spoiled = {wrong.file for wrong in unreadable}
         before = self._found.get(source, ())
@@ -319,8 +320,10 @@ def _kind(trouble: str) -> str:
     return trouble if kind.endswith(NO_ANSWER) else kind
 
 
-def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[DescribedThing], list[AuthorError]]:
-    """The things in what was fetched, else in a path, and what of it cannot be read."""
+def _things_in(
+    source: str, fetched: list[SourceDocument]
+) -> tuple[list[DescribedThing], list[AuthorError], list[Omission]]:
+    """The things in what was fetched, else in a path, what of it cannot be read, and where things are missing."""
     unreadable: list[AuthorError] = []
     ledger = ImportLedger(NAMESPACE, unreadable.append)
     documents = fetched or gather([source], DESCRIPTIONS, unreadable.append)
@@ -329,9 +332,14 @@ def _things_in(source: str, fetched: list[SourceDocument]) -> tuple[list[Describ
     # say that name themselves: two files may be called alike but for letters that no name has.
     was = {one.component: one.was for one in ledger.names.renamed if not one.was.startswith(NAMESPACE)}
     names = [was.get(thing.component.iri, thing.component.iri) for thing in found]
-    return [
-        replace(thing, component=replace(thing.component, iri=name)) for thing, name in zip(found, names, strict=True)
-    ], unreadable
+    return (
+        [
+            replace(thing, component=replace(thing.component, iri=name))
+            for thing, name in zip(found, names, strict=True)
+        ],
+        unreadable,
+        [one for one in ledger.omissions() if one.what in THINGS_MISSED],
+    )
 
 
 def _places(shown: str) -> list[str]:
@@ -343,7 +351,7 @@ def unreadable_file(source: str) -> AuthorError | None:
     """Why no thing is described in a source that is one file; None for any other source, which may fill later."""
     if is_url(source) or not Path(source).is_file():
         return None
-    found, unreadable = _things_in(source, [])
+    found, unreadable, _ = _things_in(source, [])
     return None if found or not unreadable else unreadable[0]
 
 

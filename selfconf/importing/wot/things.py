@@ -28,6 +28,10 @@ from selfconf.rdf.vocabulary import RDFS, SC
 
 THING = IRI("https://www.w3.org/2019/wot/td#Thing")
 AFFORDANCES = ("properties", "events", "actions")
+_NO_THING = "documents that describe no thing"
+_NEXT_PAGES = "the next pages of a directory"
+THINGS_MISSED = frozenset((_NO_THING, _NEXT_PAGES))
+"""What of the omissions stands for whole things."""
 _UNUSED = {
     "forms": ("forms", "they say how a thing is reached, an advertisement says what it is"),
     "security": ("security", "who may do what is not said by an advertisement"),
@@ -89,9 +93,11 @@ def _things(
     things = value if isinstance(value, list) else [value]
     if not things:
         ledger.leave_out("empty documents", "there is no thing in them", source)
+    if source.has_next:
+        ledger.leave_out(_NEXT_PAGES, "each is a source of its own, by its URL", source)
     for number, thing in enumerate(things, 1):
         if not isinstance(thing, dict) or not _describes_a_thing(thing):
-            ledger.leave_out("documents that describe no thing", "they have neither a title nor an affordance", source)
+            ledger.leave_out(_NO_THING, "they have neither a title nor an affordance", source)
             continue
         meanings = TermMeanings(thing.get("@context"))
         position = (str(number),) if len(things) > 1 else ()

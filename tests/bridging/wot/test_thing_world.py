@@ -43,6 +43,20 @@ def test_the_things_of_a_directory_come_and_go(thing_server: Start, living: Livi
         assert until(lambda: sum("answers 500" in one for one in found.complaints) == 2), "each time is news"
 
 
+def test_things_that_a_bridge_does_not_reach_in_its_sources_are_told(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    server.values.update({"/on": True, "/collection": {"@type": "ThingCollection", "members": [server.describe("b")]}})
+    page = json.dumps([server.describe("a")]).encode()
+    link = '</things?offset=1&limit=1>; rel="next"'
+    server.answers["/things"] = lambda handler: reply(handler, page, Link=link)
+    with bridging(living, tmp_path / "ads", f"{server.url}/things", f"{server.url}/collection") as found:
+        assert until(lambda: found.lives("a"))
+        assert until(lambda: found.complained("left out the next pages of a directory (1)"))
+        assert until(lambda: found.complained("left out documents that describe no thing (1)"))
+
+
 def test_a_thing_that_is_described_anew_is_another_component(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:
