@@ -49,6 +49,7 @@ def test_the_latest_lines_of_a_component_come_from_all_files(tmp_path: Path) -> 
     assert latest(path, "clock") == ["oldest", "older", "newest"]
     assert latest(path, CLOCK, 2) == ["older", "newest"]
     assert latest(path, LAMP, 1) == ["other, not the clock"]
+    assert texts(log_part(path, LogQuestion(position=log_part(path, LogQuestion(lines=100)).position))) == []
     assert latest(path, "nobody") == latest(path, lines=0) == latest(tmp_path / "none.log") == []
 
 
@@ -64,7 +65,7 @@ def test_each_line_comes_once_however_often_the_file_is_put_aside_between_two_lo
     log.close()
     found += texts(log_part(path, LogQuestion("clock", position=part.position)))
     assert found == [f"line {number}" for number in range(0, 40, 2)]
-    assert texts(log_part(path, LogQuestion(position="1:5"))) == latest(path)  # a file that is gone: all that is kept
+    assert texts(log_part(path, LogQuestion(position="1:90"))) == latest(path)  # a file that is gone: all that is kept
 
 
 def test_what_is_half_a_line_comes_when_it_is_whole(tmp_path: Path) -> None:
@@ -103,6 +104,18 @@ def test_lines_of_any_length_come_though_the_file_is_put_aside_before_they_were_
         if not part.more:
             break
     assert found == [*printed[:8], "y" * 700, printed[8]]
+
+
+def test_an_answer_is_bounded_also_where_each_of_the_files_is_small(tmp_path: Path) -> None:
+    log, found, part = LogFile(tmp_path / "a.log", most_bytes=300), list[str](), LogPart((), "1:0", more=True)
+    for number in range(20):
+        log.write(said(1, str(number)).encode())
+    kept = latest(log.path)
+    while part.more:
+        part = log_part(log.path, LogQuestion(position=part.position), most_bytes=400)
+        assert len(part.lines) <= 400 // len(said(1, "")) + 1
+        found += texts(part)
+    assert found == kept
 
 
 @pytest.mark.parametrize("position", ["x", "1", "-1:2", "1:2:3", "1:" + "9" * 99])

@@ -26,6 +26,8 @@ class Actor:
     def __init__(self, network: Network, life: str = "own") -> None:
         self.node: MemoryBus = network.node()
         self.life, self.active, self.answers, self.asked = life, True, True, 0
+        self.payload: bytes | None = None
+        """What it answers in place of how things are with it."""
         self.node.serve(KEYS.call(SLEEPER, "state"), self._answer)
         self.end_life = self.node.announce(KEYS.life(SLEEPER, life))
 
@@ -33,7 +35,7 @@ class Actor:
         self.asked += 1
         if self.answers:
             answer = CallAnswer(Verdict.DONE, SLEEPER, self.life, active=self.active)
-            request.reply(KEYS.call(SLEEPER, "state"), encode(answer))
+            request.reply(KEYS.call(SLEEPER, "state"), self.payload or encode(answer))
             request.finish()
 
 
@@ -94,6 +96,23 @@ def test_a_component_that_does_not_answer_for_longer_than_a_callback_may_take_ha
     assert "it hangs" in (watch.hanging() or "")
 
 
+def test_a_component_that_lives_late_is_watched_from_then_on(network: Network) -> None:
+    watch = watched(network)
+    passes(network, 5.0)
+    Actor(network).answers = False
+    passes(network, START_DEADLINE + BEYOND_DEADLINE + 3.0)
+    assert "it hangs" in (watch.hanging() or "")
+
+
+def test_what_is_no_answer_does_not_count_and_is_not_asked_for_at_once(network: Network) -> None:
+    watch, actor = watched(network), Actor(network)
+    actor.payload = b"?"
+    seconds = START_DEADLINE + BEYOND_DEADLINE + 3.0
+    passes(network, seconds)
+    assert "it hangs" in (watch.hanging() or "")
+    assert actor.asked <= seconds / QUESTION_ACTIVE
+
+
 def test_a_component_that_answers_again_in_time_does_not_hang(network: Network) -> None:
     watch, actor = watched(network), Actor(network)
     for _ in range(5):
@@ -138,6 +157,7 @@ def test_the_life_of_a_second_process_is_not_that_of_the_first(network: Network)
     passes(network, 1.0)
     assert watch.is_life("own")
     assert not watch.is_life("other")
+    assert not watch.was_life("other")
 
 
 def test_a_life_that_ends_begins_the_time_anew(network: Network) -> None:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import resource
+import shutil
 from pathlib import Path
 
 import pytest
 
 from selfconf.site.log_file import MOST_LOGS, PUT_ASIDE, LogFile, forget_oldest
+
+
+def open_files() -> int:
+    """How many files this process has open."""
+    return sum(1 for _ in Path("/proc/self/fd").iterdir())
 
 
 def test_lines_are_added_to_what_is_there(tmp_path: Path) -> None:
@@ -41,13 +46,29 @@ def test_a_full_file_is_put_aside_and_the_oldest_goes(tmp_path: Path) -> None:
 
 
 def test_where_nothing_can_be_written_that_is_said_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    (tmp_path / "file").write_text("")
-    log = LogFile(tmp_path / "file" / "home.log")
-    with caplog.at_level(logging.WARNING):
+    folder = tmp_path / "folder"
+    log = LogFile(folder / "home.log")
+    for _ in range(2):
+        caplog.clear()
+        folder.write_text("")
         log.write(b"one\n")
+        assert "cannot write" in caplog.text
         log.write(b"two\n")
-    assert len(caplog.records) == 1
-    assert "cannot write" in caplog.text
+        assert len(caplog.records) == 1
+        folder.unlink()
+        log.write(b"three\n")
+        shutil.rmtree(folder)
+
+
+def test_a_log_that_is_put_aside_or_removed_leaves_no_file_open(tmp_path: Path) -> None:
+    log, before = LogFile(tmp_path / "home.log", most_bytes=30), open_files()
+    for number in range(20):
+        log.write(f"line {number:04}\n".encode())
+        if number % 3 == 0:
+            log.path.unlink()
+    assert open_files() == before + 1
+    log.close()
+    assert open_files() == before
 
 
 def test_a_file_that_was_removed_or_moved_away_is_made_anew(tmp_path: Path) -> None:
@@ -92,7 +113,8 @@ def test_the_oldest_logs_of_sites_that_have_ended_are_forgotten(tmp_path: Path) 
         for suffix in ("", ".1"):
             path = tmp_path / f"home@s{number:02}.log{suffix}"
             path.write_text("line\n")
-            os.utime(path, ns=(number, number))
+            at = 100 - number if suffix else 100 + number
+            os.utime(path, ns=(at, at))
     (tmp_path / "other.txt").write_text("stays")
     forget_oldest(tmp_path, {"home@s00.log"})
     left = sorted(path.name for path in tmp_path.iterdir())

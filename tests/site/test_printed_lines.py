@@ -72,6 +72,15 @@ def test_a_line_without_end_is_broken(printed: PrintedLines, tmp_path: Path) -> 
     assert sum(len(text) for _, _, text in found) == 3 * CHUNK
 
 
+def test_a_line_without_end_is_kept_before_it_ends(printed: PrintedLines, tmp_path: Path) -> None:
+    reading, writing = os.pipe()
+    printed.follow(reading, "stdout", "urn:c", lambda: None)
+    os.write(writing, b"x" * (LONGEST_LINE + 1))
+    say(printed, b"later\n")
+    assert "x" in (tmp_path / "home.log").read_text()
+    os.close(writing)
+
+
 def test_a_character_that_comes_in_two_pieces_is_one(printed: PrintedLines, tmp_path: Path) -> None:
     ended = threading.Event()
     reading, writing = os.pipe()
@@ -137,3 +146,20 @@ def test_who_prints_very_much_has_to_wait_and_others_do_not(tmp_path: Path, monk
     found = kept(tmp_path)
     assert found.count(("stdout", "urn:much", "much")) == 4 * CHUNK // 5
     assert ("stdout", "urn:little", "little") in found
+
+
+def test_who_has_printed_very_much_is_read_again_a_second_later(
+    printed: PrintedLines, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(printed_lines, "MOST_A_SECOND", CHUNK)
+    say(printed, b"much\n" * (3 * CHUNK // 5))
+
+
+def test_nothing_is_done_while_nothing_is_printed(printed: PrintedLines, monkeypatch: pytest.MonkeyPatch) -> None:
+    say(printed, b"hello\n")
+    printed.note("urn:c", "started")
+    looks = list[None]()
+    say(printed, b"hello\n")  # what was said before is read by now
+    monkeypatch.setattr(printed, "_read_again", lambda: looks.append(None))
+    assert not threading.Event().wait(0.1)
+    assert len(looks) <= 1

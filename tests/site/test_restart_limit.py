@@ -56,6 +56,7 @@ def test_what_has_crashed_too_often_is_given_up_until_the_window_has_passed() ->
 def test_what_is_not_to_be_started_again_is_not() -> None:
     limit = RestartLimit()
     assert limit.wait(0.0, 0) == 0.0
+    assert limit.pause(0.0, 0) == FIRST_PAUSE, "it has not crashed"
     limit.crashed(1.0)
     assert limit.pause(1.0, 0) is None
     assert limit.wait(1.0, 0) == CRASH_WINDOW

@@ -95,7 +95,8 @@ def test_a_folder_that_cannot_be_seen_for_now_stays_and_one_that_has_gone_is_nam
     complaints: list[str] = []
     folder, real = tmp_path / "ads", Path.stat
     folder.mkdir()
-    shelf = Shelf([write_advertisements(folder, "tracker")], complaints.append)
+    other = write_advertisements(tmp_path / "other", "drive")
+    shelf = Shelf([write_advertisements(folder, "tracker"), other], complaints.append)
     shelf.refresh()
 
     def hidden(path: Path, **options: bool) -> os.stat_result:
@@ -106,6 +107,8 @@ def test_a_folder_that_cannot_be_seen_for_now_stays_and_one_that_has_gone_is_nam
     with monkeypatch.context() as denied:
         denied.setattr(Path, "stat", hidden)
         assert not shelf.refresh()
+        (other / "drive.ttl").unlink()
+        assert shelf.refresh()
     assert complaints == [f"cannot read {folder}: Permission denied; what it advertised before stays"]
     assert set(shelf.advertisements) == {iri("person-tracker")}
     folder.rename(tmp_path / "elsewhere")
