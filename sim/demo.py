@@ -41,6 +41,8 @@ STARTING = 60.0
 """Seconds that a process may take to be there."""
 LINGERING = 86_400.0
 """Seconds that the page stays at most."""
+PLAYING = 2.0
+"""Seconds that the radio plays before a plug is pulled, and after another speaker has taken over."""
 PAGE, USUAL_PORT = "page", 8000
 
 
@@ -133,10 +135,14 @@ class Stage:
         """Leave the page there until Ctrl-C."""
         self._say("the page shows what has happened; Ctrl-C ends it")
         try:
-            for line in self.crew.lines(LINGERING):
-                self.hear(line.process, line.text)
+            self.listen(LINGERING)
         except KeyboardInterrupt:
             return
+
+    def listen(self, seconds: float) -> None:
+        """Take in and tell what is written within some seconds."""
+        for line in self.crew.lines(seconds):
+            self.hear(line.process, line.text)
 
     def hear(self, process: str, text: str | None) -> None:
         """Take a line in and tell it."""
@@ -219,8 +225,7 @@ def _navigate(given: DemoOptions) -> int:
 
         stage.until(ended, limit, ("world", "configurator"), "the end of the run")
         crew.end("configurator", signal.SIGINT)
-        for line in crew.lines(0.2):
-            stage.hear(line.process, line.text)
+        stage.listen(0.2)
         if given.serve:
             stage.linger()
     if account.end is None:
@@ -271,14 +276,15 @@ def _radio(given: DemoOptions) -> int:
                 return {fact["speaker"] for fact in account.played if fact["event"] == "plays"}
 
             stage.until(lambda: len(playing()) >= 2, STARTING, vital, "two speakers playing")
+            stage.listen(PLAYING)
             plugged = next(fact for fact in account.played if fact["event"] == "plays")
             _tell(f"          pulling the plug of {plugged['speaker']}")
             os.kill(plugged["process"], signal.SIGUSR1)
             stage.until(lambda: len(playing()) >= 3, STARTING, vital, "another speaker playing in its place")
             stage.until(lambda: len(account.configurations) >= 2, STARTING, vital, "a second configuration")
+            stage.listen(PLAYING)
             crew.end("configurator", signal.SIGINT)
-            for line in crew.lines(1.0):
-                stage.hear(line.process, line.text)
+            stage.listen(1.0)
             if given.serve:
                 stage.linger()
         for path in sorted(sound.glob("*.wav")):

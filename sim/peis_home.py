@@ -4,7 +4,7 @@
 
 One thread owns PyBullet and calls the components. Each control period of 0.1 s of simulated time the sensors look,
 the components hear what has arrived, and the physics goes on. In real time the period ends by the clock. With
-`--speed max` it ends as soon as the drive has answered the newest pose, or after `PATIENCE` seconds of real time if
+`--speed inf` it ends as soon as the drive has answered the newest pose, or after `PATIENCE` seconds of real time if
 it does not answer or nothing tells poses, so that the run is fast while Astrid navigates and real time while the
 configurator works.
 
@@ -149,7 +149,7 @@ class PeisHome:
 
 
 def main() -> int:
-    """Run the world; 0 if she has arrived."""
+    """Run the world; 0 if she has arrived, 2 if its record cannot be written."""
     parser = argparse.ArgumentParser(description="the PEIS-Home: a physics world and the components that share it")
     add_connection_arguments(parser)
     parser.add_argument("--seed", type=int, default=1)
@@ -169,7 +169,11 @@ def main() -> int:
         pose = home.world.pose()
         home.logbook.write(home.world.time, pose, "")
         if given.record is not None:
-            home.logbook.save(given.record)
+            try:
+                home.logbook.save(given.record)
+            except OSError as error:  # a full disk, for one
+                print(f"the record {given.record} cannot be written: {error.strerror}", flush=True)
+                return 2
         touched = sorted(home.logbook.touched)
         say("end", outcome=outcome, time=home.world.time, x=pose.x, y=pose.y, touched=touched)
         host.run(home.told)  # still there, so that the configuration can be taken down

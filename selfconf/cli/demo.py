@@ -18,6 +18,8 @@ EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2
   selfconf demo --keys   # with keys, of an authority of its own"""
 OWN_KEYS = "keys"
 """The folder of the authority that `--keys` alone makes, in the folder of the results."""
+SLOWEST = 0.001
+"""The least speed: a drive of 20 s takes some six hours at it."""
 ANSWERS = 5.0
 """Seconds within which a display on another machine must answer."""
 
@@ -28,7 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--scene",
         choices=["navigate", "composite", "radio"],
         default="navigate",
-        help="`composite` is `navigate` with a camera and a tracker inside of one component (default: %(default)s)",
+        help="`composite` is `navigate` with a camera and a tracker inside of one component; `radio` has no world, and"
+        " heeds none of --seed, --speed, --gui and --pictures (default: %(default)s)",
     )
     parser.add_argument("--seed", metavar="N", type=_seed, default=1, help="decides all noise (default: %(default)s)")
     parser.add_argument(
@@ -70,19 +73,20 @@ def run(given: argparse.Namespace) -> int:
         raise InstallationError(
             "the world is not part of the installed package; clone the repository and type `make demo`"
         )
-    if importlib.util.find_spec("pybullet") is None:
+    in_the_world = given.scene != "radio"
+    if in_the_world and importlib.util.find_spec("pybullet") is None:
         raise InstallationError(
             "PyBullet is missing; it has wheels for Python 3.10 and 3.11 on Linux x86_64; "
             "in the checkout, pip install '.[sim]'"
         )
-    if given.pictures != "none" and importlib.util.find_spec("mitsuba") is None:
+    if in_the_world and given.pictures != "none" and importlib.util.find_spec("mitsuba") is None:
         raise InstallationError(
             "Mitsuba, which renders the pictures, is missing; in the checkout, pip install '.[sim]', "
             "or go without by --pictures none"
         )
     if given.serve and importlib.util.find_spec("uvicorn") is None:
         raise InstallationError("the server is missing; in the checkout, pip install '.[sim,serve]'")
-    if given.gui and not _display(os.environ.get("DISPLAY", "")):
+    if in_the_world and given.gui and not _display(os.environ.get("DISPLAY", "")):
         raise InstallationError("--gui opens a window, and there is no display; leave it out, the pictures need none")
     try:
         given.out.mkdir(parents=True, exist_ok=True)
@@ -138,6 +142,6 @@ def _seed(text: str) -> int:
 
 def _speed(text: str) -> float:
     speed = math.inf if text == "max" else number_option(text)
-    if not speed > 0:
-        raise argparse.ArgumentTypeError(f"{text!r} is no speed: give a number above zero, or max")
+    if not speed >= SLOWEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is no speed: give a number from {SLOWEST:g} on, or max")
     return speed

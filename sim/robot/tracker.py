@@ -22,7 +22,8 @@ class Tracker:
     """A tracker for a plate at `plate_height` metres; it gives poses in `frame`.
 
     `lost` becomes true after two frames in a row without her, and false when she is seen again. A frame
-    is without her if either colour has fewer than six pixels or touches the border of the image.
+    is without her if either colour has fewer than six pixels or touches the border of the image. One robot has such a
+    plate: of two in view, the pose would be one between them.
     """
 
     patience, fewest_pixels = 2, 6

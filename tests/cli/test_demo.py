@@ -14,14 +14,16 @@ from selfconf.cli import demo
 from tests.cli.command import run
 
 
-@pytest.mark.parametrize(("text", "speed"), [("1", 1.0), ("0.5", 0.5), ("2e1", 20.0), ("max", float("inf"))])
-def test_a_speed_is_a_number_above_zero_or_max(text: str, speed: float) -> None:
+@pytest.mark.parametrize(
+    ("text", "speed"), [("1", 1.0), ("0.5", 0.5), ("0.001", 0.001), ("2e1", 20.0), ("max", float("inf"))]
+)
+def test_a_speed_is_a_number_or_max(text: str, speed: float) -> None:
     parser = argparse.ArgumentParser()
     demo.add_arguments(parser)
     assert parser.parse_args(["--speed", text]).speed == speed
 
 
-@pytest.mark.parametrize("text", ["0", "-1", "fast", "nan", ""])
+@pytest.mark.parametrize("text", ["0", "-1", "1e-9", "fast", "nan", ""])
 def test_what_is_no_speed_is_one_sentence(text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "demo", f"--speed={text}").is_one_sentence(f"{text!r} is no speed", "or max")
 
@@ -51,6 +53,15 @@ def test_without_pybullet_it_is_said_what_to_install(
     find = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "pybullet" else find(name))
     assert run(capsys, "demo").is_one_sentence("PyBullet is missing", "pip install '.[sim]'")
+
+
+def test_the_radio_needs_neither_a_world_nor_what_draws_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    find, lacking = importlib.util.find_spec, ("pybullet", "mitsuba")
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in lacking else find(name))
+    monkeypatch.setattr("sim.demo.run", lambda options: 0)
+    assert run(capsys, "demo", "--scene", "radio", "--out", str(tmp_path)).code == 0
 
 
 def test_without_a_server_it_is_said_what_to_install(

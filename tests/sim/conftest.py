@@ -1,6 +1,9 @@
-"""The apartment that the tests of the world share."""
+"""The apartment that the tests of the world share, and how signals are handled after a program has been played."""
 
 from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
 
 import pytest
 from rdflib import Graph
@@ -24,3 +27,12 @@ def plan_as_it_is() -> Graph:
 def plan(plan_as_it_is: Graph) -> Graph:
     """The PEIS-Home's Turtle as a graph that a test may change."""
     return Graph() + plan_as_it_is
+
+
+@pytest.fixture
+def handlers() -> Iterator[None]:
+    """Puts back how signals are handled."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)

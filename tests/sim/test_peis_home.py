@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -112,3 +113,20 @@ def test_as_fast_as_it_goes_is_real_time_while_nothing_tells_poses(
     began = time.monotonic()
     assert home.run(1.0) == "time is up"
     assert time.monotonic() - began >= 1.0
+
+
+@pytest.mark.sim
+@pytest.mark.usefixtures("handlers")
+def test_a_record_that_cannot_be_written_is_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("pybullet", reason="PyBullet is not installed: install the extra sim on Python 3.10 or 3.11")
+    record = tmp_path / "removed" / "run.npz"
+    monkeypatch.setattr("sys.argv", ["peis_home", "--seconds", "0.1", "--speed", "inf", "--record", str(record)])
+    monkeypatch.setattr("sim.peis_home.open_host", lambda *_: Host(Network(0).node(), "lab"))
+    from sim.peis_home import main
+
+    assert main() == 2
+    assert (
+        capsys.readouterr().out.splitlines()[-1] == f"the record {record} cannot be written: No such file or directory"
+    )
