@@ -38,6 +38,7 @@ from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
 from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
+from selfconf.rdf.query_validators import query_validators
 from selfconf.rdf.rdflib_terms import rdflib_term
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
@@ -219,7 +220,7 @@ class _Shares:
 @contextmanager
 def _corrected() -> Iterator[None]:
     """In the block, pySHACL and rdflib judge as the recommendations say, in linear time, and print nothing."""
-    with linear_patterns(), only_ordered(), sparql_corrections(), _silent():
+    with linear_patterns(), only_ordered(), query_validators(), sparql_corrections(), _silent():
         yield
 
 
