@@ -215,7 +215,7 @@ def _refused(document: Document, constraint: Term) -> tuple[Triple, str] | None:
         for each in document.values(owner, SH.declare)
     }
     for predicate, query in document.about(constraint):
-        reason = why_not_asked(str(query), declared) if predicate in (SH.select, SH.ask) else None
+        reason = why_not_asked(str(query), declared, predicate.short) if predicate in (SH.select, SH.ask) else None
         if reason is not None:
             return (constraint, predicate, query), reason.rstrip(".")
     return None

@@ -17,22 +17,31 @@ _PREFIX = re.compile(r"(?<![\w?$@:.-])((?:[^\W\d_][\w.-]*)?):(?!//)")
 _IRI = re.compile(rf"(?<![\w?$@:.<-])({'|'.join(SCHEMES)}):[^\s<>{{}}]")
 _COMPLAINT = re.compile(r"error at (\d+):(\d+): expected (?:one of )?(.*)", re.DOTALL)
 _SENTENCE = re.compile(r"(?:^|, )([A-Z][A-Za-z]*(?: [A-Za-z*]+){2,})(?=,|$)")
+_THIS = ox.Variable("this")
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
 LONGEST_EXCERPT = 30
 """Characters of the query that are shown."""
 
 
-def why_not_asked(text: str, prefixes: Mapping[str, str]) -> str | None:
-    """Why the query of a shape, to which some prefixes are declared, is not asked, in a sentence; None if it may be."""
+def why_not_asked(text: str, prefixes: Mapping[str, str], word: str = "select") -> str | None:
+    """Why the query of a shape, to which some prefixes are declared, is not asked, in a sentence; None if it may be.
+
+    It is the value of sh:select or of sh:ask, as `word` says. pySHACL takes a SELECT without $this for one that finds
+    nothing, where SHACL has none (5.2.1).
+    """
     reason = fault(text)
     if reason is not None:
         return reason
     try:
-        ox.Store().query(text, prefixes=dict(prefixes))
+        answer = ox.Store().query(text, prefixes=dict(prefixes))
     except SyntaxError as error:
         return f"This is not SPARQL: {mistake(text, str(error), prefixes)}."
     except RuntimeError as error:  # it calls a function that is not there
         return f"This query cannot be answered: {error}."
+    if word == "ask":
+        return None if isinstance(answer, ox.QueryBoolean) else "The value of sh:ask has to be an ASK query."
+    if not isinstance(answer, ox.QuerySolutions) or _THIS not in answer.variables:
+        return "The value of sh:select has to be a SELECT query that selects $this."
     return None
 
 

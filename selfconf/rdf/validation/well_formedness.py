@@ -256,7 +256,8 @@ def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     """Queries of roles that are no SPARQL, or that would leave this machine."""
     for predicate in (SH.select, SH.ask):
         for constraint, query in graph.subject_objects(predicate):
-            reason = why_not_asked(str(query), dict(_declared(graph, constraint)))
+            word = IRI.unchecked(predicate).short
+            reason = why_not_asked(str(query), dict(_declared(graph, constraint)), word)
             if reason is not None:
                 yield at(positions, positions.triples[constraint, predicate, query].object, "SC-T13", reason)
 

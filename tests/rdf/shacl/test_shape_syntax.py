@@ -104,6 +104,8 @@ def test_of_a_constraint_in_sparql_the_query_is_named() -> None:
     [
         ("SELECT $this { $this a sc:Component }", "This is not SPARQL: the prefix sc: is not declared"),
         ("SELECT $this { SERVICE <a:b> { $this a ?c } }", "leave out SERVICE"),
+        ("SELECT ?x { ?x a ?c }", "has to be a SELECT query that selects $this"),
+        ("CONSTRUCT WHERE { $this a ?c }", "has to be a SELECT query that selects $this"),
     ],
 )
 def test_of_a_query_that_is_not_asked_it_is_told_why(query: str, sentence: str) -> None:

@@ -86,6 +86,13 @@ def test_a_shape_that_is_no_role_is_not_looked_at() -> None:
             38,
             "the prefix k: is not declared; begin with PREFIX",
         ),
+        ("sh:sparql [ sh:select 'SELECT ?x { ?x a ?t }' ]", 38, "has to be a SELECT query that selects $this."),
+        (
+            "sh:sparql [ sh:select 'CONSTRUCT WHERE { $this a ?t }' ]",
+            38,
+            "has to be a SELECT query that selects $this.",
+        ),
+        ("sh:sparql [ sh:ask 'SELECT $this { $this a ?t }' ]", 35, "The value of sh:ask has to be an ASK query."),
     ],
 )
 def test_what_is_wrong_with_a_shape_is_told_where_it_stands(shape: str, column: int, sentence: str) -> None:
