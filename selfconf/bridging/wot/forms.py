@@ -1,8 +1,9 @@
 """The forms of a Thing Description: by which HTTP request something is read, written, called or followed.
 
-Of several forms for an operation the first counts that a bridge can use. What it can use is HTTP without URI variables,
-to a host that it may reach, with security schemes for which it has credentials; `ThingForms.problems` says in sentences
-what came of the others. (W3C Web of Things Thing Description 1.1, sections 5.3.4 and 8.3.1.)
+Of several forms for an operation the first counts that a bridge can use, those with JSON before those without. What it
+can use is HTTP without URI variables, to a host that it may reach, with security schemes for which it has credentials;
+`ThingForms.problems` says in sentences what came of the others. (W3C Web of Things Thing
+Description 1.1, sections 5.3.4 and 8.3.1.)
 """
 
 from __future__ import annotations
@@ -85,9 +86,13 @@ class ThingForms:
     def find(
         self, affordance: Mapping[str, Any], operation: str, subprotocols: Iterable[str] = ("",)
     ) -> ThingForm | None:
-        """The first form for an operation that can be used, by one of some subprotocols, the first preferred."""
+        """The first form for an operation that can be used, by one of some subprotocols, the first preferred.
+
+        One with JSON is preferred too: signals have fields, which nothing is read into but JSON.
+        """
         said = one_or_several(affordance.get("forms"))
-        forms = [one for one in said if isinstance(one, dict) and _serves(one, operation)]
+        serving = [one for one in said if isinstance(one, dict) and _serves(one, operation)]
+        forms = sorted(serving, key=lambda one: not is_json(bare(_media(one, JSON))))
         for subprotocol in subprotocols:
             for form in forms:
                 if form.get("subprotocol", "") == subprotocol:
@@ -136,6 +141,16 @@ class ThingForms:
                 f" {setting('host', host)}"
             )
         return url
+
+
+def bare(media: str) -> str:
+    """A media type without its parameters."""
+    return media.partition(";")[0].strip().lower()
+
+
+def is_json(media: str) -> bool:
+    """Whether a bare media type is that of JSON."""
+    return media == JSON or media.endswith("+json")
 
 
 def _media(holder: Mapping[str, Any], usual: str) -> str:

@@ -16,7 +16,7 @@ import aiohttp
 from yarl import URL
 
 from selfconf.bridging.wot.credentials import origin
-from selfconf.bridging.wot.forms import JSON, ThingForm
+from selfconf.bridging.wot.forms import ThingForm, bare, is_json
 from selfconf.importing import ACCEPTED, LARGEST_SOURCE, SourceDocument, document_at
 from selfconf.model.immutable import immutable
 
@@ -251,9 +251,9 @@ _REASONS: dict[type[Exception], str] = {
 
 def _value(form: ThingForm, answer: aiohttp.ClientResponse, body: bytes) -> ThingAnswer:
     """What a body says, by the media type that it has, or else by that of the form. Raises ThingError."""
-    wanted = _bare(form.answered)
+    wanted = bare(form.answered)
     media = answer.content_type if "Content-Type" in answer.headers else wanted
-    if _is_json(media):
+    if is_json(media):
         return ThingAnswer(_json(form, body))
     if media != wanted:
         raise ThingError(f"{form} answers {media}, where {wanted} is expected")
@@ -262,8 +262,8 @@ def _value(form: ThingForm, answer: aiohttp.ClientResponse, body: bytes) -> Thin
 
 def _said(form: ThingForm, data: bytes) -> ThingAnswer:
     """What an event says: JSON, unless its form has another media type; that of a stream says nothing of its events."""
-    media = _bare(form.answered)
-    return ThingAnswer(_json(form, data)) if _is_json(media) or media == _EVENT_STREAM else ThingAnswer(data, media)
+    media = bare(form.answered)
+    return ThingAnswer(_json(form, data)) if is_json(media) or media == _EVENT_STREAM else ThingAnswer(data, media)
 
 
 def _json(form: ThingForm, body: bytes) -> Any:
@@ -280,12 +280,12 @@ def _encoded(form: ThingForm, value: Any, media: str) -> bytes | None:
     """A value as a body; `media` is that of bytes. Raises UnsendableValueError where the form takes something else."""
     if value is None:
         return None
-    wanted = _bare(form.media)
+    wanted = bare(form.media)
     try:
         if isinstance(value, bytes):
-            if _bare(media) in ("", wanted) or wanted == _ANY_BYTES:
+            if bare(media) in ("", wanted) or wanted == _ANY_BYTES:
                 return value
-        elif _is_json(wanted):
+        elif is_json(wanted):
             return json.dumps(value, separators=(",", ":"), allow_nan=False, default=_elements).encode()
         elif wanted.startswith("text/") and isinstance(value, str | float | int):
             return (value if isinstance(value, str) else json.dumps(value)).encode()
@@ -299,15 +299,6 @@ def _encoded(form: ThingForm, value: Any, media: str) -> bytes | None:
 def _elements(array: Any) -> Any:
     """The elements of an array, for JSON."""
     return array.tolist()
-
-
-def _bare(media: str) -> str:
-    """A media type without its parameters."""
-    return media.partition(";")[0].strip().lower()
-
-
-def _is_json(media: str) -> bool:
-    return media == JSON or media.endswith("+json")
 
 
 def _is_break(error: Exception) -> bool:

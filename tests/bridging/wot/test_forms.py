@@ -53,6 +53,16 @@ def test_the_preferred_subprotocol_counts_and_then_the_order() -> None:
     assert found.url == "http://192.0.2.7/b"
 
 
+def test_of_two_forms_of_a_property_the_one_with_json_counts() -> None:
+    cbor = {"href": "a", "contentType": "application/cbor"}
+    for media in ("application/json; charset=utf-8", "application/senml+json"):
+        forms = forms_of({"base": BASE})
+        found = forms.find({"forms": [cbor, {"href": "b", "contentType": media}]}, "readproperty")
+        assert found is not None
+        assert (found.url, found.media) == ("http://192.0.2.7/b", media)
+    assert one(cbor).media == "application/cbor"
+
+
 def test_a_form_counts_from_the_base_else_from_where_the_description_comes_from() -> None:
     forms = forms_of({}, place="http://127.0.0.1:8080/things/lamp")
     found = forms.find({"forms": [{"href": "on"}]}, "readproperty")
