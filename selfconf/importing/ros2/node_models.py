@@ -39,7 +39,7 @@ def node_models(entries: list[ModelEntry], source: SourceDocument, ledger: Impor
             if each.key != "artifacts":
                 ledger.leave_out(f"entries {each.key!r} of packages", "they say where the code is", source)
         artifacts = package.child("artifacts")
-        if artifacts is None:
+        if artifacts is None or not artifacts.below:
             ledger.leave_out("packages without artifacts", "there is no node in them", source)
         for artifact in artifacts.below if artifacts is not None else ():
             yield _node(package.key, artifact, source, ledger)

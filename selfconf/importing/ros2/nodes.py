@@ -45,7 +45,10 @@ def import_nodes(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Ite
 
 def _read(source: SourceDocument, models: list[NodeModel], systems: list[SystemModel], ledger: ImportLedger) -> None:
     if source.octets.lstrip().startswith(b"<"):
-        models += NodlReader(source, ledger).read()
+        nodes = NodlReader(source, ledger).read()
+        models += nodes
+        if not nodes:
+            ledger.leave_out("documents without nodes", "an interface of NoDL has nodes", source)
         return
     if source.octets.lstrip().startswith((b"RosSystem", b"PackageSet")):
         raise AuthorError(BRACES, file=source.shown, line=1, column=1)

@@ -116,4 +116,6 @@ def test_a_system_without_nodes_is_no_template(workshop: Workshop) -> None:
 
 
 def test_a_document_without_nodes_is_named(workshop: Workshop) -> None:
-    assert left_out(workshop.imported("ros2", {"x.ros2": "a:\n  b: c\n"})) == {"documents without nodes": 1}
+    nodl = '<interface version="1"/>'
+    report = workshop.imported("ros2", {"x.ros2": "a:\n  b: c\n", "y.ros2": "a:\n  artifacts:\n", "z.nodl.xml": nodl})
+    assert left_out(report) == {"documents without nodes": 2, "packages without artifacts": 1}
