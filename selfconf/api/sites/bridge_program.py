@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from selfconf import files
+from selfconf.api.arguments import checked_path
 from selfconf.api.sites.site_program import SiteOptions, serve
 from selfconf.api.sites.temporary_folder import temporary_folder
 from selfconf.bridging import Bridge, ForeignWorld
@@ -56,7 +57,7 @@ def serve_things(
         if is_url(source):
             host_of(source)
         else:
-            files.existing(Path(source))
+            files.existing(checked_path(source))
     wrong = [unreadable_file(source) for source in sources]
     if wrong[0] is not None and all(wrong):
         raise wrong[0]

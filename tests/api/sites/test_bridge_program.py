@@ -53,6 +53,7 @@ def test_sources_and_credentials_have_to_be_there(tmp_path: Path) -> None:
     pytest.importorskip("aiohttp", reason="the extra `wot` is not installed")
     for sources, credentials, words in (
         ([str(tmp_path / "none.json")], None, "no file or folder"),
+        ([""], None, "an empty text is no path"),
         ([str(tmp_path)], tmp_path / "none.json", "cannot read the credentials"),
     ):
         with pytest.raises(sc.SelfconfError, match=words):
