@@ -14,7 +14,7 @@ from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.disconnecting import disconnect
 from selfconf.configurator.effects import Decline, ReleaseFrom
 from selfconf.configurator.events import Answered, Call
-from selfconf.configurator.state import Loss, Phase, State
+from selfconf.configurator.state import Applied, Loss, Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -135,7 +135,7 @@ def _reserve_anew(state: State, component: IRI) -> Reaction:
 
 def _forgotten(state: State, component: IRI) -> State:
     """The state in which a component is not held, and does not act, as far as is known."""
-    forgotten = replace(state.held[component], asked=False, reserved=False, active=False, acts=False, confirmed=False)
+    forgotten = replace(state.held[component], asked=False, reserved=False, applied=Applied.NOT_YET)
     return replace(state, held={**state.held, component: forgotten})
 
 

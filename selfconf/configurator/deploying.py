@@ -37,7 +37,7 @@ from selfconf.configurator.effects import (
 )
 from selfconf.configurator.events import Answered, Call
 from selfconf.configurator.starting_order import Plan, plan_of, resting_waves
-from selfconf.configurator.state import Held, Phase, State
+from selfconf.configurator.state import Applied, Held, Phase, State
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
@@ -104,7 +104,7 @@ def _to_be_confirmed(state: State, plan: Plan) -> dict[IRI, Held]:
         before = held.get(component, Held({}, asked=component in state.owed))
         wanted = inputs, plan.values[component], plan.callers[component]
         same = before.confirmed and (before.inputs, before.values, before.callers) == wanted
-        held[component] = before if same else replace(before, confirmed=False)
+        held[component] = before if same else before.at_most(Applied.ACTS)
     return held
 
 
@@ -165,7 +165,8 @@ def apply_to(state: State, candidates: Iterable[IRI]) -> Reaction:
         pending.add((component, Call.APPLY))
         inputs, set_, called_by = plan.inputs[component], plan.values[component], plan.callers[component]
         rests = state.rests and component in plan.order.actuators
-        held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, active=True, rests=rests)
+        applied = max(before.applied, Applied.SENT)
+        held[component] = replace(before, inputs=inputs, values=set_, callers=called_by, applied=applied, rests=rests)
         sources = (wire.component for wires in inputs.values() for wire in wires)
         # What is new in a loop cannot wait for a signal of what is started after it.
         feeds = before.acts or all(held[source].acts for source in sources if source in held)
@@ -209,7 +210,7 @@ def as_claimed(state: State, answer: Answered) -> State:
         return state
     claimed = replace(held, asked=False)
     if not answer.acts:
-        claimed = replace(claimed, life=answer.life, active=False, acts=False)
+        claimed = replace(claimed, life=answer.life, applied=Applied.NOT_YET)
     return replace(state, held={**state.held, answer.component: claimed})
 
 
@@ -224,9 +225,9 @@ def confirmed(state: State, answer: Answered) -> Reaction:
             plan, mine = state.plan, answer.component
             assert plan is not None
             inputs, calling = plan.inputs[mine], plan.callers[mine]
-            known = replace(known, active=True, inputs=inputs, values=plan.values[mine], callers=calling)
+            known = replace(known, applied=Applied.SENT, inputs=inputs, values=plan.values[mine], callers=calling)
         return proceed(replace(state, held={**state.held, answer.component: known}))
-    known = replace(held, life=answer.life, asked=False, reserved=True, acts=True, confirmed=True)
+    known = replace(held, life=answer.life, asked=False, reserved=True, applied=Applied.CONFIRMED)
     done = replace(state, held={**state.held, answer.component: known})
     assert done.plan is not None
     waiting: Iterable[IRI] = done.plan.order.after[answer.component]
@@ -298,7 +299,7 @@ def rewire(state: State, components: frozenset[IRI]) -> Reaction:
     assert state.plan is not None
     actuators = components & state.plan.order.actuators
     held = {
-        one: replace(held, confirmed=held.confirmed and one not in actuators and not held.is_wired_to(components))
+        one: held.at_most(Applied.ACTS) if one in actuators or held.is_wired_to(components) else held
         for one, held in state.held.items()
     }
     return deploy(replace(state, held=held))

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from selfconf.configurator import deploying
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.effects import ApplyTo
-from selfconf.configurator.state import Phase, State
+from selfconf.configurator.state import Applied, Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
@@ -40,7 +40,7 @@ def _follow_fewer(state: State, fewer: Mapping[IRI, Wires]) -> Reaction:
     epoch, held, effects = state.epoch + 1, dict(state.held), []
     for one, inputs in fewer.items():
         mine = state.held[one]
-        held[one] = replace(mine, inputs=inputs, confirmed=False)
+        held[one] = replace(mine.at_most(Applied.ACTS), inputs=inputs)
         effects.append(
             ApplyTo(one, epoch, inputs, mine.values, mine.callers, adopted=mine.is_adopted, rests=mine.rests)
         )
@@ -100,5 +100,5 @@ def _bring_to_rest(state: State, actuators: frozenset[IRI]) -> Reaction:
         if one in actuators and mine.active
     }
     told = {one: ins for one, ins in resting.items() if ins != state.held[one].inputs or not state.held[one].rests}
-    at_rest = {one: replace(state.held[one], acts=False, rests=True) for one in resting}
+    at_rest = {one: replace(state.held[one].at_most(Applied.SENT), rests=True) for one in resting}
     return _follow_fewer(replace(state, held={**state.held, **at_rest}), told)

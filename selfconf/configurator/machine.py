@@ -51,7 +51,7 @@ from selfconf.configurator.events import (
     WaitedLong,
 )
 from selfconf.configurator.starting_order import parameter_values, wiring
-from selfconf.configurator.state import Held, Loss, Phase, State
+from selfconf.configurator.state import Applied, Held, Loss, Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, RecordedLoss
@@ -116,9 +116,7 @@ def _adopted(state: State, event: Adopted) -> Reaction:
     if state.phase is not Phase.IDLE:
         return state, ()
     wires, values = wiring(event.configuration), parameter_values(event.configuration)
-    held = {
-        c: Held(inputs, values[c], asked=True, reserved=True, active=True, acts=True) for c, inputs in wires.items()
-    }
+    held = {c: Held(inputs, values[c], asked=True, reserved=True, applied=Applied.ACTS) for c, inputs in wires.items()}
     lost = _losses(event.lost)
     adopted = replace(
         state, epoch=event.epoch - 1, target=event.configuration, held=held, watched=frozenset(wires), lost=lost
@@ -185,7 +183,7 @@ def _reconnected(state: State) -> Reaction:
     """Components may have turned themselves off, or died: ask the ecology again, and apply to all of them anew."""
     if state.phase in (Phase.IDLE, Phase.DISMANTLING) or state.ended:
         return state, ()
-    unsure = {component: replace(held, acts=False, confirmed=False) for component, held in state.held.items()}
+    unsure = {component: held.at_most(Applied.SENT) for component, held in state.held.items()}
     return phases.discover(replace(state.unchanged, held=unsure, awaited_since=0))
 
 
@@ -198,7 +196,7 @@ def _ranked(state: State, priority: int) -> Reaction:
         for holders in (state.taken, state.sharers)
     )
     held = {
-        component: replace(one, reserved=one.reserved and one.active, confirmed=False)
+        component: replace(one.at_most(Applied.ACTS), reserved=one.reserved and one.active)
         for component, one in state.held.items()
     }
     known = replace(state, priority=priority, taken=taken, sharers=sharers, held=held)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Set
 from dataclasses import field
-from enum import Enum
+from enum import Enum, IntEnum
 
 from selfconf.configurator.events import Call
 from selfconf.configurator.starting_order import Callers, Plan
@@ -41,6 +41,19 @@ class Policy(str, Enum):
     DISMANTLE = "dismantle"
 
 
+class Applied(IntEnum):
+    """How far a component has come with what it is to do for a task."""
+
+    NOT_YET = 0
+    """It does not act, as far as is known."""
+    SENT = 1
+    """It was applied to: it may act, if with other inputs."""
+    ACTS = 2
+    """It has said that it acts, if with other inputs."""
+    CONFIRMED = 3
+    """It has said that it acts with these inputs and values, for these callers."""
+
+
 @immutable
 class Held:
     """A component that was called for this task: what it is to do, and how far that has come."""
@@ -56,14 +69,28 @@ class Held:
     """
     reserved: bool = False
     """Whether it has said that it is held for this task."""
-    active: bool = False
-    """Whether it was applied to: it may act, if with other inputs."""
-    acts: bool = False
-    """Whether it has said that it acts, if with other inputs."""
+    applied: Applied = Applied.NOT_YET
     rests: bool = False
     """Whether it is an actuator that is to rest by its last call, as something lacks a part."""
-    confirmed: bool = False
-    """Whether it has said that it acts with these inputs and values, for these callers."""
+
+    @property
+    def active(self) -> bool:
+        """Whether it was applied to: it may act."""
+        return self.applied >= Applied.SENT
+
+    @property
+    def acts(self) -> bool:
+        """Whether it has said that it acts."""
+        return self.applied >= Applied.ACTS
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether it has said that it acts as it is to."""
+        return self.applied is Applied.CONFIRMED
+
+    def at_most(self, applied: Applied) -> Held:
+        """Return this component as one that has come so far at most."""
+        return replace(self, applied=min(self.applied, applied))
 
     @property
     def sources(self) -> Iterator[IRI]:

@@ -184,7 +184,6 @@ class Ledger:
         assert {component for component, _ in state.pending} <= state.held.keys() | state.owed.keys()
         for held in state.held.values():
             assert held.reserved >= held.acts or state.phase is Phase.DISMANTLING
-            assert held.active >= held.acts >= held.confirmed
         assert not any(component in state.lost for component in state.held) or state.phase is Phase.DISMANTLING
         assert not state.ended or not state.queued
         assert state.fallback is None or state.phase in DEPLOYING
