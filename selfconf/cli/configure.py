@@ -21,6 +21,7 @@ from selfconf.cli.options import (
 )
 from selfconf.cli.progress import progress
 from selfconf.cli.terminal import complain, display, display_json
+from selfconf.model.wording import one_line
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer
@@ -69,6 +70,7 @@ def run(given: argparse.Namespace) -> int:
         answer = inquiry.answer(given.what_if)
     if isinstance(answer, Answer):
         _tell_absent(answer, absent)
+        _tell_unconnected(answer)
     if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
         complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")
     if given.format == "json":
@@ -95,6 +97,14 @@ def _tell_absent(answer: Answer, absent: frozenset[IRI]) -> None:
     """Tell which components of a configuration would have to be started first by other means than `run`."""
     for component in sorted(absent.intersection(answer.components)):
         complain(f"{answer.names(component)} is absent: `run` does without it, unless it is started before that")
+
+
+def _tell_unconnected(answer: Answer) -> None:
+    """Tell which interactions of the template connect nothing: an author may have expected otherwise."""
+    for one in answer.unconnected(answer.task.template.interactions):
+        ports = [f" {one_line(port)!r}" if port else "" for port in (one.output, one.input)]
+        source, sink = (answer.names(role) + port for role, port in zip((one.source, one.sink), ports, strict=True))
+        complain(f"{source} feeds {sink}, which connects nothing: no output of the one matches an input of the other")
 
 
 def _tell_insides(inquiry: Inquiry, answer: Answer) -> None:

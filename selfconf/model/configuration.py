@@ -7,6 +7,7 @@ from dataclasses import field
 from typing import Literal
 
 from selfconf.model.immutable import immutable
+from selfconf.model.template import Interaction
 from selfconf.model.term import IRI, Term
 
 
@@ -97,6 +98,20 @@ class Configuration:
             frozenset((one.input, one.source, one.output) for one in self.connections if one.sink == component),
             frozenset((one.name, one.value) for one in self.settings if one.component == component),
         )
+
+    def unconnected(self, interactions: Iterable[Interaction]) -> tuple[Interaction, ...]:
+        """The interactions that connect nothing, though both of their roles are played.
+
+        That is so where what the sink needs is fed by others, or is optional.
+        """
+        players = {assignment.role: assignment.components for assignment in self.assignments}
+
+        def connects(one: Interaction, connection: Connection) -> bool:
+            ends = connection.source in players[one.source] and connection.sink in players[one.sink]
+            return ends and one.output in (None, connection.output) and one.input in (None, connection.input)
+
+        played = (one for one in interactions if players.get(one.source) and players.get(one.sink))
+        return tuple(one for one in played if not any(connects(one, each) for each in self.connections))
 
     def role_of(self, component: IRI) -> IRI | None:
         """The role that a component plays, if it plays one."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -59,6 +60,22 @@ def test_the_papers_own_algorithm_gives_the_same_configuration(desk: Desk) -> No
     for body in (first, paper):
         body.pop("seconds")
     assert first == paper
+
+
+def test_an_interaction_that_connects_nothing_as_the_input_is_optional_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, port in (
+        ("talker", 'sc:hasOutput [ sc:name "words" ; sc:signalType :Words ]'),
+        ("listener", 'sc:hasInput [ sc:name "text" ; sc:signalType :Text ; sc:optional true ]'),
+    ):
+        (tmp_path / "ads").mkdir(exist_ok=True)
+        (tmp_path / "ads" / f"{name}.ttl").write_text(f"{PREFIXES}:{name} a sc:Component, :{name.title()} ; {port} .")
+    roles = ":source a sc:Role ; sh:class :Talker ; sc:feeds :sink . :sink a sc:Role ; sh:class :Listener ."
+    (tmp_path / "chat.ttl").write_text(f"{PREFIXES}:chat a sc:Template ; sc:roles ( :source :sink ) . {roles}")
+    found = run(capsys, "configure", str(tmp_path / "chat.ttl"), "--ads", str(tmp_path / "ads"))
+    assert found.code == 0
+    assert ":source feeds :sink, which connects nothing: no output of the one matches an input of" in found.err
 
 
 def test_without_the_trackers_file_odometry_is_chosen(desk: Desk) -> None:

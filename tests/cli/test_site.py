@@ -36,6 +36,13 @@ def test_it_says_what_it_serves_and_where_and_leaves_nothing_behind(home: Home) 
     assert home.left_behind() == []
 
 
+def test_a_site_with_nothing_yet_as_of_a_bridge_says_so(home: Home) -> None:
+    (home.folder / "later").mkdir()
+    site = home.site("peis-home", "later")
+    assert site.end(signal.SIGINT) == 0
+    assert "serves 0 advertisements so far on " in site.complaints
+
+
 def test_an_empty_path_as_of_a_variable_that_is_not_set_is_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
     # A site that took it for the current folder would be refused, too, as it would listen beyond this host.
     found = run(capsys, "site", "", "--ecology", "home", "--listen", "tcp/0.0.0.0:0")

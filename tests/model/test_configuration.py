@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import permutations
 
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting, Wants
+from selfconf.model.template import Interaction
 from selfconf.model.term import IRI, Literal
 
 
@@ -33,6 +34,21 @@ def test_a_role_that_nobody_plays_belongs_to_the_configuration_too() -> None:
     configuration = Configuration(IRI("urn:t"), (Assignment(IRI("urn:r"), ()),))
     assert configuration
     assert (configuration.components, configuration.connections) == ((), ())
+
+
+def test_an_interaction_connects_nothing_where_no_players_of_its_roles_are_connected_along_it() -> None:
+    talker, listener, clock = IRI("urn:talker"), IRI("urn:listener"), IRI("urn:clock")
+    source, sink, time, none = (IRI(f"urn:{name}-role") for name in ("source", "sink", "time", "none"))
+    players = {source: (talker,), sink: (listener,), time: (clock,), none: ()}
+    configuration = Configuration(
+        IRI("urn:t"),
+        tuple(Assignment(role, some) for role, some in players.items()),
+        (Connection(talker, "words", listener, "text"),),
+    )
+    connects = [Interaction(source, sink), Interaction(source, sink, "words"), Interaction(source, sink, None, "text")]
+    nothing = [Interaction(time, sink), Interaction(source, sink, "noise"), Interaction(source, sink, "words", "sound")]
+    unplayed = [Interaction(none, sink), Interaction(source, none)]
+    assert configuration.unconnected([*connects, *nothing, *unplayed]) == tuple(nothing)
 
 
 def test_what_is_wanted_of_a_component_are_its_inputs_and_its_values() -> None:

@@ -185,7 +185,7 @@ class _SiteProgram:
         advertisements = self._site.shelf.advertisements
         for unknown in unknown_in_ecology(advertisements):
             self._complain(unknown)
-        served = count(len(advertisements), "advertisement")
+        served = count(len(advertisements), "advertisement") + " so far" * (not advertisements)  # as of a bridge
         how = " without keys, open to everybody who reaches it" if self._is_open_to_all else ""
         where = f"{self._joining.endpoint}{how}"
         self._complain(f"site {self._name} of ecology {self._ecology} serves {served} on {where}")
