@@ -30,11 +30,12 @@ _OWN_VALUES = frozenset(
     SH[name]
     for name in (
         "in", "hasValue", "nodeKind", "datatype", "pattern", "flags", "minLength", "maxLength", "languageIn",
-        "uniqueLang", "minCount", "maxCount", "minInclusive", "maxInclusive", "minExclusive", "maxExclusive", "equals",
-        "disjoint", "lessThan", "lessThanOrEquals",
+        "uniqueLang", "minCount", "maxCount", "minInclusive", "maxInclusive", "minExclusive", "maxExclusive",
     )
 )  # fmt: skip
-"""What looks at values alone, or compares the values of two properties of the node that has them."""
+"""What looks at values alone."""
+_OWN_PAIRS = frozenset((SH.equals, SH.disjoint, SH.lessThan, SH.lessThanOrEquals))
+"""What compares values with those of another property of the node that the shape is asked about."""
 
 
 def compile_role(
@@ -129,20 +130,21 @@ def _constraining(document: Document, predicates: Iterable[IRI]) -> set[IRI]:
 
 
 def local(document: Document, shape: Term, at_value: bool = False, above: frozenset[Term] = frozenset()) -> bool:
-    """Whether a shape looks at nothing but statements about the node it is asked about."""
+    """Whether a shape looks at nothing but statements about the component; `at_value` if it is asked about a value."""
     if shape in above:
         return True
     paths = document.values(shape, SH.path)
     if paths and (at_value or not all(isinstance(path, IRI) for path in paths)):
         return False
+    known = _INNER | SILENT | _OWN_VALUES | (frozenset() if at_value else _OWN_PAIRS)
     at_value = at_value or bool(paths)
+    known |= frozenset() if at_value else _OWN_STATEMENTS
     said = document.about(shape)
     inner = chain.from_iterable(
         document.items(value) if predicate in SHAPES_OF_A_LIST else [value]
         for predicate, value in said
         if predicate in _INNER
     )
-    known = _INNER | SILENT | _OWN_VALUES | (frozenset() if at_value else _OWN_STATEMENTS)
     return _constraining(document, (predicate for predicate, _ in said)) <= known and all(
         local(document, one, at_value, above | {shape}) for one in inner
     )

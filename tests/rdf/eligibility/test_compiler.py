@@ -60,6 +60,9 @@ CONSTRAINTS = st.one_of(
     st.sampled_from(("sh:class :Thing", "sh:equals :r", "sh:disjoint :q", 'sh:languageIn ( "en" )')),
     st.sampled_from(("sh:lessThan :r", "sh:lessThanOrEquals :q")),
     st.just("sh:uniqueLang true"),
+    st.sampled_from(
+        ("sh:node [ sh:disjoint :q ]", "sh:not [ sh:equals :p ]", "sh:or ( [ sh:class :A ] [ sh:closed true ] )")
+    ),
 )
 QUALIFYING = (
     "sh:nodeKind sh:IRI", "sh:in ( :x 1 )", "sh:hasValue :x", "sh:datatype xsd:integer", "sh:minInclusive 1",
@@ -142,6 +145,11 @@ def by_pyshacl(partitioner: Partitioner) -> Partitioner:
 
 @given(SHAPES, COMPONENTS, st.sampled_from(HIERARCHIES))
 @example("sh:property [ sh:path :p ; sh:minCount 1 ]", [(":A", [], True), (":A", [], False)], NOTHING_ABOVE)
+@example(
+    "sh:class :A ; sh:property [ sh:path :p ; sh:node [ sh:disjoint :q ] ]",
+    [(":A", [(":p", ":c1")], False), (":B", [(":q", ":c1")], False)],
+    NOTHING_ABOVE,
+)
 def test_compiled_tests_and_pyshacl_agree(
     shape: str, components: list[tuple[str, list[tuple[str, str]], bool]], hierarchy: Hierarchy
 ) -> None:
