@@ -10,6 +10,7 @@ from pathlib import Path
 from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
 from selfconf.cli.terminal import display, display_json
 from selfconf.model.moments import parsed_moment
+from selfconf.render import clock_time
 
 EXAMPLE = """  selfconf why position
   selfconf why position --format json
@@ -60,7 +61,8 @@ def _tell(given: argparse.Namespace, sentences: Sequence[str], where: str) -> in
     elif sentences:
         display("\n".join(sentences))
     else:
-        display(f"no task has to do with {given.term}{where}")
+        when = "" if given.at is None else f" at {clock_time(given.at)}"
+        display(f"no task has to do with {given.term}{when}{where}")
     return 0 if sentences else 1
 
 

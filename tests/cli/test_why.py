@@ -32,7 +32,9 @@ def test_who_plays_a_role_and_why_is_told_now_and_then(home: Home, capsys: pytes
     then = run(capsys, "why", "position", "--at", moment, *home.arguments())
     assert "position in navigate: person-tracker, since" in then.out
     nothing = run(capsys, "why", "cellar", *home.arguments())
-    assert (nothing.code, nothing.out.startswith("no task has to do with cellar")) == (1, True)
+    assert (nothing.code, nothing.out.startswith("no task has to do with cellar,")) == (1, True)
+    before = run(capsys, "why", "position", "--at", "2020-01-01", *home.arguments())
+    assert (before.code, before.out.startswith("no task has to do with position at 2020-01-01 ")) == (1, True)
 
 
 @pytest.mark.parametrize("text", ["noon", "25:00", "2026-13-01"])
