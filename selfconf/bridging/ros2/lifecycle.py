@@ -95,14 +95,32 @@ class NodeLifecycle:
         self._unfollow()
         if self._activated:
             self._activated = self._active = False
-            self._change(DEACTIVATE, lambda: None, self._domain.tell)
+            self._deactivate()
+
+    def _deactivate(self) -> None:
+        turn = self._turn
+
+        def answered(_: bool, problem: str) -> None:
+            if problem and turn == self._turn:
+                self._domain.tell(problem)
+
+        self._change(DEACTIVATE, answered)
 
     def _look(self, before: int | None = None) -> None:
         """Ask for the state, and go on from there; `before` is that before a transition which is said to be made."""
-        self._ask(self._endpoints.state, {}, partial(self._in_state, before), self._fail)
+        turn = self._turn
 
-    def _in_state(self, before: int | None, answer: Mapping[str, Any]) -> None:
-        state, label = answer["current_state"]["id"], answer["current_state"]["label"]
+        def answered(answer: Mapping[str, Any] | str) -> None:
+            if turn != self._turn:
+                return
+            if isinstance(answer, str):
+                self._fail(answer)
+            else:
+                self._in_state(before, answer["current_state"]["id"], answer["current_state"]["label"])
+
+        self._ask(self._endpoints.state, {}, answered)
+
+    def _in_state(self, before: int | None, state: int, label: str) -> None:
         if state == ACTIVE:
             self._active = True
         elif state in PASSING and self._domain.bus.now() < self._waits_until:
@@ -113,81 +131,62 @@ class NodeLifecycle:
             made = f"the transition {STEPS[before][1]!r} of the lifecycle node {self._name} is said to be made"
             self._fail(f"{made}, and it is {label or state}")
         elif state in STEPS:
-            late = self._activated_late if state == INACTIVE else lambda: None
-            self._change(STEPS[state], partial(self._changed, state), self._fail, late)
+            self._change(STEPS[state], partial(self._changed, self._turn, state))
         else:
             long = state in PASSING
             why = f"for longer than {TRANSITION_SECONDS:g} s" if long else "from where it cannot be activated"
             self._fail(f"the lifecycle node {self._name} is {label or state}, {why}")
 
-    def _changed(self, before: int) -> None:
-        self._activated = before == INACTIVE
-        self._waits_until = self._domain.bus.now() + TRANSITION_SECONDS
-        self._look(before)
-
-    def _activated_late(self) -> None:
-        """The node is active, or may be, by a transition that was asked for in an activation that has ended since."""
-        if self._resting:
-            self._change(DEACTIVATE, lambda: None, self._domain.tell)
+    def _changed(self, turn: int, before: int, may_be_made: bool, problem: str) -> None:
+        """A transition towards the active state was asked for; the activation may have ended since."""
+        if before == INACTIVE and may_be_made:
+            if self._resting:
+                self._deactivate()
+            else:
+                self._activated = True
+        if turn != self._turn:
+            return
+        if problem:
+            self._fail(problem)
         else:
-            self._activated = True
+            self._waits_until = self._domain.bus.now() + TRANSITION_SECONDS
+            self._look(before)
 
-    def _change(
-        self,
-        transition: tuple[int, str],
-        changed: Callable[[], None],
-        failed: Callable[[str], None],
-        late: Callable[[], None] = lambda: None,
-    ) -> None:
-        """Ask for a transition; `late` is called where it may be made yet, or is made when this turn has ended."""
+    def _change(self, transition: tuple[int, str], answered: Callable[[bool, str], None]) -> None:
+        """Ask for a transition; `answered` receives whether it is made, or may be, and what is wrong, if anything."""
         number, label = transition
 
-        def heard(answer: Mapping[str, Any]) -> None:
-            if answer["success"]:
-                changed()
+        def heard(answer: Mapping[str, Any] | str) -> None:
+            if isinstance(answer, str):
+                answered(True, answer)
+            elif answer["success"]:
+                answered(True, "")
             else:
-                failed(f"the transition {label!r} of the lifecycle node {self._name} has failed")
+                answered(False, f"the transition {label!r} of the lifecycle node {self._name} has failed")
 
-        def heard_late(answer: Mapping[str, Any] | None) -> None:
-            if answer is None or answer["success"]:
-                late()
-
-        self._ask(self._endpoints.change, {"transition": {"id": number, "label": label}}, heard, failed, heard_late)
+        self._ask(self._endpoints.change, {"transition": {"id": number, "label": label}}, heard)
 
     def _ask(
-        self,
-        endpoint: RosEndpoint,
-        fields: Mapping[str, Any],
-        heard: Callable[[Mapping[str, Any]], None],
-        failed: Callable[[str], None],
-        late: Callable[[Mapping[str, Any] | None], None] = lambda _: None,
+        self, endpoint: RosEndpoint, fields: Mapping[str, Any], heard: Callable[[Mapping[str, Any] | str], None]
     ) -> None:
-        """Ask one of the services; `late` receives what is answered after this turn, and None where nothing is."""
+        """Ask one of the services; `heard` receives the fields of its answer, or why there are none."""
         # By the name alone: these definitions are older than hashes, and some implementations hash them in their way.
         kind = ros2.usual_type(endpoint.type.name)
         parts = None if kind is None else ros2.service_parts(kind)
         assert parts is not None, "the services of lifecycle nodes are known"
-        turn, answered = self._turn, parts.response
+        answered = parts.response
 
         def done(replies: Replies) -> None:
-            answer: Mapping[str, Any] | None = None
-            problem = ""
+            answer: Mapping[str, Any] | str
             try:
                 answer = ros2.message_fields(replies.samples[0].payload, answered)
             except IndexError:
-                problem = f"the service {endpoint.topic} of a lifecycle node does not answer"
+                answer = f"the service {endpoint.topic} of a lifecycle node does not answer"
             except MessageError as error:
-                problem = f"what the service {endpoint.topic} answers {error}"
-            if turn != self._turn:
-                late(answer)
-            elif answer is None:
-                late(None)
-                failed(problem)
-            else:
-                heard(answer)
+                answer = f"what the service {endpoint.topic} answers {error}"
+            heard(answer)
 
-        payload = ros2.message(fields, parts.request)
-        self._domain.ask(endpoint, payload, TRANSITION_SECONDS, done)
+        self._domain.ask(endpoint, ros2.message(fields, parts.request), TRANSITION_SECONDS, done)
 
     def _transition(self, event: RosEndpoint, sample: Sample) -> None:
         """The node has told of a transition."""
