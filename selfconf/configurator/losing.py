@@ -91,7 +91,7 @@ def lose(state: State, component: IRI, loss: Loss) -> Reaction:
         lost={**state.lost, component: loss},
         queued=state.queued - {component},
         offered=frozenset(),
-        awaited_since=0,
+        return_awaited_since=0,
     )
     if loss.cause in PROCESS_ENDS and loss.life:
         without = replace(without, ended_lives={**state.ended_lives, component: loss.life})

@@ -184,7 +184,7 @@ def _reconnected(state: State) -> Reaction:
     if state.phase in (Phase.IDLE, Phase.DISMANTLING) or state.ended:
         return state, ()
     unsure = {component: held.at_most(Applied.SENT) for component, held in state.held.items()}
-    return phases.discover(replace(state.unchanged, held=unsure, awaited_since=0))
+    return phases.discover(replace(state.unchanged, held=unsure, return_awaited_since=0))
 
 
 def _ranked(state: State, priority: int) -> Reaction:

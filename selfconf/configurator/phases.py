@@ -72,9 +72,9 @@ def begin_search(state: State, running: Configuration | None, avoided: Avoided) 
 def await_return(state: State) -> Reaction:
     """Wait a moment before a search that has found nothing counts (`State.may_await_return`): once for all of them."""
     awaiting = replace(state, awaits_return=True)
-    if state.awaited_since:
+    if state.return_awaited_since:
         return awaiting, ()
-    return replace(awaiting, awaited_since=state.attempt), (AwaitReturn(state.attempt),)
+    return replace(awaiting, return_awaited_since=state.attempt), (AwaitReturn(state.attempt),)
 
 
 def refuse(state: State) -> Reaction:
@@ -98,7 +98,7 @@ def dismantle(state: State, afterwards: Phase) -> Reaction:
         fallback=None,
         owed=owed,
         watched=frozenset(),
-        awaited_since=0,
+        return_awaited_since=0,
     )
     return then([Unwatch(component) for component in sorted(state.watched)], released(dismantling))
 

@@ -77,7 +77,7 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
             fewer, avoided = _avoid(state, event.outcome)
             return phases.compose(fewer, avoided=avoided)
         found = replace(state, target=event.outcome, plan=event.plan, refusal=None)
-        return deploying.deploy(replace(found, put_off=0, awaited_since=0, has_waited=False))
+        return deploying.deploy(replace(found, put_off=0, return_awaited_since=0, has_awaited_return=False))
     if state.avoided:
         return phases.compose(_avoided_in_vain(state))
     if any(loss.startable for loss in state.lost.values()):
@@ -88,9 +88,9 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
 
 def heed_absence(state: State, event: StayedAway) -> Reaction:
     """What was lost has not come back while searches that found nothing waited for it."""
-    if event.attempt != state.awaited_since:
+    if event.attempt != state.return_awaited_since:
         return state, ()
-    waited = replace(state, awaited_since=0, has_waited=True)
+    waited = replace(state, return_awaited_since=0, has_awaited_return=True)
     if state.phase is not Phase.COMPOSING or not state.awaits_return:
         return replace(waited, news=True), ()  # what is being asked may be answered as it was before
     if state.heeds_others:  # they may have let go of what they held meanwhile

@@ -216,9 +216,9 @@ class State:
     """The components that had appeared just before that, which are not changed to before they have stayed."""
     awaits_return: bool = False
     """Whether the last search has found nothing, and waits for what was lost before it counts."""
-    awaited_since: int = 0
+    return_awaited_since: int = 0
     """The number of the search since which that is waited for, through others that have found nothing; 0: it is not."""
-    has_waited: bool = False
+    has_awaited_return: bool = False
     """Whether that was in vain since the last configuration was found: then no search waits again."""
     put_off: int = 0
     """How many searches in a row have found nothing and did not count, for what had appeared meanwhile."""
@@ -274,7 +274,7 @@ class State:
         Or for a task of higher priority that has asked for something: a change for the better holds two for a moment.
         """
         gone = self.unseen or any(loss.cause is Cause.CRASH and not loss.startable for loss in self.lost.values())
-        waits = not (self.patient or self.inside or self.has_waited)
+        waits = not (self.patient or self.inside or self.has_awaited_return)
         return waits and (gone or self.has_yielded)
 
     @property

@@ -397,7 +397,7 @@ class TaskRunner:
         """What is deployed, by which configurator, since when."""
         return Status(
             configurator=self.name,
-            phase="waiting" if self.state.phase is Phase.REFUSED else self.state.phase.value,
+            phase=self.state.phase_in_words,
             template=self.request.task.template.iri,
             epoch=self.state.epoch,
             since=self.since,

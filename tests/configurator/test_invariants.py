@@ -188,7 +188,7 @@ class Ledger:
         assert not state.ended or not state.queued
         assert state.fallback is None or state.phase in DEPLOYING
         waits = state.phase is Phase.COMPOSING and state.awaits_return
-        assert not waits or state.awaited_since in self.awaited, "nothing would end the wait"
+        assert not waits or state.return_awaited_since in self.awaited, "nothing would end the wait"
 
     def _check_running(self) -> None:
         """All that is wanted is held, and has confirmed that it acts with the wanted inputs and values."""
@@ -323,7 +323,7 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
             Accepted(when),
             Discovered(taken, unseen=bool(who % 2)),
             Composed(state.attempt, _found(state, how)),
-            StayedAway(state.awaited_since or when),
+            StayedAway(state.return_awaited_since or when),
         ]
         return choices[how % len(choices)]
     if kind < 38:
@@ -413,7 +413,7 @@ def test_from_every_state_a_search_that_finds_something_and_components_that_obey
         elif state.phase is Phase.DISCOVERING:
             ledger.hear(Discovered())
         elif state.phase is Phase.COMPOSING and state.awaits_return:
-            ledger.hear(StayedAway(state.awaited_since))
+            ledger.hear(StayedAway(state.return_awaited_since))
         elif state.phase is Phase.COMPOSING:
             ledger.hear(Composed(state.attempt, _found(state, 1)))
         else:

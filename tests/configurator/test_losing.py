@@ -137,7 +137,7 @@ def test_what_no_site_can_start_may_have_been_cut_off_and_back_in_a_moment() -> 
     assert history.hear(Appeared({TRACKER: "1"}))[-1] == Discover()
     assert history.hear(Discovered())[-1] == Compose(history.state.attempt, frozenset(), history.state.target)
     history.hear(StayedAway(history.state.attempt - 2))
-    assert not history.state.has_waited
+    assert not history.state.has_awaited_return
     history.composed(navigation())
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
