@@ -1,7 +1,8 @@
 """What is to be imported: files, the files below folders, and what a URL that the user has named answers.
 
-Nothing is fetched but such a URL, over http or https, without redirects, with a limit of bytes and of time. What is
-made of a source is named after its path below the folder that was given, so that it does not depend on the machine.
+Nothing is fetched but such a URL and the pages that follow it on the same server, over http or https, without
+redirects, with a limit of bytes and of time. What is made of a source is named after its path below the folder that was
+given, so that it does not depend on the machine.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import os
 import re
 from codecs import BOM_UTF8
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from http.client import HTTPException, HTTPResponse
 from pathlib import Path
 from time import monotonic
@@ -20,6 +21,7 @@ from urllib.request import Request
 from selfconf import files
 from selfconf.errors import AuthorError
 from selfconf.http_opener import http_opener
+from selfconf.importing.pages import Pages
 from selfconf.importing.turtle_text import MARK
 from selfconf.model.immutable import immutable
 from selfconf.rdf.turtle import check_utf_8
@@ -30,7 +32,6 @@ FETCH_SECONDS = 20.0
 """How long a URL may take to answer in full."""
 ACCEPTED = "application/td+json, application/tm+json, application/ld+json, application/json, text/turtle, */*;q=0.1"
 _URL = re.compile(r"https?://", re.IGNORECASE)
-_NEXT = re.compile(r';\s*rel\s*=\s*(next(?![\w-])|"([^"]*\s)?next[\s"])', re.IGNORECASE)
 Unreadable = Callable[[AuthorError], None]
 """Receives what is wrong with a source that cannot be read; the others are imported all the same."""
 
@@ -42,8 +43,6 @@ class SourceDocument:
     shown: str
     name: str
     octets: bytes
-    has_next: bool = False
-    """Whether it is one of several pages, of which another follows."""
 
     def text(self) -> str:
         """The text of the document, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
@@ -66,7 +65,7 @@ def gather(given: Sequence[str], endings: tuple[str, ...], unreadable: Unreadabl
     for one in dict.fromkeys(given):
         if _URL.match(one):
             try:
-                yield _fetched(one)
+                yield from _fetched(one)
             except AuthorError as error:
                 unreadable(error)
             continue
@@ -102,12 +101,21 @@ def _too_large(shown: str) -> AuthorError:
     return AuthorError(f"it is over {LARGEST_SOURCE >> 20} MiB, which is more than is read", file=shown)
 
 
-def _fetched(url: str) -> SourceDocument:
-    """What a URL answers. Raises AuthorError."""
+def _fetched(url: str) -> Iterator[SourceDocument]:
+    """What a URL answers, page by page. Raises AuthorError."""
+    pages = Pages(url)
+    while pages.url is not None:
+        octets, links = _answer(pages.url)
+        yield document_at(pages.url, octets, pages.number)
+        pages.go_on(links, octets)
+
+
+def _answer(url: str) -> tuple[bytes, list[str]]:
+    """The body of what a URL answers, and its `Link` headers. Raises AuthorError."""
     deadline = monotonic() + FETCH_SECONDS
     try:
         with http_opener().open(Request(url, headers={"Accept": ACCEPTED}), timeout=FETCH_SECONDS) as reply:
-            octets, links = _body(url, reply, deadline), reply.headers.get_all("Link", ())
+            return _body(url, reply, deadline), reply.headers.get_all("Link", [])
     except HTTPError as error:
         error.close()
         where = error.headers.get("Location")
@@ -115,14 +123,13 @@ def _fetched(url: str) -> SourceDocument:
         raise AuthorError(f"{url} answers {error.code}{moved}") from None
     except (OSError, HTTPException, ValueError) as error:
         raise AuthorError(f"cannot fetch {url}: {getattr(error, 'reason', None) or error}") from None
-    return document_at(url, octets, links)
 
 
-def document_at(url: str, octets: bytes, links: Iterable[str] = ()) -> SourceDocument:
-    """What a URL has answered, named after the end of its path; `links` are its headers `Link` (RFC 8288)."""
+def document_at(url: str, octets: bytes, page: int = 1) -> SourceDocument:
+    """What a URL has answered, named after the end of its path; further pages of one list have a number as well."""
     parts = urlsplit(url)
     name = parts.path.rstrip("/").rpartition("/")[2] or parts.hostname or "thing"
-    return SourceDocument(url, name, octets, any(_NEXT.search(link) for link in links))
+    return SourceDocument(url, name if page == 1 else f"{name}-{page}", octets)
 
 
 def _body(url: str, reply: HTTPResponse, deadline: float) -> bytes:

@@ -14,12 +14,6 @@ from selfconf.errors import AuthorError
 from selfconf.importing import sources
 from selfconf.importing.sources import SourceDocument, gather
 
-PAGE_LINKS = {
-    "/page1": '</page2>; rel="next"',
-    "/page2": '</page1>; rel=prev, </page3>; title="3"; rel="last next"',
-    "/page3": '</next>; rel="canonical"; title="next"',
-}
-
 
 class Things(BaseHTTPRequestHandler):
     """A thing that describes itself, one that has moved, and one whose description does not end."""
@@ -33,10 +27,6 @@ class Things(BaseHTTPRequestHandler):
             self.send_response(200)
             self.end_headers()
             self.wfile.write(b"{}")
-        elif self.path.startswith("/page"):
-            self.send_response(200)
-            self.send_header("Link", PAGE_LINKS[self.path])
-            self.end_headers()
         elif self.path == "/half.json":
             self.send_response(200)
             self.send_header("Content-Length", "9")
@@ -47,6 +37,13 @@ class Things(BaseHTTPRequestHandler):
             self.send_header("Content-Encoding", "gzip")
             self.end_headers()
             self.wfile.write(gzip.compress(b"{}"))
+        elif self.path.startswith("/things"):
+            page = int(self.path.partition("?page=")[2] or 1)
+            self.send_response(200)
+            if page < 3:
+                self.send_header("Link", f'</things?page={page + 1}>; rel="next", </things>; rel=canonical')
+            self.end_headers()
+            self.wfile.write(str(page).encode())
         elif self.path == "/endless":
             self.send_response(200)
             self.end_headers()
@@ -140,9 +137,14 @@ def test_a_url_is_fetched_and_named_after_its_last_part(server: str) -> None:
     assert (found.name, found.octets, errors) == ("lamp.json", b"{}", [])
 
 
-def test_of_a_url_that_answers_a_page_it_is_known_whether_another_follows(server: str) -> None:
-    found, errors = gathered(*(f"{server}{path}" for path in PAGE_LINKS))
-    assert ([one.has_next for one in found], errors) == ([True, True, False], [])
+def test_all_pages_of_a_list_are_fetched_each_as_a_document_of_its_own(server: str) -> None:
+    found, errors = gathered(f"{server}/things")
+    assert [(one.shown, one.name, one.octets) for one in found] == [
+        (f"{server}/things", "things", b"1"),
+        (f"{server}/things?page=2", "things-2", b"2"),
+        (f"{server}/things?page=3", "things-3", b"3"),
+    ]
+    assert errors == []
 
 
 @pytest.mark.parametrize(

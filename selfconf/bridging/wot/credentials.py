@@ -17,10 +17,10 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from selfconf.errors import AuthorError
+from selfconf.http_origin import http_origin
 from selfconf.model.immutable import immutable
 
 TOLD_BY_NAME = frozenset(("username", "password", "token", "key"))
-_USUAL_PORTS = {"http": 80, "https": 443}
 
 
 @immutable
@@ -31,21 +31,7 @@ class ThingCredentials:
 
     def for_url(self, url: str) -> Mapping[str, str]:
         """The secrets of the origin of a URL; none if the file does not speak of it."""
-        return self.by_origin.get(origin(url), {})
-
-
-def origin(url: str) -> str:
-    """The origin of an http or https URL (RFC 6454): scheme, host and port, the usual port left out.
-
-    Raises ValueError for what is no such URL.
-    """
-    parts = urlsplit(url)
-    scheme = parts.scheme.lower()
-    if scheme not in _USUAL_PORTS or not parts.hostname:
-        raise ValueError(f"{url!r} is no http or https URL")
-    host = f"[{parts.hostname}]" if ":" in parts.hostname else parts.hostname
-    port = parts.port
-    return f"{scheme}://{host}" if port in (None, _USUAL_PORTS[scheme]) else f"{scheme}://{host}:{port}"
+        return self.by_origin.get(http_origin(url), {})
 
 
 def read_credentials(path: Path) -> ThingCredentials:
@@ -73,7 +59,7 @@ def read_credentials(path: Path) -> ThingCredentials:
 
 def _origin(name: str, path: Path) -> str:
     try:
-        found, parts = origin(name), urlsplit(name)
+        found, parts = http_origin(name), urlsplit(name)
     except ValueError:
         found, parts = "", urlsplit("")
     if not found or parts.path.strip("/") or parts.query or parts.fragment or "@" in parts.netloc:
@@ -89,11 +75,12 @@ def _members(name: str, value: Any, path: Path) -> Mapping[str, str]:
         or not value
         or not all(isinstance(each, str) and each and each.isprintable() for each in value.values())
     ):
-        raise AuthorError(f"the credentials for {origin(name)} are an object with texts", file=str(path))
+        raise AuthorError(f"the credentials for {http_origin(name)} are an object with texts", file=str(path))
     unknown = sorted(value.keys() - TOLD_BY_NAME)
     if unknown:
         known = ", ".join(sorted(TOLD_BY_NAME))
         raise AuthorError(
-            f"the credentials for {origin(name)} have members other than {known}: {', '.join(unknown)}", file=str(path)
+            f"the credentials for {http_origin(name)} have members other than {known}: {', '.join(unknown)}",
+            file=str(path),
         )
     return value

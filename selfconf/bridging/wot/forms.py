@@ -13,8 +13,9 @@ from dataclasses import field
 from typing import Any
 from urllib.parse import urljoin, urlsplit, urlunsplit
 
-from selfconf.bridging.wot.credentials import ThingCredentials, origin
+from selfconf.bridging.wot.credentials import ThingCredentials
 from selfconf.bridging.wot.security_schemes import UnusableFormError, proof_of_identity
+from selfconf.http_origin import http_origin
 from selfconf.importing import one_or_several
 from selfconf.model.immutable import immutable
 from selfconf.model.setting_names import setting
@@ -108,7 +109,7 @@ class ThingForms:
         url, method = self._url(form.get("href")), form.get("htv:methodName", USUAL_METHODS[operation])
         if not isinstance(method, str) or method not in _KNOWN_METHODS:
             raise UnusableFormError(f"a form has the HTTP method {str(method)[:20]!r}")
-        where, told = origin(url), self._credentials.for_url(url)
+        where, told = http_origin(url), self._credentials.for_url(url)
         names = one_or_several(form.get("security", self._security))
         found = [proof_of_identity(str(name), self._definitions.get(str(name)), told, where) for name in names]
         proofs = [proof for proof in found if proof is not None]
@@ -131,7 +132,7 @@ class ThingForms:
             raise UnusableFormError(f"the form {href[:80]!r} has URI variables, which a signal does not set")
         try:
             url = _plain(urljoin(self._base, href))
-            origin(url)
+            http_origin(url)
         except ValueError:
             raise UnusableFormError(f"the form {href[:80]!r} leads to no http or https URL") from None
         host = urlsplit(url).hostname or ""

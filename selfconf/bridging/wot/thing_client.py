@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 import aiohttp
 from yarl import URL
 
-from selfconf.bridging.wot.credentials import origin
 from selfconf.bridging.wot.forms import ThingForm, bare, is_json
-from selfconf.importing import ACCEPTED, LARGEST_SOURCE, SourceDocument, document_at
+from selfconf.http_origin import http_origin
+from selfconf.importing import LARGEST_SOURCE
 from selfconf.model.immutable import immutable
 
 CONNECTIONS = 32
@@ -95,11 +95,10 @@ class ThingClient:
         for session in (self._requests, self._followed, self._actions):
             await session.close()
 
-    async def fetch(self, url: str, seconds: float) -> SourceDocument:
-        """What a URL answers, whatever that says, within so many seconds. Raises ThingError."""
-        form = ThingForm(url, "GET", ACCEPTED)
+    async def fetch(self, form: ThingForm, seconds: float) -> tuple[bytes, list[str]]:
+        """The bytes of an answer, and its `Link` headers, within so many seconds. Raises ThingError."""
         async with self._asked(self._requests, form, seconds) as answer:
-            return document_at(url, await self._body(form, answer), answer.headers.getall("Link", ()))
+            return await self._body(form, answer), answer.headers.getall("Link", [])
 
     async def read(self, form: ThingForm) -> ThingAnswer:
         """What a thing answers. Raises ThingError."""
@@ -162,7 +161,7 @@ class ThingClient:
             _, writer = await asyncio.wait_for(asyncio.open_connection(url.host, url.port), self._limits.answer)
             writer.close()
         except (OSError, ValueError, asyncio.TimeoutError) as error:  # ValueError for a host that no name can be
-            raise ThingError(f"{origin(form.url)} {NO_ANSWER}: {_reason(error)}") from None
+            raise ThingError(f"{http_origin(form.url)} {NO_ANSWER}: {_reason(error)}") from None
 
     @asynccontextmanager
     async def _sent(

@@ -15,25 +15,28 @@ import threading
 from collections.abc import Coroutine, Sequence
 from dataclasses import field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 from urllib.parse import urlsplit
 
 from selfconf.bridging.bridge import Bridge
-from selfconf.bridging.wot.credentials import ThingCredentials, origin
-from selfconf.bridging.wot.forms import ThingForms
+from selfconf.bridging.wot.credentials import ThingCredentials
+from selfconf.bridging.wot.forms import ThingForm, ThingForms
 from selfconf.bridging.wot.interactions import ThingInteractions, interactions
 from selfconf.bridging.wot.thing_client import NO_ANSWER, ThingClient, ThingError, ThingLimits
 from selfconf.bridging.wot.thing_component import ThingComponent
 from selfconf.errors import AuthorError
+from selfconf.http_origin import http_origin
 from selfconf.importing import (
+    ACCEPTED,
     FETCH_SECONDS,
-    THINGS_MISSED,
+    NO_THINGS,
     DescribedThing,
     ImportedDocument,
     ImportLedger,
-    Omission,
+    Pages,
     SourceDocument,
     described_things,
+    document_at,
     gather,
 )
 from selfconf.model.immutable import immutable, replace
@@ -131,21 +134,34 @@ class ThingWorld:
         fetched: list[SourceDocument] = []
         if is_url(source):
             try:
-                fetched.append(await self._client.fetch(source, FETCH_SECONDS))
+                fetched = await self._fetched(source)
             except ThingError as error:
                 sentence = f"cannot fetch a description: {error}"
                 self._tell(sentence)
                 self._outages.setdefault(source, set()).add(sentence)
                 return None
             self._told -= self._outages.pop(source, set())  # the next time is news
-        found, unreadable, missed = await asyncio.to_thread(
-            _things_in, source, fetched
-        )  # it may take long, never waits
-        for wrong in (*unreadable, *missed):
+        found = await asyncio.to_thread(_things_in, source, fetched)  # it may take long, but never waits
+        for wrong in found.unreadable:
             self._tell(str(wrong))
-        spoiled = {wrong.file for wrong in unreadable}
+        for place in found.without_things:
+            self._tell(f"{place} holds what describes no thing: it has neither a title nor an affordance")
+        spoiled = {wrong.file for wrong in found.unreadable}
         before = self._found.get(source, ())
-        return [*found, *(thing for thing in before if spoiled.intersection(_places(thing.source.shown)))]
+        return [*found.things, *(thing for thing in before if spoiled.intersection(_places(thing.source.shown)))]
+
+    async def _fetched(self, source: str) -> list[SourceDocument]:
+        """What a URL answers, page by page. Raises ThingError."""
+        pages = Pages(source)
+        found: list[SourceDocument] = []
+        while pages.url is not None:
+            octets, links = await self._client.fetch(ThingForm(pages.url, "GET", ACCEPTED), FETCH_SECONDS)
+            found.append(document_at(pages.url, octets, pages.number))
+            try:
+                pages.go_on(links, octets)
+            except AuthorError as error:  # what was read counts all the same
+                self._tell(str(error))
+        return found
 
     def _compare(self) -> None:
         """Let the things come that are new or described anew, and go that are described no more."""
@@ -320,10 +336,16 @@ def _kind(trouble: str) -> str:
     return trouble if kind.endswith(NO_ANSWER) else kind
 
 
-def _things_in(
-    source: str, fetched: list[SourceDocument]
-) -> tuple[list[DescribedThing], list[AuthorError], list[Omission]]:
-    """The things in what was fetched, else in a path, what of it cannot be read, and where things are missing."""
+class _SourceThings(NamedTuple):
+    """What a source holds: things, what cannot be read, and where something stands in place of a thing."""
+
+    things: list[DescribedThing]
+    unreadable: list[AuthorError]
+    without_things: tuple[str, ...]
+
+
+def _things_in(source: str, fetched: list[SourceDocument]) -> _SourceThings:
+    """The things in what was fetched, else in a path."""
     unreadable: list[AuthorError] = []
     ledger = ImportLedger(NAMESPACE, unreadable.append)
     documents = fetched or gather([source], DESCRIPTIONS, unreadable.append)
@@ -332,14 +354,11 @@ def _things_in(
     # say that name themselves: two files may be called alike but for letters that no name has.
     was = {one.component: one.was for one in ledger.names.renamed if not one.was.startswith(NAMESPACE)}
     names = [was.get(thing.component.iri, thing.component.iri) for thing in found]
-    return (
-        [
-            replace(thing, component=replace(thing.component, iri=name))
-            for thing, name in zip(found, names, strict=True)
-        ],
-        unreadable,
-        [one for one in ledger.omissions() if one.what in THINGS_MISSED],
-    )
+    things = [
+        replace(thing, component=replace(thing.component, iri=name)) for thing, name in zip(found, names, strict=True)
+    ]
+    without = [place for left_out in ledger.omissions() if left_out.what == NO_THINGS for place in left_out.sources]
+    return _SourceThings(things, unreadable, tuple(without))
 
 
 def _places(shown: str) -> list[str]:
@@ -351,8 +370,8 @@ def unreadable_file(source: str) -> AuthorError | None:
     """Why no thing is described in a source that is one file; None for any other source, which may fill later."""
     if is_url(source) or not Path(source).is_file():
         return None
-    found, unreadable, _ = _things_in(source, [])
-    return None if found or not unreadable else unreadable[0]
+    found = _things_in(source, [])
+    return None if found.things or not found.unreadable else found.unreadable[0]
 
 
 def is_url(source: str) -> bool:
@@ -363,7 +382,7 @@ def is_url(source: str) -> bool:
 def host_of(url: str) -> str:
     """The host to which a URL leads. Raises AuthorError for what is none."""
     try:
-        origin(url)
+        http_origin(url)
     except ValueError:
         raise AuthorError(f"{url} is no http or https URL") from None
     return urlsplit(url).hostname or ""

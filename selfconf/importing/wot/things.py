@@ -15,10 +15,11 @@ from selfconf.errors import AuthorError
 from selfconf.importing.imported import ImportedComponent, ImportedDocument
 from selfconf.importing.ledger import ImportLedger
 from selfconf.importing.naming import absolute, stem
+from selfconf.importing.pages import COLLECTION
 from selfconf.importing.sources import SourceDocument
 from selfconf.importing.wot.affordances import AffordanceReader
 from selfconf.importing.wot.contexts import TermMeanings, spoken
-from selfconf.importing.wot.json_text import parse_json
+from selfconf.importing.wot.json_text import one_or_several, parse_json
 from selfconf.importing.wot.other_terms import OtherTerms
 from selfconf.importing.wot.own_terms import OWN_TERMS, OwnTerms
 from selfconf.importing.wot.thing_models import ModelReferences
@@ -26,12 +27,10 @@ from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Literal
 from selfconf.rdf.vocabulary import RDFS, SC
 
+NO_THINGS = "documents that describe no thing"
+"""What is left out where something stands in place of a thing, in words."""
 THING = IRI("https://www.w3.org/2019/wot/td#Thing")
 AFFORDANCES = ("properties", "events", "actions")
-_NO_THING = "documents that describe no thing"
-_NEXT_PAGES = "the next pages of a directory"
-THINGS_MISSED = frozenset((_NO_THING, _NEXT_PAGES))
-"""What of the omissions stands for whole things."""
 _UNUSED = {
     "forms": ("forms", "they say how a thing is reached, an advertisement says what it is"),
     "security": ("security", "who may do what is not said by an advertisement"),
@@ -61,7 +60,7 @@ class DescribedThing:
 
 
 def import_things(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
-    """The things that JSON documents describe: each holds one, or an array of them as a directory answers with."""
+    """The things that JSON documents describe: each holds one, or several, as a directory answers with."""
     for _, group in groupby(described_things(sources, ledger), lambda thing: id(thing.source)):
         things = list(group)
         source = things[0].source
@@ -90,20 +89,25 @@ def described_things(sources: Iterable[SourceDocument], ledger: ImportLedger) ->
 def _things(
     value: Any, source: SourceDocument, ledger: ImportLedger, references: ModelReferences
 ) -> Iterator[DescribedThing]:
-    things = value if isinstance(value, list) else [value]
+    things = _listed(value)
     if not things:
         ledger.leave_out("empty documents", "there is no thing in them", source)
-    if source.has_next:
-        ledger.leave_out(_NEXT_PAGES, "each is a source of its own, by its URL", source)
     for number, thing in enumerate(things, 1):
         if not isinstance(thing, dict) or not _describes_a_thing(thing):
-            ledger.leave_out(_NO_THING, "they have neither a title nor an affordance", source)
+            ledger.leave_out(NO_THINGS, "they have neither a title nor an affordance", source)
             continue
         meanings = TermMeanings(thing.get("@context"))
         position = (str(number),) if len(things) > 1 else ()
         whole = references.resolved(thing, source)
         component = _ThingReader(whole, meanings, source, ledger).component(position)
         yield DescribedThing(component, whole, source, meanings.prefixes)
+
+
+def _listed(value: Any) -> list[Any]:
+    """The things of a document: those of an array or of a collection, or the one that it describes."""
+    if isinstance(value, dict) and COLLECTION in one_or_several(value.get("@type")):
+        value = value.get("members", [])
+    return value if isinstance(value, list) else [value]
 
 
 def _describes_a_thing(thing: dict[str, Any]) -> bool:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from selfconf.bridging.wot.credentials import origin, read_credentials
+from selfconf.bridging.wot.credentials import read_credentials
 from selfconf.errors import AuthorError
 
 
@@ -61,14 +60,3 @@ def test_what_is_wrong_is_said_without_the_secret(tmp_path: Path, text: str, wor
 def test_a_file_that_is_not_there_is_said_to_be(tmp_path: Path) -> None:
     with pytest.raises(AuthorError, match="No such file"):
         read_credentials(tmp_path / "none.json")
-
-
-@pytest.mark.parametrize("url", ["ftp://a/", "lamp", "http:///x", "coap://a", "http://a:99999/"])
-def test_only_http_has_an_origin(url: str) -> None:
-    with pytest.raises(ValueError, match=r"http|Port|port"):
-        origin(url)
-
-
-def test_the_usual_port_is_left_out() -> None:
-    said: Any = {"HTTP://A.Example:80/x": "http://a.example", "https://a:443": "https://a", "http://a:8": "http://a:8"}
-    assert {url: origin(url) for url in said} == said

@@ -43,18 +43,35 @@ def test_the_things_of_a_directory_come_and_go(thing_server: Start, living: Livi
         assert until(lambda: sum("answers 500" in one for one in found.complaints) == 2), "each time is news"
 
 
-def test_things_that_a_bridge_does_not_reach_in_its_sources_are_told(
+def test_the_things_of_all_pages_of_a_directory_are_here(
     thing_server: Start, living: LivingStage, tmp_path: Path
 ) -> None:
     server = thing_server()
-    server.values.update({"/on": True, "/collection": {"@type": "ThingCollection", "members": [server.describe("b")]}})
-    page = json.dumps([server.describe("a")]).encode()
-    link = '</things?offset=1&limit=1>; rel="next"'
-    server.answers["/things"] = lambda handler: reply(handler, page, Link=link)
-    with bridging(living, tmp_path / "ads", f"{server.url}/things", f"{server.url}/collection") as found:
+    server.values["/on"] = True
+    first, second = (json.dumps([server.describe(name)]).encode() for name in "ab")
+    server.answers["/things"] = lambda handler: reply(handler, first, Link='<more>; rel="next"')
+    server.answers["/more"] = lambda handler: reply(handler, second, Link="<http://elsewhere.example/>; rel=next")
+    with bridging(living, tmp_path / "ads", f"{server.url}/things") as found:
+        assert until(lambda: found.lives("a") and found.lives("b"))
+        assert until(lambda: found.complained("http://elsewhere.example/, which is another server"))
+        server.answers["/more"] = lambda handler: reply(handler, b"", 500)
+        assert until(lambda: found.complained("answers 500"))
+        assert found.lives("a")
+        assert found.lives("b"), "a page that cannot be read has its things stay"
+        server.answers["/things"] = lambda handler: reply(handler, first)
+        assert until(lambda: not found.lives("b"))
+        assert found.lives("a")
+
+
+def test_a_collection_is_read_and_what_describes_no_thing_is_named(
+    thing_server: Start, living: LivingStage, tmp_path: Path
+) -> None:
+    server = thing_server()
+    members = [server.describe("a"), {"status": "ok"}]
+    server.values |= {"/on": True, "/things": {"@type": "ThingCollection", "members": members}}
+    with bridging(living, tmp_path / "ads", f"{server.url}/things") as found:
         assert until(lambda: found.lives("a"))
-        assert until(lambda: found.complained("left out the next pages of a directory (1)"))
-        assert until(lambda: found.complained("left out documents that describe no thing (1)"))
+        assert found.complained(f"{server.url}/things holds what describes no thing")
 
 
 def test_a_thing_that_is_described_anew_is_another_component(

@@ -57,6 +57,16 @@ def test_a_thing_model_is_imported_as_what_it_is_a_model_of(workshop: Workshop) 
     assert left_out(report) == {"marks of affordances that a thing may lack": 1}
 
 
+def test_a_collection_is_imported_as_its_members(workshop: Workshop) -> None:
+    members = [{"@context": CONTEXT, "id": f"urn:dev:{name}", "title": name} for name in ("lamp", "door")]
+    text = json.dumps({"@context": CONTEXT, "@type": "ThingCollection", "total": 2, "members": members})
+    report = workshop.imported("wot", {"things.json": text, "none.json": json.dumps({"@type": "ThingCollection"})})
+    (written,) = workshop.texts().values()
+    assert "<urn:dev:lamp> a " in written
+    assert "<urn:dev:door> a " in written
+    assert left_out(report) == {"empty documents": 1}
+
+
 def test_titles_are_kept_in_their_languages(workshop: Workshop) -> None:
     text = described(titles={"de": "Lampe", "en": "Lamp", "no tag": "?"})
     assert 'rdfs:label "Lampe"@de, "Lamp"@en, "?" .' in only(workshop, workshop.imported("wot", {"lamp.json": text}))
