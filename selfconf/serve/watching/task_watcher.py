@@ -51,17 +51,12 @@ class TaskWatcher:
         self.bus, self.keys, self._happened, self._changed = bus, keys, happened, changed
         self._tasks: dict[str, WatchedTask] = {}
         """By the name of the configurator."""
-        self._leaving: set[str] = set()
-        """The configurators whose life has ended, and whose last notice may still come."""
         self._over: deque[str] = deque()
         self._kept: dict[str, TaskRecord] = {}
-        self._records: dict[str, TaskRecord] = {}
-        """What each configurator has told of its task, by the name of the configurator."""
-        self._new_records: set[str] = set()
+        self._new_records: dict[str, TaskRecord] = {}
+        """What each configurator has told of its task, by the name of the configurator, until that is handed on."""
         self._graphs: list[dict[str, bytes]] = [{}]
         """What is to be handed on, in its order: one that replaces another before that was handed on comes after it."""
-        self._deployed_text: dict[str, bytes] = {}
-        """What each configurator has said last of what it has deployed."""
         self._asking: set[str] = set()
         self._early: deque[Sample] = deque(maxlen=EARLY)
         """What was received while something before it is missing: the configurator may end before it can say that."""
@@ -92,9 +87,10 @@ class TaskWatcher:
 
     def take_records(self) -> dict[str, TaskRecord]:
         """The tasks of which more is known since the last call, by identity; one that is not known yet has to wait."""
-        new = {name for name in self._new_records if name in self._tasks and self._tasks[name].identity != name}
-        self._new_records = (self._new_records - new) & self._tasks.keys()
-        return {self._tasks[name].identity: self._records[name] for name in new}
+        told = {name: record for name, record in self._new_records.items() if name in self._tasks}
+        self._new_records = {name: record for name, record in told.items() if self._tasks[name].identity == name}
+        new = told.keys() - self._new_records.keys()
+        return {self._tasks[name].identity: told[name] for name in new}
 
     def _put_graph(self, configurator: str, triples: bytes) -> None:
         graph = f"urn:selfconf:{self.keys.configuration(configurator)}"
@@ -112,14 +108,14 @@ class TaskWatcher:
     def _configurator_changed(self, key: str, alive: bool) -> None:
         name = owner_of(key)
         if alive:
-            self._leaving.discard(name)
             if name in self._over:  # only the way to it was gone
                 self._over.remove(name)
-            self._task(name).alive = True
+            task = self._task(name)
+            task.alive, task.is_leaving = True, False
             self._ask_all(name)
             self._ask_task(name)
         elif name in self._tasks:
-            self._leaving.add(name)
+            self._tasks[name].is_leaving = True
             if self._tasks[name].ended:
                 self._end(name)
             else:
@@ -127,16 +123,13 @@ class TaskWatcher:
 
     def _end(self, name: str) -> None:
         """Take a configurator for ended, unless it has come back meanwhile."""
-        if name not in self._leaving or name not in self._tasks:
+        task = self._tasks.get(name)
+        if task is None or not task.is_leaving:
             return
-        self._leaving.discard(name)
-        self._tasks[name].alive = False
+        task.alive, task.is_leaving, task.deployed_text = False, False, b""
         self._over.append(name)
         while len(self._over) > ENDED_TASKS:
-            gone = self._over.popleft()
-            self._tasks.pop(gone, None)
-            self._records.pop(gone, None)
-        self._deployed_text.pop(name, None)
+            self._tasks.pop(self._over.popleft(), None)
         self._put_graph(name, b"")
         self._changed()
 
@@ -163,7 +156,7 @@ class TaskWatcher:
             if event["act"] == "waiting":  # what was deployed is taken down, which no configuration tells
                 self._put_graph(task.configurator, b"")
                 # Where this comes late, the configuration that was deployed after it is known already, and counts anew.
-                self._deployed_text.pop(task.configurator, None)
+                task.deployed_text = b""
         if notice.event.get("act") == "running":
             self._ask(self.keys.configuration(task.configurator), self._take_deployed)
 
@@ -190,7 +183,7 @@ class TaskWatcher:
         """Ask everyone, so that nothing that was lost stays lost."""
         self.bus.later(LOOK_ANEW, self._audit)
         self._ask_all("*")
-        for name in [name for name, task in self._tasks.items() if task.alive and name not in self._records]:
+        for name in [name for name, task in self._tasks.items() if task.alive and not task.is_told]:
             self._ask_task(name)
         self._ask(self.keys.kept_tasks(), self._take_kept)
 
@@ -208,9 +201,10 @@ class TaskWatcher:
                     record = decode(sample.payload, TaskRecord)
                 except PeerError:
                     continue
-                if sample.key == key and configurator in self._tasks and len(self._records) < TOLD_TASKS:
-                    self._records[configurator] = record
-                    self._new_records.add(configurator)
+                told = sum(task.is_told for task in self._tasks.values())
+                if sample.key == key and configurator in self._tasks and told < TOLD_TASKS:
+                    self._tasks[configurator].is_told = True
+                    self._new_records[configurator] = record
             self._changed()
 
         key = self.keys.configurator_call(configurator, "task")
@@ -247,9 +241,9 @@ class TaskWatcher:
             task = self._tasks.get(name)
             if task is None or not task.alive or sample.key != self.keys.configuration(name):
                 continue
-            if self._deployed_text.get(name) == sample.payload:
+            if task.deployed_text == sample.payload:
                 continue
-            self._deployed_text[name] = sample.payload
+            task.deployed_text = sample.payload
             try:
                 document = turtle.parse(sample.payload, sample.key)
             except TurtleError as error:

@@ -28,12 +28,18 @@ class WatchedTask:
     def __init__(self, configurator: str) -> None:
         self.configurator = configurator
         self.alive = True
+        self.is_leaving = False
+        """Whether the life of its configurator has ended, whose last notice may still come."""
+        self.is_told = False
+        """Whether its configurator has told of it as sites would keep it."""
         self.status: Status | None = None
         self.sequence = 0
         """The number of the last event that was heard."""
         self.configuration: Body | None = None
         self.deployed = 0
         """The epoch of the newest configuration that it has told."""
+        self.deployed_text = b""
+        """What its configurator has said last of what it has deployed, if that counts yet."""
         self.refusal: Body | None = None
         self._waits_since = 0
         """The number of the event that has told of the refusal for which it waits; 0 if it does not."""

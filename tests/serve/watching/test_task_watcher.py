@@ -208,7 +208,7 @@ def test_what_a_configurator_tells_of_its_task_is_handed_on_once_the_identity_is
     watcher = Tasks(lab).watcher
     record, key = TaskRecord("tidy~1", 1), lab.keys.configurator_call("c1", "task")
     watcher._task("c1")
-    watcher._records["c1"], watcher._new_records = record, {"c1", "gone"}
+    watcher._new_records = {"c1": record, "gone": record}
     assert watcher.take_records() == {}
     status = Status("c1", "idle", iri("tidy"), 0, 0.0, task="tidy~1")
     watcher._take_statuses(Replies((Sample(key.replace("task", "status"), encode(status)),)))
