@@ -62,9 +62,9 @@ class _PropertyParts:
         if predicate == SH.hasValue:
             self.required.append(value)
         elif predicate == SH.minCount and number is not None:
-            self.minimum = max(self.minimum, number)
+            self.minimum = number
         elif predicate == SH.maxCount and number is not None:
-            self.maximum = number if self.maximum is None else min(self.maximum, number)
+            self.maximum = number
         else:
             return False
         return True
@@ -93,7 +93,6 @@ class ShapeCompiler:
             yield from self._property(shape)
             return
         self._above.append(shape)
-        self.rest = self.rest or self._repeats(shape)
         for predicate, raw in self.document.about(shape):
             yield from self._constraint(predicate, raw)
         self._above.pop()
@@ -144,7 +143,6 @@ class ShapeCompiler:
         for predicate, raw in dict.fromkeys(self.document.about(shape)):
             self._constraint_of_values(predicate, raw, parts)
         test = self._test(path, parts)
-        self.rest = self.rest or self._repeats(shape)
         yield replace(test, qualified=tuple(self._qualified(parts.qualified))) if parts.qualified else test
 
     def _test(self, path: IRI, parts: _PropertyParts) -> PropertyTest:
@@ -194,7 +192,6 @@ class ShapeCompiler:
         if parts.minimum or parts.maximum is not None or parts.compared or parts.qualified:
             self.rest = True
             parts = _PropertyParts()
-        self.rest = self.rest or self._repeats(shape)
         return self._test(SH.value, parts)
 
     def _constraint_of_values(self, predicate: IRI, value: Term, parts: _PropertyParts) -> None:
@@ -235,11 +232,6 @@ class ShapeCompiler:
             parts.free_in.append((variables[0], constants))
         else:
             self.rest = True
-
-    def _repeats(self, shape: Term) -> bool:
-        """Whether something is stated twice that a shape may state once; pySHACL then says so."""
-        said = [predicate for predicate, _ in dict.fromkeys(self.document.about(shape))]
-        return any(said.count(predicate) > 1 for predicate in (SH["in"], SH.minCount, SH.maxCount))
 
     def _true(self, subject: Term, predicate: IRI) -> bool:
         value = self.document.value(subject, predicate)
