@@ -14,6 +14,7 @@ SAID = ":none :note 1 . :zero :flow 0 . :low :flow 3 . :high :flow 7 . :both :fl
 NODES = ("none", "zero", "low", "high", "both")
 COMPONENT = ":most a sh:ConstraintComponent ; sh:parameter [ sh:path :arg ] ; %s .\n"
 HIGHER = "SELECT $this ?value WHERE { $this <http://e.org/flow> ?value FILTER (?value > $arg) }"
+EQUAL = "SELECT $this WHERE { $this <http://e.org/flow> $arg }"
 GREATER = "SELECT $this ?value WHERE { $this $PATH ?value FILTER (?value > $arg) }"
 LACKING = "SELECT $this WHERE { FILTER NOT EXISTS { $this $PATH ?any } }"
 
@@ -22,6 +23,13 @@ LACKING = "SELECT $this WHERE { FILTER NOT EXISTS { $this $PATH ?any } }"
     ("validator", "shape", "wrong"),
     [
         (f'sh:nodeValidator [ sh:select "{HIGHER}" ]', ":arg 4", {"high", "both"}),
+        (f'sh:nodeValidator [ sh:select "{EQUAL}" ]', ":arg 3, 7", {"low", "high", "both"}),
+        (f'sh:nodeValidator [ sh:select "{EQUAL}" ]', ":arg 0, 3, 7", {"zero", "low", "high", "both"}),
+        (
+            'sh:validator [ sh:ask "ASK { FILTER ($value != $arg) }" ]',
+            "sh:property [ sh:path :flow ; :arg 3, 7 ]",
+            {"low", "high", "both"},
+        ),
         (f'sh:nodeValidator [ sh:select "{HIGHER}" ]', "sh:not [ :arg 4 ]", {"none", "zero", "low"}),
         (f'sh:propertyValidator [ sh:select "{LACKING}" ]', "sh:property [ sh:path :flow ; :arg 4 ]", {"none"}),
         (
@@ -42,3 +50,10 @@ def test_the_validator_of_a_component_finds_what_shacl_says(validator: str, shap
     focus = [IRI(f"http://e.org/{node}") for node in NODES]
     found = violations(subjects, shapes, IRI("http://e.org/shape"), focus, "a.ttl")
     assert {node.removeprefix("http://e.org/") for node in found} == wrong
+
+
+def test_the_message_of_a_component_names_what_is_violated() -> None:
+    text = HEAD + COMPONENT % f'sh:nodeValidator [ sh:select "{EQUAL}" ]' + ":shape :arg 3, 7 ."
+    subjects, shapes = (to_rdflib(turtle.parse(each, "a.ttl").triples()) for each in (HEAD + SAID, text))
+    (found,) = violations(subjects, shapes, IRI("http://e.org/shape"), [IRI("http://e.org/high")], "a.ttl").values()
+    assert [each.message for each in found] == ["most, with arg 7"]

@@ -48,6 +48,13 @@ class ShapeSource:
     def __init__(self, *graphs: Graph) -> None:
         self.graphs = graphs
         self.parameters = frozenset(self.subjects(RDF.type, URIRef(SC.Parameter)))
+        self.constraints = frozenset(
+            path
+            for component in self.subjects(RDF.type, SH.ConstraintComponent)
+            for parameter in self.values(component, SH.parameter)
+            for path in self.values(parameter, SH.path)
+        )
+        """The predicates by which a shape uses a constraint component of these graphs."""
 
     def about(self, subject: Node) -> Iterator[tuple[Node, Node]]:
         """Predicate and object of each statement about a subject."""
@@ -150,7 +157,7 @@ class NormalForm:
                 self.whole = False
             elif predicate in SINGLE or predicate == SH.hasValue:
                 self.own.append(statement)
-            elif predicate in SH and predicate not in _SILENT:
+            elif predicate in self.source.constraints or (predicate in SH and predicate not in _SILENT):
                 self.whole = False
 
     def plus(self, shape: Node) -> NormalForm:

@@ -245,7 +245,7 @@ def properties_of_roles(file: LintedFile) -> Iterator[Diagnostic]:
 
     These are the properties of selfconf's own ontologies, and what shapes of the file ask for.
     """
-    asked = set(file.graph.objects(None, SH.path))
+    asked = set(file.graph.objects(None, SH.path)) - file.source.constraints
     for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))) - _roles_and_components(file):
         for predicate, value in file.graph.predicate_objects(role):
             property_, home = str(predicate), namespace(str(predicate))

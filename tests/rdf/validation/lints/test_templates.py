@@ -6,6 +6,8 @@ import pytest
 
 from tests.rdf.validation.lints.test_terms import HEAD, TEMPLATE, lints, only
 
+VALIDATOR = "sh:nodeValidator [ sh:select 'SELECT $this WHERE { $this ?p $least }' ]"
+
 
 def test_a_role_that_has_the_type_of_its_component_is_told_what_to_write() -> None:
     assert only(TEMPLATE.replace("sc:Role ; sh:class rob:Lamp", "sc:Role, rob:Lamp")).hint == "Write sh:class rob:Lamp."
@@ -190,6 +192,7 @@ def test_a_role_that_every_component_meets_is_noticed(role: str) -> None:
         ":r sh:property [ sh:path rob:place ; sh:closed true ] .",
         ":r sc:sets [ sc:parameterType rob:Station ; sc:value 3 ] .",
         ':t sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:of :r ] .',
+        f":r :least 3 . :Least a sh:ConstraintComponent ; sh:parameter [ sh:path :least ] ; {VALIDATOR} .",
     ],
 )
 def test_a_role_of_which_anything_is_asked_is_left_alone(more: str) -> None:
