@@ -60,14 +60,15 @@ class TaskDocument:
 def read_task(document: Document, wanted: IRI | None = None) -> TaskDocument:
     """The task or template of a document; `wanted` names one where there are several. Raises TemplateError."""
     tasks, templates = document.instances(SC.Task), document.instances(SC.Template)
+    if not templates and not tasks:
+        raise TemplateError("no sc:Template and no sc:Task in it; is it the right file?", file=document.source)
     if wanted is not None:
         if wanted not in tasks and wanted not in templates:
-            raise TemplateError(f"there is no template or task {wanted!r} in it", file=document.source)
+            names = ", ".join(sorted(repr(node) for node in {*tasks, *templates}))
+            raise TemplateError(f"there is no template or task {wanted!r} in it; it has {names}", file=document.source)
         chosen: Node = wanted
     elif len(tasks or templates) == 1:
         chosen = (tasks or templates)[0]
-    elif not templates and not tasks:
-        raise TemplateError("no sc:Template and no sc:Task in it; is it the right file?", file=document.source)
     else:
         names = ", ".join(sorted(repr(node) for node in tasks or templates))
         raise TemplateError(f"it holds several; say which with {setting('template')}: {names}", file=document.source)
