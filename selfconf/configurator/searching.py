@@ -4,7 +4,8 @@ A search that finds nothing counts only if nothing has appeared since the ecolog
 does it count before the lost components whose sites can start them again are searched with: they are woken as dormant
 ones are, and how often that is done in vain is limited by their sites. What else has gone without a word may have been
 cut off for a moment, and a task that has asked for a component may let go of another one, so a task that does not wait
-is not refused before that has passed.
+is not refused before that has passed. And what runs goes on as it is, if nothing of it was lost but the sight of a site
+that has advertised it.
 
 Components that a task of the same or a higher priority holds do not count for the search; one that can be shared does,
 until a configuration is found that wants something else of it than its holder: first the search avoids the sources that
@@ -76,14 +77,25 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
         if state.contested(event.outcome):
             fewer, avoided = _avoid(state, event.outcome)
             return phases.compose(fewer, avoided=avoided)
-        found = replace(state, target=event.outcome, plan=event.plan, refusal=None)
-        return deploying.deploy(replace(found, put_off=0, return_awaited_since=0, has_awaited_return=False))
+        return _found(replace(state, target=event.outcome, plan=event.plan))
     if state.avoided:
         return phases.compose(_avoided_in_vain(state))
     if any(loss.startable for loss in state.lost.values()):
         return phases.compose(replace(state, lost={c: loss for c, loss in state.lost.items() if not loss.startable}))
-    refused = replace(state, refusal=event.outcome)
-    return phases.await_return(refused) if state.may_await_return and not state.asks_again else _refused(refused)
+    return _found_nothing(replace(state, refusal=event.outcome))
+
+
+def _found(state: State) -> Reaction:
+    return deploying.deploy(replace(state, refusal=None, put_off=0, return_awaited_since=0, has_awaited_return=False))
+
+
+def _found_nothing(state: State) -> Reaction:
+    """Nothing was found among all that there is, as far as it has answered."""
+    if state.asks_again:
+        return _refused(state)
+    if state.goes_on_unseen:
+        return _found(state)
+    return phases.await_return(state) if state.may_await_return else _refused(state)
 
 
 def heed_absence(state: State, event: StayedAway) -> Reaction:

@@ -268,6 +268,18 @@ class State:
         return self.asks_again or any(loss.startable for loss in self.lost.values())
 
     @property
+    def goes_on_unseen(self) -> bool:
+        """Whether all that is wanted is held and nothing of it was lost, though some is not advertised any more.
+
+        Then a search that finds nothing says that a site is out of sight, not that a component is.
+        """
+        if not self.unseen or self.wanted is None:
+            return False
+        return all(
+            one in self.held and self.held[one].reserved and one not in self.lost for one in self.wanted.components
+        )
+
+    @property
     def may_await_return(self) -> bool:
         """Whether the end of the task waits for what has gone without a word: it may have been cut off for a moment.
 

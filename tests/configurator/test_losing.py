@@ -182,13 +182,23 @@ def test_what_has_not_come_back_in_time_is_a_reason_to_refuse() -> None:
     assert history.effects[-1] == Finish(REFUSAL)
 
 
-def test_what_is_held_and_not_advertised_any_more_may_be_out_of_sight_for_a_moment() -> None:
-    history = History(State()).running()
+@pytest.mark.parametrize("patient", [False, True])
+def test_what_is_held_and_not_advertised_any_more_goes_on(patient: bool) -> None:
+    history = History(State(patient=patient)).running()
     history.hear(Reconnected(), Discovered(unseen=True))
+    history.composed(REFUSAL)
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert history.state.target == navigation()
+
+
+def test_what_is_lost_while_something_is_not_advertised_any_more_may_be_so_for_a_moment() -> None:
+    history = History(State()).running()
+    history.hear(Reconnected(), Failed(TRACKER, "", Cause.FAIL, "lost"), Discovered(unseen=True))
     assert history.composed(REFUSAL) == [AwaitReturn(history.state.attempt)]
     assert history.hear(Appeared({}))[-1] == Discover()
     history.hear(Discovered())
-    history.composed(navigation())
+    history.composed(navigation(ODOMETRY))
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
 

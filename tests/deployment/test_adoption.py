@@ -45,6 +45,31 @@ def test_the_next_site_goes_on_without_stopping_anything(keepers: Keepers) -> No
     assert keepers.lab.until(lambda: keepers.lab.active() == TASK | {"odometry"})
 
 
+@pytest.mark.parametrize("ends", ["", "tracker"])
+def test_the_next_site_goes_on_with_what_lives_though_no_site_advertises_it_any_more(tmp_path: Path, ends: str) -> None:
+    """The site that advertises it ends with the first, and has not started it; what has ended as well is missed."""
+    lab = Lab(tmp_path)
+    astrid = lab.site("astrid", *TASK, "tracker")
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    keepers = Keepers(lab, tmp_path / "disks")
+    keeper = keepers.settled()
+    said = {name: list(recorder.said) for name, recorder in lab.components.items()}
+    keepers.end(keeper)
+    lab.crash(astrid)
+    if ends:
+        lab.crash(ends)
+    lab.let_pass(10.0)
+    if ends:
+        assert not lab.active()
+        assert not keepers.running()
+        lab.component(ends)
+    else:
+        assert {name: list(recorder.said) for name, recorder in lab.components.items()} == said
+    lab.site("astrid", *TASK, "tracker")
+    assert lab.until(lambda: bool(keepers.running()) and lab.active() == TASK | {"tracker"})
+
+
 @pytest.mark.parametrize("repaired", [False, True])
 @pytest.mark.parametrize("how", ["frozen", "cut off"])
 @pytest.mark.parametrize("seconds", [1.1, 1.5, 2.0, 5.0, 15.0])
