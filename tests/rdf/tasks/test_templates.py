@@ -96,7 +96,7 @@ def test_of_several_templates_one_must_be_named() -> None:
 
 def test_for_a_template_that_is_not_there_those_that_are_there_are_named() -> None:
     text = f":t a sc:Template ; sc:roles ( :r ) . :u a sc:Template ; sc:roles ( :r ) . {ROLE}"
-    with pytest.raises(TemplateError, match="it has <[^>]*t>, <[^>]*u>$"):
+    with pytest.raises(TemplateError, match=r"it has <[^>]*t>, <[^>]*u>$"):
         read(text, iri("v"))
 
 
