@@ -186,6 +186,8 @@ class History:
         """The components, sites and tasks that are cut off from all others."""
         self.powerless: list[MemoryBus] = []
         """The nodes of hosts that have lost their power, which others notice later."""
+        self.ceased = False
+        """Whether nothing goes wrong any more."""
         self.done: Counter[str] = Counter()
         """How many actions of each kind were possible."""
         self._actions, self._harsh = Actions(self), HarshActions(self)
@@ -305,6 +307,7 @@ class History:
     def _cease(self) -> None:
         """Undo what is wrong with the network, and let everybody go on."""
         self.told.append(f"{self.network.time:8.3f}  the faults cease")
+        self.ceased = True
         self._harsh.cease()
         self.network.faults = Faults()
         for node in self.powerless:

@@ -119,6 +119,7 @@ AUDITS, CALLING, CALLS, LIVENESS = (
 RUNTIME = "selfconf.sdk.runtime.ComponentRuntime"
 GRACE = "selfconf.sdk.runtime.supervision.GRACE"
 RELEASES_NOTHING = Mutation({f"{CALLS}.Calls.release": claims_to_release}, (Action(2.0, "crash", "drive"),))
+RESERVES_NOTHING = Mutation({f"{CALLS}.Calls.reserve": nothing})
 SHARES_ALL = {
     "selfconf.protocol.activation._blocked": lambda *_: False,
     "selfconf.deployment.task_discovery.ask_holders": lambda bus, keys, name, answered, kept: answered({}),
@@ -157,7 +158,8 @@ MUTATIONS = {
     ),
     "who hangs has failed": Mutation({f"{RUNTIME}.hung": nothing}, (Action(0.0, "slow", "drive", "", 12.0),)),
     "what waits is bounded": Mutation({f"{AUDITS}.AUDIT": 0.05, f"{CALLING}.CALL": 100.0}),
-    "every task is decided": Mutation({f"{CALLS}.Calls.reserve": nothing}),
+    "every task is soon decided": RESERVES_NOTHING,
+    "every task is decided": RESERVES_NOTHING,
     "nobody waits in vain": Mutation(
         {
             "selfconf.deployment.components.component_messages.ComponentMessages._freed": nothing,
