@@ -39,6 +39,8 @@ CANNOT_WRITE = (OSError, RuntimeError)
 """What a store raises that cannot be opened or written; the latter where it is broken."""
 _IN_EACH_STORE = "CURRENT"
 """The file that says which state of a store of RocksDB is the latest."""
+_LOCK = "LOCK"
+"""The file that keeps a second program out of a store of RocksDB."""
 _GENERATED, _ENDED = ox.NamedNode(PROV.generatedAtTime), ox.NamedNode(PROV.invalidatedAtTime)
 _PARTS = (ox.NamedNode(SC.component), ox.NamedNode(SC.recruited))
 
@@ -55,7 +57,9 @@ class History:
         try:
             self._open()
         except CANNOT_WRITE as error:
-            raise AuthorError(f"cannot keep a history in {folder} ({error}); does another server use it?") from None
+            advice = "; does another server use it?" if _LOCK in str(error) else ""
+            reason = getattr(error, "strerror", None) or error
+            raise AuthorError(f"cannot keep a history in {folder} ({reason}){advice}") from None
         self._current: dict[str, str] = {}
         """The configuration that is deployed, by the graph that states it."""
         self._unsettled = {name for name in self._names() if not self._has_ended(name)}

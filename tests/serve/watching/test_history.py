@@ -235,5 +235,11 @@ def test_a_real_configuration_keeps_its_provenance(tmp_path: Path) -> None:
 def test_a_folder_with_a_broken_store_is_a_sentence(tmp_path: Path) -> None:
     History(tmp_path).close()
     (tmp_path / "CURRENT").write_text("nothing")
-    with pytest.raises(AuthorError, match="cannot keep a history in"):
+    with pytest.raises(AuthorError, match=r"cannot keep a history in .* \(Corruption: .*\)$"):
         History(tmp_path)
+
+
+def test_a_file_is_no_folder_for_a_history(tmp_path: Path) -> None:
+    (tmp_path / "notes").write_text("mine")
+    with pytest.raises(AuthorError, match=r"cannot keep a history in .*notes \(File exists\)$"):
+        History(tmp_path / "notes")
