@@ -36,7 +36,7 @@ from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.deployment import holders_in
 from selfconf.discovery import Discovery, EcologyView, FoundAdvertisement
-from selfconf.errors import AuthorError, NetworkError
+from selfconf.errors import AuthorError, NetworkError, SelfconfError
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
@@ -44,6 +44,7 @@ from selfconf.protocol.keys import component_chunk, task_name
 from selfconf.protocol.messages import Status
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.sparql import Dataset
+from selfconf.render import html_text
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer
@@ -419,6 +420,12 @@ class LivingEcology(Ecology):
 
     def __repr__(self) -> str:
         return f"<living ecology {self.name}>"
+
+    def _repr_html_(self) -> str:
+        try:
+            return super()._repr_html_()
+        except SelfconfError as error:  # it was left, or cannot be heard: a notebook would show where that was raised
+            return html_text(f"{self}: {error}")
 
 
 def join(ecology: str | None = None, *, connect: Endpoints = (), keys: str | Path | None = None) -> LivingEcology:

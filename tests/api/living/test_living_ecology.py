@@ -132,6 +132,8 @@ def test_an_ecology_that_was_left_says_so(served: Home, clock: sc.TaskSpecificat
         with pytest.raises(ProgrammerError, match="the ecology was left"):
             ask()
     assert repr(living) == f"<living ecology {served.ecology}>"
+    shown = living._repr_html_()
+    assert shown.startswith(f"<pre>&lt;living ecology {served.ecology}&gt;: the ecology was left"), shown
 
 
 def test_stopping_what_is_not_there_says_what_to_try(served: Home) -> None:
