@@ -69,7 +69,7 @@ def test_a_name_that_is_not_of_this_machine_is_refused(board: Board, host: str) 
     assert ask(served(board, hosts=frozenset()), "/state", host=host).status == 200
 
 
-@pytest.mark.parametrize("host", ["127.0.0.1:8000", "localhost", "[::1]:8000", "LOCALHOST:1"])
+@pytest.mark.parametrize("host", ["127.0.0.1:8000", "localhost", "[::1]", "[::1]:8000", "LOCALHOST:1"])
 def test_a_name_of_this_machine_is_answered(board: Board, host: str) -> None:
     assert ask(served(board), "/state", host=host).status == 200
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import Any
 
 from selfconf.serve.watching.change import Body
@@ -78,7 +77,7 @@ def _text(value: Any) -> str:
 
 def finite_number(value: Any, most: float = 1e12) -> float:
     """A number that can be a time in seconds, or a count up to some limit; zero for what is none."""
-    return value if isinstance(value, int | float) and math.isfinite(value) and abs(value) < most else 0.0
+    return value if isinstance(value, int | float) and abs(value) < most else 0.0
 
 
 def _list(value: Any) -> list[Any]:

@@ -146,14 +146,14 @@ class History:
                 self._forget(self._generated(name), name)
             over = {name: b""}  # it counts as past no more: the way to its configurator was gone, or another goes on
         added = self._added(name, quads)
-        ends = before is not None and list(self._current.values()).count(before) == 1
-        if before is not None and ends:
-            added += self._end(graph, before, replaced=name is not None)
+        ended = before if before is not None and list(self._current.values()).count(before) == 1 else None
+        if ended is not None:
+            added += self._end(graph, ended, replaced=name is not None)
         self._store.extend(added)  # all of it or nothing: where this fails, nothing has changed
         self._current.pop(graph, None)
         self._losses.pop(graph, None)
-        if before is not None and ends:
-            over[before] = self._triples(before)
+        if ended is not None:
+            over[ended] = self._triples(ended)
         return over | (self._deployed(graph, name) if name is not None else {})
 
     def _added(self, name: str | None, quads: Iterable[ox.Quad]) -> list[ox.Quad]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 from hypothesis import given
@@ -49,6 +50,12 @@ def test_what_a_configurator_tells_goes_on_as_it_is(tmp_path: Path) -> None:
     body = checked_configuration(running["configuration"])
     assert body is not None
     assert body["roles"] == running["configuration"]["roles"]
+    assert checked_configuration({"roles": ["odd", *body["roles"]], "bindings": {"odd": None}}) == {
+        **{member: [] for member in body},
+        "template": "",
+        "roles": body["roles"],
+        "bindings": {},
+    }
     assert body["bindings"] == running["configuration"]["bindings"]
     assert body["connections"] == running["configuration"]["connections"]
 
@@ -60,4 +67,5 @@ def test_what_is_no_object_is_none() -> None:
 def test_the_epoch_of_a_configuration_goes_on_to_the_page() -> None:
     epoch = 1_795_487_845_161
     assert checked_event({"act": "running", "time": 1.0, "epoch": epoch})["epoch"] == epoch
-    assert checked_event({"act": "running", "time": 1.0, "epoch": 1e300})["epoch"] == 0.0
+    for epoch in (1e300, 10**400, math.inf, math.nan):
+        assert checked_event({"act": "running", "time": 1.0, "epoch": epoch})["epoch"] == 0.0

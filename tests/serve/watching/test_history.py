@@ -55,8 +55,7 @@ def test_what_is_called_as_a_component_may_be_is_no_configuration(tmp_path: Path
 
 def test_a_configuration_that_is_told_after_its_end_has_ended_once(tmp_path: Path) -> None:
     kept = History(tmp_path)
-    for number in (1, 2, 1, 3):
-        kept.note({GRAPH: told(number)})
+    assert [list(kept.note({GRAPH: told(number)})) for number in (1, 2, 1, 3)] == [[], [name(1)], [], [name(2)]]
     ends = {name: triples.count(b"invalidatedAtTime") for name, triples in kept.past().items()}
     assert ends == {name(1): 1, name(2): 1, name(3): 0}
 
@@ -75,8 +74,10 @@ def test_a_configuration_with_which_another_configurator_goes_on_has_not_ended(t
     kept = History(tmp_path)
     kept.note({GRAPH: told(1)})
     for graph in (first, GRAPH if first is OTHER_GRAPH else OTHER_GRAPH):
-        kept.note({graph: told(1) if graph is OTHER_GRAPH else b""})
+        told_now = kept.note({graph: told(1) if graph is OTHER_GRAPH else b""})
+    assert told_now == ({} if first is OTHER_GRAPH else {name(1): b""}), "it is none of the past"
     assert b"invalidatedAtTime" not in kept.past()[name(1)]
+    assert kept.past()[name(1)].count(b"urn:role") == 1
     assert list(kept.note({OTHER_GRAPH: b""})) == [name(1)]
 
 
@@ -84,8 +85,12 @@ def test_where_nothing_takes_its_place_a_configuration_says_which_of_its_compone
     kept = History(tmp_path, lambda: 90.0)
     part = {"act": "lost", "configurator": "c1", "component": "urn:lamp", "cause": "crash", "detail": "", "time": 80.0}
     others = ({**part, "component": "urn:other"}, {**part, "configurator": "c2", "cause": "fail"}, {"act": "lost"})
-    for number, event in ((1, part), (2, {**part, "cause": "fail", "detail": "dark", "time": 1e11})):
-        kept.note({GRAPH: told(number) + f"<{name(number)}> <{SC.recruited}> <urn:lamp> .\n".encode()})
+    heater = {**part, "component": "urn:heater"}
+    for number, event in ((1, heater), (1, part), (2, {**part, "cause": "fail", "detail": "dark", "time": 1e11})):
+        recruits = " , ".join(("<urn:lamp>", "<urn:heater>")[: 3 - number])
+        kept.note(
+            {GRAPH: told(number) + ntriples(parse(f"<{name(number)}> <{SC.recruited}> {recruits} .", "r").triples())}
+        )
         kept.note({}, (event, *others))
     first, second = kept.past()[name(1)], kept.note({GRAPH: b""})[name(2)]
     assert b"Failure" not in first  # the second one says what has led to it
@@ -122,9 +127,17 @@ def test_what_runs_on_is_none_of_the_past_however_late_the_next_server_hears_of_
 def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(history, "MOST_KEPT", 3)
     kept = History(tmp_path)
-    for number in range(6):
-        kept.note({GRAPH: told(number)})
+    forgotten = [one for number in range(6) for one, text in kept.note({GRAPH: told(number)}).items() if not text]
+    assert forgotten == [name(0), name(1), name(2)]
     assert set(kept.past()) == {name(3), name(4), name(5)}
+
+
+def test_a_configuration_that_two_have_told_counts_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "MOST_KEPT", 2)
+    kept = History(tmp_path)
+    for graph, text in ((GRAPH, told(1)), (OTHER_GRAPH, told(1)), (GRAPH, b""), (OTHER_GRAPH, told(2))):
+        kept.note({graph: text})
+    assert set(kept.past()) == {name(1), name(2)}
 
 
 def test_what_a_change_takes_does_not_grow_with_what_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

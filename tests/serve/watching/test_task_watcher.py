@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from selfconf.bus.port import Bus, Replies, Sample, Urgency
+from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Notice, Status, TaskRecord
 from selfconf.serve.watching import task_watcher
@@ -136,9 +137,13 @@ def test_a_configurator_that_comes_back_later_is_not_forgotten_with_those_that_h
     agent = lab.agent()
     lab.running(agent)
     lab.let_pass(1.0)
+    told = tasks.watcher.take_graphs()
     for alive in (False, True):  # as where this node was cut off for a while
         tasks.watcher._configurator_changed(lab.keys.configurator_life(agent.name, "1"), alive)
         lab.let_pass(1.0)
+    ended, anew = tasks.watcher.take_graphs()
+    assert [graphs.keys() for graphs in (ended, anew)] == [graphs.keys() for graphs in told * 2]
+    assert [any(graphs.values()) for graphs in (ended, anew)] == [False, True], "what it has deployed counts anew"
     for name in ("c1", "c2"):
         for alive in (True, False):
             tasks.watcher._configurator_changed(lab.keys.configurator_life(name, "1"), alive)
@@ -216,6 +221,32 @@ def test_what_a_configurator_tells_of_its_task_is_handed_on_once_the_identity_is
     assert watcher.take_records() == {}
 
 
+def test_what_later_configurators_tell_of_their_tasks_is_known_however_many_have_ended(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(task_watcher, "ENDED_TASKS", 0)
+    monkeypatch.setattr(task_watcher, "TOLD_TASKS", 1)
+    tasks = Tasks(lab)
+    for name in ("c1", "c2"):
+        node, key = lab.network.node(), lab.keys.configurator_call(name, "task")
+        node.serve(key, answering_with(key, TaskRecord(f"{name}~1", 1)))
+        node.announce(lab.keys.configurator_life(name, "1"))
+        lab.let_pass(1.0)
+        assert tasks.watcher._records.keys() == {name}
+        node.close()
+        lab.let_pass(1.0)
+
+
+def answering_with(key: str, record: TaskRecord) -> Callable[[Request], None]:
+    """Answers each question with that."""
+
+    def answer(request: Request) -> None:
+        request.reply(key, encode(record))
+        request.finish()
+
+    return answer
+
+
 def test_a_task_that_the_sites_keep_and_none_runs_is_shown_as_kept(lab: Lab) -> None:
     tasks = Tasks(lab)
     notice = lab.network.node().publisher(lab.keys.task("tidy~1"), Urgency.EVENT)
@@ -248,3 +279,7 @@ def test_what_is_told_on_the_key_of_another_is_passed_over(lab: Lab) -> None:
         publisher.put(payload)
     lab.let_pass(1.0)
     assert (tasks.events, tasks.phases()) == ([], [])
+    tasks.watcher._task("c2")
+    answer = Sample(lab.keys.notices("c1"), encode(Notice("c2", 1, "t~1", {"act": "stopped"})))
+    tasks.watcher._hear_all(Replies((answer,)))
+    assert tasks.events == []

@@ -120,6 +120,16 @@ def test_it_sees_a_configuration_change_when_something_fails_and_why(lab: Lab) -
     assert not any(name.startswith("urn:selfconf:") for name in seen.graphs)
 
 
+def test_it_tells_soon_that_a_configurator_is_gone(lab: Lab) -> None:
+    seen = Seen(lab)
+    agent = lab.agent()
+    lab.running(agent)
+    lab.let_pass(1.0)
+    lab.crash(agent)
+    lab.let_pass(1.0)
+    assert seen.task["phase"] == "gone"
+
+
 def test_it_sees_what_began_before_it_came(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
