@@ -56,6 +56,9 @@ def test_a_configurator_that_is_cut_down_is_gone(lab: Lab) -> None:
     lab.let_pass(3.0)
     assert tasks.phases() == ["gone"]
     assert tasks.watcher.take_graphs() == [{graph[0]: b""}]
+    late = Sample(lab.keys.configuration(agent.name), agent._record.turtle().encode())
+    tasks.watcher._take_deployed(Replies((late,)))
+    assert tasks.watcher.take_graphs() == [{}]
 
 
 def test_a_configurator_whose_life_ends_before_its_last_notice_comes_has_stopped(lab: Lab) -> None:
