@@ -29,7 +29,7 @@ from selfconf.api.living.site_access import SiteAccess, site_accesses
 from selfconf.api.living.site_logs import LogSource, logs_of_other_sites
 from selfconf.api.membership import MEMBERS, Membership
 from selfconf.api.synchronous_bus import SynchronousBus
-from selfconf.api.tasks.living_task import LivingTask
+from selfconf.api.tasks.living_task import LivingTask, RunningTasks
 from selfconf.api.tasks.living_tasks import LivingTasks
 from selfconf.api.tasks.released_components import STATE_PATIENCE, ReleasedComponents
 from selfconf.bus.credentials import Credentials
@@ -80,6 +80,8 @@ class LivingEcology(Ecology):
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self._synchronous = SynchronousBus(self._bus, lives=self._view.keys.any_site_life())
         self._tasks = LivingTasks(self._synchronous, self._view.keys, self.endpoints)
+        self._running = RunningTasks()
+        """What was found when the configurators were last asked for their tasks."""
         self._released = ReleasedComponents(self._synchronous, self._view.keys)
         self._configurators = Configurators(self._synchronous, self._view.keys)
         try:
@@ -237,7 +239,7 @@ class LivingEcology(Ecology):
 
     def deployed(self) -> dict[str, dict[str, Any]]:
         """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
-        return self._complaining(self._configurators, self._configurators.deployed())
+        return self._told(self._configurators.deployed())
 
     @property
     def sites(self) -> tuple[str, ...]:
@@ -251,16 +253,17 @@ class LivingEcology(Ecology):
     @property
     def tasks(self) -> tuple[Status, ...]:
         """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name."""
-        return self._complaining(self._tasks, self._tasks.running(by_components=not self._membership.looks_on_only))
+        return self._noted(self._tasks.running(by_components=not self._membership.looks_on_only)).statuses
 
     def all_tasks(self) -> tuple[LivingTask, ...]:
         """The tasks that run and those that live in the sites, sorted by name."""
-        return self._complaining(self._tasks, self._tasks.all(by_components=not self._membership.looks_on_only))
+        running = self._noted(self._tasks.running(by_components=not self._membership.looks_on_only))
+        return self._tasks.all(running)
 
     @property
     def silent(self) -> tuple[str, ...]:
         """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
-        return self._tasks.silent
+        return self._running.silent
 
     @property
     def suspended(self) -> tuple[str, ...]:
@@ -268,11 +271,16 @@ class LivingEcology(Ecology):
 
         One whose components are still held is known by its configurator, among the `silent`.
         """
-        return tuple(task.name for task in self._tasks.suspended)
+        return tuple(task.name for task in self._running.suspended)
 
-    def _complaining(self, asked: LivingTasks | Configurators, found: _Result) -> _Result:
-        """Take over what was wrong with what configurators have answered."""
-        self._complaints = asked.complaints
+    def _noted(self, running: RunningTasks) -> RunningTasks:
+        """Keep what configurators have said of their tasks, and what was wrong with it."""
+        self._running, self._complaints = running, running.complaints
+        return running
+
+    def _told(self, found: _Result) -> _Result:
+        """Take over what was wrong with what configurators have told."""
+        self._complaints = self._configurators.complaints
         return found
 
     def access(self) -> tuple[SiteAccess, ...]:
@@ -289,12 +297,12 @@ class LivingEcology(Ecology):
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
         """The sources of each component of a deployed task, as its configurator says; None if none answers for it."""
-        running = self._complaining(self._tasks, self._tasks.running())
+        running = self._noted(self._tasks.running()).statuses
         names = {status.configurator for status in running if status.name == task}
         if not names:
             return None
         components = [component for one in running if one.configurator in names for component in one.components]
-        return self._complaining(self._configurators, self._configurators.links(names, components))
+        return self._told(self._configurators.links(names, components))
 
     def dataset(self) -> Dataset:
         """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
@@ -312,7 +320,7 @@ class LivingEcology(Ecology):
         that is no text, and for what is no moment.
         """
         checked_text(term, "the term that is asked about")
-        return self._complaining(self._configurators, self._configurators.why(term, checked_moment(at)))
+        return self._told(self._configurators.why(term, checked_moment(at)))
 
     def configure(
         self,
@@ -398,7 +406,7 @@ class LivingEcology(Ecology):
         self._membership.check_may_run()
         method = Method.of(strategy, reasoning, ontologies, steps, seconds)
         record = task_record(completed(task), method, TaskOptions.of(policy, name, priority, upgrade))
-        return self._complaining(self._tasks, self._tasks.detach(record))
+        return self._tasks.detach(record)
 
     def stop(self, name: str | None = None) -> tuple[str, ...]:
         """Take down a task, given by its name or that of its configurator, or all of them.
@@ -411,7 +419,9 @@ class LivingEcology(Ecology):
         self._membership.check_may_run()
         if name is not None:
             checked_text(name, "the name of a task")
-        return self._complaining(self._tasks, self._tasks.stop(name))
+        names, running = self._tasks.stop(name)
+        self._noted(running)
+        return names
 
     def _sites_answer(self, pause: float) -> bool:
         """Whether any site of the ecology lives, as it is found after a pause in seconds."""

@@ -1,4 +1,4 @@
-"""One task of a living ecology, and a configurator that holds components and does not say for which."""
+"""One task of a living ecology, all that run, and a configurator that only what it holds tells of."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import Status, TaskRecord
+from selfconf.this_machine import LocalTask
 
 
 @immutable
@@ -92,3 +93,21 @@ class SilentHolder:
     def __str__(self) -> str:
         named = ", ".join(component.short for component in self.components)
         return f"the configurator {self.configurator!r} of {task_name(self.task)!r} holds {named}, but does not answer"
+
+
+@immutable
+class RunningTasks:
+    """The tasks that run, as their configurators say when they are asked, and those that do not answer."""
+
+    statuses: tuple[Status, ...] = ()
+    """What each configurator says of its task, sorted by the configurator's name."""
+    silent: tuple[str, ...] = ()
+    """The configurators that live or hold components, but do not answer, sorted."""
+    holding: tuple[SilentHolder, ...] = ()
+    """Those of them that hold components, as far as these were asked."""
+    suspended: tuple[LocalTask, ...] = ()
+    """The tasks of suspended programs of this machine of which nothing else tells."""
+    sites: frozenset[str] = frozenset()
+    """The names of the sites that live."""
+    complaints: tuple[str, ...] = ()
+    """What was wrong with the answers of configurators, and which sites have one name."""

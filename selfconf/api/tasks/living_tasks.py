@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence, Set
 from contextlib import suppress
-from itertools import chain, count
+from itertools import chain, count, filterfalse
 
 from selfconf.api.synchronous_bus import SynchronousBus
-from selfconf.api.tasks.living_task import LivingTask, SilentHolder
+from selfconf.api.tasks.living_task import LivingTask, RunningTasks, SilentHolder
 from selfconf.api.tasks.released_components import ReleasedComponents
 from selfconf.bus.own_answers import own_answers
 from selfconf.bus.port import Replies
@@ -20,7 +20,7 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import Status, TaskRecord
 from selfconf.render import disobedience
-from selfconf.this_machine import ClaimedName, LocalTask, claim, local_sites, suspended_tasks
+from selfconf.this_machine import ClaimedName, claim, local_sites, suspended_tasks
 
 UNNUMBERED = 56
 """How many characters of a task's name stand before a number; with that they are 64 at most."""
@@ -32,19 +32,10 @@ class LivingTasks:
     def __init__(self, bus: SynchronousBus, keys: Keys, endpoints: Sequence[str]) -> None:
         """The bus has joined by some endpoints; runs of this machine that have joined by others are not looked at."""
         self._bus, self._keys, self._endpoints = bus, keys, endpoints
-        self.silent: tuple[str, ...] = ()
-        """The configurators that live or hold components, but did not answer when asked for their tasks, sorted."""
-        self.suspended: tuple[LocalTask, ...] = ()
-        """The tasks of suspended programs of this machine of which nothing else tells, as of the last question."""
-        self.complaints: tuple[str, ...] = ()
-        """What was wrong with the answers of configurators, as of the last question, and which sites have one name."""
-        self._holding: list[SilentHolder] = []
-        self._sites: frozenset[str] = frozenset()
-        """The names of the sites that lived as of the last question."""
         self._released = ReleasedComponents(bus, keys)
 
-    def running(self, by_components: bool = False) -> tuple[Status, ...]:
-        """What each configurator of the ecology says of the task that it runs, sorted by the configurator's name.
+    def running(self, by_components: bool = False) -> RunningTasks:
+        """What the configurators of the ecology say of the tasks that they run.
 
         A configurator that is suspended is not seen to live any more before the components that it holds are at rest:
         `by_components`, these are asked as well by which configurator each of them is held. A program of this machine
@@ -53,29 +44,32 @@ class LivingTasks:
         living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
         found, rejected = _statuses(self._bus.ask(self._keys.configurator_call("*", "status")), self._keys)
         answered = {status.configurator for status in found}
-        self._holding = self._holding_beside(answered) if by_components else []
-        holding = {one.configurator for one in self._holding}
-        rejected += map(_said_of_silent, sorted(living - answered - holding))
-        rejected += map(str, self._holding)
-        self.silent = tuple(sorted((living - answered) | holding))
+        holding = self._holding_beside(answered) if by_components else ()
+        holders = {one.configurator for one in holding}
+        rejected += map(_said_of_silent, sorted(living - answered - holders))
+        rejected += map(str, holding)
         named = {status.name for status in found if status.outside is None}
-        named.update(task_name(one.task) for one in self._holding)
-        suspended = suspended_tasks(self._keys.ecology, self._endpoints)
-        self.suspended = tuple(one for one in suspended if one.name not in named)
-        rejected += (one.suspension() for one in self.suspended)
+        named.update(task_name(one.task) for one in holding)
+        suspended = [one for one in suspended_tasks(self._keys.ecology, self._endpoints) if one.name not in named]
+        rejected += (one.suspension() for one in suspended)
         sites = self._bus.living(self._keys.any_site_life())
-        self._sites = frozenset(map(owner_of, sites))
-        self.complaints = (*rejected, *namesakes(sites))
-        return tuple(sorted(found, key=lambda status: status.configurator))
+        return RunningTasks(
+            statuses=tuple(sorted(found, key=lambda status: status.configurator)),
+            silent=tuple(sorted((living - answered) | holders)),
+            holding=holding,
+            suspended=tuple(suspended),
+            sites=frozenset(map(owner_of, sites)),
+            complaints=(*rejected, *namesakes(sites)),
+        )
 
-    def _holding_beside(self, known: Set[str]) -> list[SilentHolder]:
+    def _holding_beside(self, known: Set[str]) -> tuple[SilentHolder, ...]:
         """What components are held by configurators that are not among some, sorted by the configurator's name."""
         found: dict[tuple[str, str], list[IRI]] = {}
         for one in self._released.states():
             with suppress(PeerError):
                 if one.supervisor and (configurator := owner_of(one.supervisor)) not in known:
                     found.setdefault((configurator, one.task), []).append(one.component)
-        return [SilentHolder(*holder, tuple(sorted(components))) for holder, components in sorted(found.items())]
+        return tuple(SilentHolder(*holder, tuple(sorted(components))) for holder, components in sorted(found.items()))
 
     def kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""
@@ -85,12 +79,11 @@ class LivingTasks:
         """The newest record of each task that lives in the sites, or has ended there."""
         return _newest(self._bus.ask(self._keys.kept_tasks()))
 
-    def all(self, by_components: bool = False) -> tuple[LivingTask, ...]:
-        """The tasks that run, found as by `running`, and those that live in the sites, sorted by name."""
-        running = self.running(by_components)
+    def all(self, running: RunningTasks) -> tuple[LivingTask, ...]:
+        """The tasks that run, as `running` has found them, and those that live in the sites, sorted by name."""
         records = {record.task: record for record in self._records()}  # one that has ended may still be coming to rest
-        found = [LivingTask.of(status, status.task in records) for status in running]
-        known = {status.task for status in running}
+        found = [LivingTask.of(status, status.task in records) for status in running.statuses]
+        known = {status.task for status in running.statuses}
         found += [LivingTask.kept(one) for task, one in records.items() if not (one.ended or task in known)]
         return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
 
@@ -148,45 +141,37 @@ class LivingTasks:
         if first is not record:
             raise _taken(task_name(record.task))
 
-    def stop(self, name: str | None = None) -> tuple[str, ...]:
-        """Take down a task, given by its name or that of its configurator, or all of them; returns their names.
+    def stop(self, name: str | None = None) -> tuple[tuple[str, ...], RunningTasks]:
+        """Take down a task, given by its name or that of its configurator, or all of them.
 
-        The inside of a composite, which has the name of the composite, is meant only where no other task has that name;
-        then the composite fails. Raises NetworkError if there is none of that name, or if several insides alone have
-        it, or if one does not answer or does not end in time, or if a component was turned off and does not obey; of
-        all tasks those are taken down first that answer. One that does not answer, suspended perhaps, is an error also
-        where what it held has come to rest: it may go on, unless the sites keep its task, and so the end of that.
+        Returns the names of the tasks, and what ran before, with the complaints that remain. The inside of a composite,
+        which has the name of the composite, is meant only where no other task has that name; then the composite fails.
+        Raises NetworkError if there is none of that name, or if several insides alone have it, or if one does not
+        answer or does not end in time, or if a component was turned off and does not obey; of all tasks those are taken
+        down first that answer. One that does not answer, suspended perhaps, is an error also where what it held has
+        come to rest: it may go on, unless the sites keep its task, and so the end of that.
         """
         found, records = self.running(by_components=True), self.kept()
         kept = _of_name(records, name)
-        holding = [one for one in self._holding if one.is_named(name)]
-        suspended = [one for one in self.suspended if name in (None, one.name)]
-        running = _meant(name, found, [*kept, *holding, *suspended])
+        holding = [one for one in found.holding if one.is_named(name)]
+        suspended = [one for one in found.suspended if name in (None, one.name)]
+        running = _meant(name, found.statuses, [*kept, *holding, *suspended])
         kept = _of_same_tasks(records, [*kept, *running, *holding])
         unanswered = {record.task for record in kept}.difference(status.task for status in running)
-        silent = self._silent_beside_holders(None if unanswered else name)
+        silent = _silent_beside_holders(found, None if unanswered else name)
         if name is not None and not kept:
             _check_there(name, silent, [*running, *holding, *suspended])
         _raise_for(
             [
-                *self._take_down(running, kept),
+                *self._take_down(running, kept, found.sites),
                 *self._unheard(silent, holding, kept),
                 *(one.suspension() for one in suspended),
             ]
         )
-        self._withdraw(map(str, holding))  # without an error, what they held has come to rest for good
+        over = set(map(str, holding))  # without an error, what they held has come to rest for good
         names = {status.name or status.configurator for status in running}
-        return tuple(sorted(names | {task_name(record.task) for record in kept}))
-
-    def _withdraw(self, complaints: Iterable[str]) -> None:
-        """Complain no more of some things."""
-        over = set(complaints)
-        self.complaints = tuple(one for one in self.complaints if one not in over)
-
-    def _silent_beside_holders(self, name: str | None) -> set[str]:
-        """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
-        silent = {one for one in self.silent if name in (None, one)}
-        return silent.difference(one.configurator for one in self._holding)
+        names.update(task_name(record.task) for record in kept)
+        return tuple(sorted(names)), replace(found, complaints=tuple(filterfalse(over.__contains__, found.complaints)))
 
     def _unheard(self, silent: set[str], holding: Iterable[SilentHolder], kept: Iterable[TaskRecord]) -> Iterator[str]:
         """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest.
@@ -206,7 +191,7 @@ class LivingTasks:
             elif one.task not in ended:
                 yield f"{one}; they have come to rest, and if it was suspended, it takes them again when it goes on"
 
-    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord]) -> list[str]:
+    def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord], sites: Set[str]) -> list[str]:
         """End tasks that run, and those that the sites keep; returns what is to be said once what they held rests."""
         here = {site.site for site in local_sites(self._keys.ecology)}
         for record in kept:
@@ -218,7 +203,7 @@ class LivingTasks:
             return self._disobedience(running)
         except NetworkError:
             # the site of a `run` with advertisements of its own ends with it, and all that the site has started
-            if self._sites and self._sites <= here and not local_sites(self._keys.ecology):
+            if sites and sites <= here and not local_sites(self._keys.ecology):
                 return []
             raise
 
@@ -259,6 +244,12 @@ def _taken(name: str) -> NetworkError:
 def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
     """What configurators have answered, each on its own key, and what is wrong with the answers that are left out."""
     return own_answers(replies.samples, Status, lambda one: keys.configurator_call(one.configurator, "status"))
+
+
+def _silent_beside_holders(found: RunningTasks, name: str | None) -> set[str]:
+    """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
+    silent = {one for one in found.silent if name in (None, one)}
+    return silent.difference(one.configurator for one in found.holding)
 
 
 def _meant(name: str | None, running: Sequence[Status], others: Sequence[object]) -> list[Status]:

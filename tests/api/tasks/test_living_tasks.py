@@ -21,7 +21,7 @@ def test_tasks_that_run_and_tasks_that_are_kept_are_listed_once_each(tasks: Task
     tasks.configurator("c1", PATROL.task)
     tasks.configurator("c2", "watch~3")
     tasks.site(PATROL, TIDY)
-    found = tasks.asked.all()
+    found = tasks.asked.all(tasks.asked.running())
     assert [(task.name, task.configurator, task.detached) for task in found] == [
         ("patrol", "c1", True),
         ("tidy", "", True),
@@ -33,40 +33,41 @@ def test_tasks_that_run_and_tasks_that_are_kept_are_listed_once_each(tasks: Task
 def test_of_several_records_of_a_task_the_newest_counts_and_its_end_is_final(tasks: Tasks) -> None:
     tasks.site(replace(PATROL, revision=2, priority=7), replace(TIDY, revision=2, ended=True))
     tasks.site(PATROL, replace(TIDY, revision=9))
-    assert tasks.asked.all() == (LivingTask.kept(replace(PATROL, revision=2, priority=7)),)
+    assert tasks.asked.all(tasks.asked.running()) == (LivingTask.kept(replace(PATROL, revision=2, priority=7)),)
 
 
 def test_a_task_of_the_sites_that_has_ended_is_listed_as_one_until_it_is_at_rest(tasks: Tasks) -> None:
     tasks.configurator("c1", PATROL.task, phase="dismantling")
     tasks.site(replace(PATROL, revision=2, ended=True))
-    assert [(task.phase, task.lives_in) for task in tasks.asked.all()] == [("dismantling", "sites")]
+    assert [(task.phase, task.lives_in) for task in tasks.asked.all(tasks.asked.running())] == [
+        ("dismantling", "sites")
+    ]
 
 
 def test_who_lives_and_does_not_answer_is_named_and_who_speaks_for_another_is_left_out(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1", answers=False)
     tasks.configurator("c2", "tidy~2", speaks_of="c3")
-    assert tasks.asked.running() == ()
-    assert tasks.asked.silent == ("c1", "c2")
-    assert "c2" in tasks.asked.complaints[0]
-    assert [text for text in tasks.asked.complaints if "'c1' lives, but does not answer" in text]
+    running = tasks.asked.running()
+    assert (running.statuses, running.silent) == ((), ("c1", "c2"))
+    assert "c2" in running.complaints[0]
+    assert [text for text in running.complaints if "'c1' lives, but does not answer" in text]
 
 
 def test_sites_of_one_name_are_named_with_their_lives_as_discovery_names_them(tasks: Tasks) -> None:
     for site, life in (("home", "1"), ("shed", "1"), ("home", "2")):
         tasks.network.node().announce(KEYS.site_life(site, life))
-    for ask in (tasks.asked.running, tasks.asked.all):
-        ask()
-        assert tasks.asked.complaints == ("2 sites are called home: home (1), home (2)",)
-    assert tasks.asked.silent == ()
+    running = tasks.asked.running()
+    assert running.complaints == ("2 sites are called home: home (1), home (2)",)
+    assert running.silent == ()
 
 
 def test_a_task_is_stopped_by_its_name_or_by_that_of_its_configurator(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1")
     tasks.configurator("c2", "tidy~2")
-    assert tasks.asked.stop("patrol") == ("patrol",)
-    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
-    assert tasks.asked.stop("c2") == ("tidy",)
-    assert tasks.asked.running() == ()
+    assert tasks.asked.stop("patrol")[0] == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running().statuses] == ["c2"]
+    assert tasks.asked.stop("c2")[0] == ("tidy",)
+    assert tasks.asked.running().statuses == ()
 
 
 PATROL_COMPOSITE = IRI("urn:c#patrol")
@@ -75,10 +76,10 @@ PATROL_COMPOSITE = IRI("urn:c#patrol")
 def test_a_name_means_the_inside_of_a_composite_only_where_no_other_task_has_it(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1")
     tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
-    assert tasks.asked.stop("patrol") == ("patrol",)
-    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
-    assert tasks.asked.stop("patrol") == ("patrol",)
-    assert tasks.asked.running() == ()
+    assert tasks.asked.stop("patrol")[0] == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running().statuses] == ["c2"]
+    assert tasks.asked.stop("patrol")[0] == ("patrol",)
+    assert tasks.asked.running().statuses == ()
 
 
 def test_of_several_insides_of_one_name_none_is_ended_by_it(tasks: Tasks) -> None:
@@ -86,24 +87,25 @@ def test_of_several_insides_of_one_name_none_is_ended_by_it(tasks: Tasks) -> Non
     tasks.configurator("c3", "patrol~3", outside=IRI("urn:d#patrol"))
     with pytest.raises(NetworkError, match="'patrol'; name the configurator of one inside: c2 and c3"):
         tasks.asked.stop("patrol")
-    assert tasks.asked.stop("c3") == ("patrol",)
-    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
+    assert tasks.asked.stop("c3")[0] == ("patrol",)
+    assert [status.configurator for status in tasks.asked.running().statuses] == ["c2"]
 
 
 def test_an_inside_goes_on_where_the_sites_keep_a_task_of_its_name_and_ends_by_its_configurator(tasks: Tasks) -> None:
     tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
     tasks.site(PATROL)
-    assert tasks.asked.stop("patrol") == ("patrol",)
-    assert tasks.asked.complaints == (), "it holds nothing any more"
+    names, running = tasks.asked.stop("patrol")
+    assert names == ("patrol",)
+    assert running.complaints == (), "it holds nothing any more"
     assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
-    assert [status.configurator for status in tasks.asked.running()] == ["c2"]
-    assert tasks.asked.stop("c2") == ("patrol",)
-    assert tasks.asked.running() == ()
+    assert [status.configurator for status in tasks.asked.running().statuses] == ["c2"]
+    assert tasks.asked.stop("c2")[0] == ("patrol",)
+    assert tasks.asked.running().statuses == ()
 
 
 def test_what_the_sites_keep_is_ended_by_a_newer_record(tasks: Tasks) -> None:
     tasks.site(PATROL, TIDY)
-    assert tasks.asked.stop("tidy") == ("tidy",)
+    assert tasks.asked.stop("tidy")[0] == ("tidy",)
     assert tasks.kept == [replace(TIDY, revision=2, ended=True)]
 
 
@@ -115,16 +117,16 @@ def test_what_the_sites_keep_is_ended_by_the_name_of_its_configurator(tasks: Tas
         tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 3, AT_REST)
     else:
         tasks.configurator("c2", PATROL.task)
-    assert tasks.asked.stop("c2") == ("patrol",)
+    assert tasks.asked.stop("c2")[0] == ("patrol",)
     assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
-    assert [status.configurator for status in tasks.asked.running()] == ["c1"]
+    assert [status.configurator for status in tasks.asked.running().statuses] == ["c1"]
 
 
 def test_nothing_is_stopped_by_a_name_that_is_nobodys(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1")
     with pytest.raises(NetworkError, match="no task or configurator 'tidy' answers"):
         tasks.asked.stop("tidy")
-    assert len(tasks.asked.running()) == 1
+    assert len(tasks.asked.running().statuses) == 1
 
 
 def test_of_all_tasks_those_that_answer_are_stopped_before_one_that_does_not_is_named(tasks: Tasks) -> None:
@@ -132,21 +134,21 @@ def test_of_all_tasks_those_that_answer_are_stopped_before_one_that_does_not_is_
     tasks.configurator("c2", "tidy~2", answers=False)
     with pytest.raises(NetworkError, match="'c2' lives, but does not answer"):
         tasks.asked.stop()
-    assert tasks.asked.running() == ()
-    assert tasks.asked.silent == ("c2",)
+    running = tasks.asked.running()
+    assert (running.statuses, running.silent) == ((), ("c2",))
 
 
 def test_a_component_may_take_its_time_to_come_to_rest(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1", DRIVE)
     acts = replace(AT_REST, active=True, task="patrol~1")
     tasks.component(DRIVE, acts, replace(AT_REST, stopping=True), AT_REST)
-    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.asked.stop("patrol")[0] == ("patrol",)
 
 
 def test_what_acts_for_another_task_or_is_gone_has_obeyed(tasks: Tasks) -> None:
     tasks.configurator("c1", "patrol~1", DRIVE, IRI("urn:c#gone"))
     tasks.component(DRIVE, replace(AT_REST, active=True, task="tidy~2"))
-    assert tasks.asked.stop("patrol") == ("patrol",)
+    assert tasks.asked.stop("patrol")[0] == ("patrol",)
 
 
 @pytest.mark.parametrize(
@@ -165,7 +167,7 @@ def test_a_component_that_does_not_obey_is_named_after_all_is_taken_down(
     tasks.component(DRIVE, state or AT_REST, answers=state is not None)
     with pytest.raises(NetworkError, match=f"drive was turned off and has not obeyed: {how}"):
         tasks.asked.stop()
-    assert tasks.asked.running() == ()
+    assert tasks.asked.running().statuses == ()
 
 
 def held_by(configurator: str, task: str) -> CallAnswer:
@@ -177,13 +179,13 @@ def test_a_configurator_that_is_known_by_what_it_holds_alone_is_silent(tasks: Ta
     tasks.configurator("c1", TIDY.task, IRI("urn:c#cap"))
     tasks.component(IRI("urn:c#cap"), replace(held_by("c1", TIDY.task), component=IRI("urn:c#cap")))
     tasks.component(DRIVE, held_by("c2", PATROL.task))
-    assert [status.configurator for status in tasks.asked.running()] == ["c1"]
-    assert (tasks.asked.silent, tasks.asked.complaints) == ((), ())
-    for ask in (tasks.asked.running, tasks.asked.all):
-        tasks.asked.running()
-        assert [found.configurator for found in ask(by_components=True)] == ["c1"]
-        assert tasks.asked.silent == ("c2",)
-        assert tasks.asked.complaints == ("the configurator 'c2' of 'patrol' holds drive, but does not answer",)
+    assert [status.configurator for status in tasks.asked.running().statuses] == ["c1"]
+    assert (tasks.asked.running().silent, tasks.asked.running().complaints) == ((), ())
+    running = tasks.asked.running(by_components=True)
+    assert [found.configurator for found in running.statuses] == ["c1"]
+    assert [found.configurator for found in tasks.asked.all(running)] == ["c1"]
+    assert running.silent == ("c2",)
+    assert running.complaints == ("the configurator 'c2' of 'patrol' holds drive, but does not answer",)
 
 
 @pytest.mark.parametrize("name", [None, "patrol", "c2"])
@@ -211,7 +213,7 @@ def test_a_configurator_that_lives_and_does_not_answer_is_named_with_the_task_th
         NetworkError, match=r"^the configurator 'c2' of 'patrol' holds drive, but does not answer; they h"
     ):
         tasks.asked.stop(name)
-    assert tasks.asked.silent == ("c2",)
+    assert tasks.asked.running().silent == ("c2",)
 
 
 def test_a_task_whose_end_the_sites_keep_is_taken_down_once_all_rests_though_its_configurator_is_silent(
@@ -219,8 +221,9 @@ def test_a_task_whose_end_the_sites_keep_is_taken_down_once_all_rests_though_its
 ) -> None:
     tasks.site(PATROL)
     tasks.component(DRIVE, *[held_by("c2", PATROL.task)] * 3, AT_REST)
-    assert tasks.asked.stop("patrol") == ("patrol",)
-    assert tasks.asked.complaints == (), "it holds nothing any more"
+    names, running = tasks.asked.stop("patrol")
+    assert names == ("patrol",)
+    assert running.complaints == (), "it holds nothing any more"
     assert tasks.kept == [replace(PATROL, revision=2, ended=True)]
 
 
@@ -245,13 +248,13 @@ def test_a_run_of_this_machine_that_is_suspended_and_not_seen_is_named_by_its_ta
     """One that has been suspended for longer has lost its link, and its components are at rest and free."""
     tasks.configurator("c1", TIDY.task)
     with suspended_run("lab", "patrol", HERE), suspended_run("lab", "tidy", HERE):  # tidy is seen, and answers
-        tasks.asked.running()
-        assert [task.name for task in tasks.asked.suspended] == ["patrol"]
-        assert tasks.asked.complaints == tuple(one.suspension() for one in tasks.asked.suspended)
+        running = tasks.asked.running()
+        assert [task.name for task in running.suspended] == ["patrol"]
+        assert running.complaints == tuple(one.suspension() for one in running.suspended)
         with pytest.raises(NetworkError, match=r"^process \d+ of this machine, which runs the task .patrol., is susp"):
             tasks.asked.stop(name)
-    assert (tasks.asked.running() == ()) == (name is None)
-    assert tasks.asked.suspended == ()
+    assert (tasks.asked.running().statuses == ()) == (name is None)
+    assert tasks.asked.running().suspended == ()
 
 
 @pytest.mark.process
@@ -259,20 +262,20 @@ def test_an_inside_goes_on_where_a_run_of_its_name_is_suspended(tasks: Tasks) ->
     tasks.configurator("c2", "patrol~2", outside=PATROL_COMPOSITE)
     with suspended_run("lab", "patrol", HERE), pytest.raises(NetworkError, match="which runs the task 'patrol'"):
         tasks.asked.stop("patrol")
-    assert len(tasks.asked.running()) == 1
+    assert len(tasks.asked.running().statuses) == 1
 
 
 @pytest.mark.process
 def test_a_run_of_this_machine_in_another_ecology_of_the_name_is_nothing_to_this_one(tasks: Tasks) -> None:
     with suspended_run("lab", "patrol", "tcp/127.0.0.1:7002"):
-        assert tasks.asked.stop() == ()
-        assert (tasks.asked.suspended, tasks.asked.complaints) == ((), ())
+        names, running = tasks.asked.stop()
+        assert (names, running.suspended, running.complaints) == ((), (), ())
 
 
 def test_a_run_of_this_machine_that_is_not_suspended_is_not_named_before_it_is_seen(tasks: Tasks) -> None:
     with tasks.asked.claim("patrol"):
-        assert tasks.asked.stop() == ()
-        assert (tasks.asked.suspended, tasks.asked.complaints) == ((), ())
+        names, running = tasks.asked.stop()
+        assert (names, running.suspended, running.complaints) == ((), (), ())
 
 
 @pytest.mark.parametrize("kept", [True, False])
@@ -283,7 +286,7 @@ def test_a_task_that_is_kept_is_not_said_to_be_taken_down_where_its_configurator
     tasks.configurator("c3", TIDY.task)
     tasks.site(PATROL if kept else TIDY)
     if not kept:
-        assert tasks.asked.stop("tidy") == ("tidy",)
+        assert tasks.asked.stop("tidy")[0] == ("tidy",)
         return
     with pytest.raises(NetworkError, match="the configurator 'c2' lives, but does not answer"):
         tasks.asked.stop("patrol")
@@ -293,7 +296,7 @@ def test_a_task_that_is_kept_is_not_said_to_be_taken_down_where_its_configurator
 def test_what_another_configurator_holds_is_nothing_to_the_end_of_a_task(tasks: Tasks) -> None:
     tasks.configurator("c1", TIDY.task)
     tasks.component(DRIVE, held_by("c2", PATROL.task))
-    assert tasks.asked.stop("tidy") == ("tidy",)
+    assert tasks.asked.stop("tidy")[0] == ("tidy",)
 
 
 @pytest.mark.parametrize("elsewhere", [False, True])
@@ -316,4 +319,4 @@ def test_the_site_of_a_run_ends_with_it_and_so_does_the_ecology_unless_it_has_si
         with pytest.raises(NetworkError, match="cut off from the ecology"):
             tasks.asked.stop()
     else:
-        assert tasks.asked.stop() == ("patrol",)
+        assert tasks.asked.stop()[0] == ("patrol",)
