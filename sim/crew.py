@@ -31,6 +31,8 @@ class Crew:
     def __init__(self, environment: Mapping[str, str] | None = None) -> None:
         path = os.pathsep.join(filter(None, (str(Path(__file__).parent.parent), os.environ.get("PYTHONPATH"))))
         own = {"PYTHONPATH": path}
+        if "SELFCONF_RUNTIME_DIR" in os.environ:
+            own["SELFCONF_RUNTIME_DIR"] = str(Path(os.environ["SELFCONF_RUNTIME_DIR"]).absolute())
         self._environment = {**os.environ, **(environment or {}), **parent_environment(), **own}
         self._processes: dict[str, subprocess.Popen[str]] = {}
         self._lines: queue.SimpleQueue[Line] = queue.SimpleQueue()
@@ -44,7 +46,11 @@ class Crew:
         self.end_all()
 
     def start(self, name: str, *arguments: str) -> int:
-        """Start `python ARGUMENTS` in a process group of its own, away from Ctrl-C; its process number."""
+        """Start `python ARGUMENTS` in a process group of its own, away from Ctrl-C; its process number.
+
+        It runs in the root folder, so paths are given in full: modules and a selfconf.toml that lie in the folder of
+        the user have nothing to do with the demo.
+        """
         process = subprocess.Popen(
             [sys.executable, *arguments],
             stdin=subprocess.DEVNULL,
@@ -52,6 +58,7 @@ class Crew:
             stderr=subprocess.STDOUT,
             text=True,
             env=self._environment,
+            cwd=os.sep,
             start_new_session=True,
         )
         self._processes[name] = process

@@ -202,7 +202,7 @@ def _navigate(given: DemoOptions) -> int:
         _tell("One component tells where she is; inside are a camera and a tracker, and the camera fails first.")
     _tell("Astrid goes to the bedroom. Each line: seconds of real time, which act of self-configuration, what.")
     _tell("Act 1 asks the ecology, act 2 collects its answers, act 3 composes a configuration, act 4 deploys it.")
-    record = given.out / "run.npz"
+    record = given.out.absolute() / "run.npz"
     with Crew(given.environment) as crew:
         stage = Stage(crew, _tell)
         _tell(f"meanwhile, in another terminal: selfconf discover --ecology {stage.ecology}{given.shown}")
