@@ -55,7 +55,7 @@ class Acceptance:
             *(([c.profile for c in some], wanted) for some, wanted in zip(partition.candidates, roles, strict=True)),
             ([recruit.profile for recruit in partition.recruits], supplying),
         ]
-        met = self._met(feeding, SeenOutputs(seen, self._hierarchy))
+        met = self._met(feeding, SeenOutputs(seen))
         return replace(
             partition,
             candidates=tuple(
@@ -166,7 +166,7 @@ class Acceptance:
         """What keeps an output from being accepted by a shape, if anything does, or that it cannot be judged."""
         known = self._shape(shape)
         try:
-            return known if isinstance(known, NotJudged) else known.obstacle(output, SeenOutputs(seen, self._hierarchy))
+            return known if isinstance(known, NotJudged) else known.obstacle(output, SeenOutputs(seen))
         except AuthorError as error:
             return _cannot_be_judged(error)
 

@@ -1,16 +1,12 @@
-"""SHACL's property paths (SHACL, 2.3.1) walked over the statements of one advertisement.
-
-Classes lie below others by the hierarchy of the reasoning mode, which a path sees as `rdfs:subClassOf`.
-"""
+"""SHACL's property paths (SHACL, 2.3.1) walked over the statements of one advertisement."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.turtle import Document, Triple
-from selfconf.rdf.vocabulary import FIRST, RDFS, SH
+from selfconf.rdf.vocabulary import FIRST, SH
 
 Step = Callable[[Term], Iterable[Term]]
 """From a node to the nodes that a path leads to."""
@@ -19,10 +15,9 @@ Step = Callable[[Term], Iterable[Term]]
 class WalkedStatements:
     """What is said of and about each node, some statements given."""
 
-    def __init__(self, triples: Iterable[Triple], hierarchy: Hierarchy) -> None:
+    def __init__(self, triples: Iterable[Triple]) -> None:
         self._forth: dict[tuple[Term, IRI], list[Term]] = {}
         self._back: dict[tuple[Term, IRI], list[Term]] = {}
-        self._hierarchy = hierarchy
         self._known: dict[tuple[Term, Term, bool], list[Term]] = {}
         """Where a path leads from a node, forth or back: stars in stars would be walked again and again."""
         for subject, predicate, value in triples:
@@ -31,10 +26,7 @@ class WalkedStatements:
 
     def values(self, node: Term, predicate: IRI) -> Iterable[Term]:
         """The values of a property of a node."""
-        known = self._forth.get((node, predicate), ())
-        if predicate == RDFS.subClassOf and isinstance(node, IRI):
-            return [*known, *(self._hierarchy.superclasses(node) - {node})]
-        return known
+        return self._forth.get((node, predicate), ())
 
     def walked(self, document: Document, path: Term, node: Term, back: bool = False) -> list[Term]:
         """The nodes to which a path leads, each once; `back` walks a predicate against its direction."""

@@ -37,8 +37,8 @@ Seen = Callable[[IRI], Sequence[Triple]]
 class SeenOutputs:
     """The outputs of an ecology as shapes see them; each is looked at once for each path, by however many shapes."""
 
-    def __init__(self, seen: Seen, hierarchy: Hierarchy) -> None:
-        self._seen, self._hierarchy = seen, hierarchy
+    def __init__(self, seen: Seen) -> None:
+        self._seen = seen
         self._triples: dict[IRI, Sequence[Triple]] = {}
         self._statements: dict[IRI, WalkedStatements] = {}
         self._values: dict[tuple[str, Port], tuple[Term, ...]] = {}
@@ -80,7 +80,7 @@ class SeenOutputs:
     def _walked(self, port: Port) -> WalkedStatements:
         component = port[0]
         if component not in self._statements:
-            self._statements[component] = WalkedStatements(self.triples(component), self._hierarchy)
+            self._statements[component] = WalkedStatements(self.triples(component))
         return self._statements[component]
 
 

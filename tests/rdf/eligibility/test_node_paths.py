@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import pytest
 import rdflib
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pyshacl.shape import Shape
 from pyshacl.shapes_graph import ShapesGraph
 
-from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.term import IRI
 from selfconf.rdf.eligibility.node_paths import WalkedStatements
 from selfconf.rdf.rdflib_terms import from_rdflib, to_rdflib
 from selfconf.rdf.turtle import parse
-from selfconf.rdf.vocabulary import RDFS, SH
+from selfconf.rdf.vocabulary import SH
 from tests.harness.effort import examples
 
 PREFIXES = "@prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:t:> .\n"
@@ -38,9 +36,7 @@ PATHS = st.recursive(
 def test_a_path_leads_where_pyshacl_says_that_it_leads(triples: list[tuple[str, str, str]], path: str) -> None:
     data = parse(PREFIXES + "".join(f"{' '.join(triple)} .\n" for triple in triples), "data")
     shape = parse(f"{PREFIXES}:shape a sh:PropertyShape ; sh:path {path} .", "shape")
-    found = WalkedStatements(data.triples(), NOTHING_ABOVE).walked(
-        shape, shape.values(IRI("urn:t:shape"), SH.path)[0], start()
-    )
+    found = WalkedStatements(data.triples()).walked(shape, shape.values(IRI("urn:t:shape"), SH.path)[0], start())
     shapes = ShapesGraph(to_rdflib(shape.triples()))
     judged = Shape(shapes, rdflib.URIRef("urn:t:shape"), p=True, path=path_of(shapes))
     values = judged.value_nodes(to_rdflib(data.triples()), [rdflib.URIRef(start())])[rdflib.URIRef(start())]
@@ -56,17 +52,3 @@ def start() -> IRI:
 def path_of(shapes: ShapesGraph) -> rdflib.term.Node:
     """The path of the only shape."""
     return shapes.graph.value(rdflib.URIRef("urn:t:shape"), rdflib.URIRef(SH.path))
-
-
-@pytest.mark.parametrize(
-    ("hierarchy", "kinds"),
-    [
-        (NOTHING_ABOVE, {"urn:t:Scan"}),
-        (Hierarchy([(IRI("urn:t:Scan"), IRI("urn:t:Data"))]), {"urn:t:Scan", "urn:t:Data"}),
-    ],
-)
-def test_a_path_of_subclasses_sees_the_hierarchy(hierarchy: Hierarchy, kinds: set[str]) -> None:
-    data = parse(f"{PREFIXES}:n0 :p :Scan .", "data")
-    shape = parse(f"{PREFIXES}:s sh:path ( :p [ sh:zeroOrMorePath <{RDFS.subClassOf}> ] ) .", "shape")
-    path = shape.values(IRI("urn:t:s"), SH.path)[0]
-    assert set(WalkedStatements(data.triples(), hierarchy).walked(shape, path, start())) == kinds

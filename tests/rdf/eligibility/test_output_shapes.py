@@ -105,7 +105,7 @@ def test_an_output_conforms_where_pyshacl_says_so(text: str, hierarchy: Hierarch
         assume(False)
     ecology = {a.component: a for a in read_advertisements((PREFIXES + OUTPUTS).encode(), "outputs")[0]}
     seen = {component: tuple(visible(advertisement, hierarchy)) for component, advertisement in ecology.items()}
-    known = SeenOutputs(seen.__getitem__, hierarchy)
+    known = SeenOutputs(seen.__getitem__)
     outputs = {(home(c), name): known.node((home(c), name)) for c, name in NAMES}
     found = OutputShape(canonical, hierarchy).conforming(list(outputs), known)
 
