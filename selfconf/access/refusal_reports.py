@@ -16,7 +16,7 @@ LIFE = "Liveliness Token"
 LIFE_ANSWER = 3.0
 """Seconds that others may take to say whether a life is there."""
 MOST_TOLD = 20
-"""How many refused attempts a site tells of in a minute; `selfconf access` shows them all."""
+"""How many refused attempts of one principal a site tells of in a minute; `selfconf access` shows them all."""
 
 
 class RefusalReports:
@@ -29,8 +29,8 @@ class RefusalReports:
         self._bus, self._refusals, self._complain, self._allowed = bus, refusals, complain, allowed
         self._seen: dict[tuple[str, str, str], int] = {}
         """How often each refused attempt was seen in the log."""
-        self._told_at: list[float] = []
-        """When something was said in the last minute."""
+        self._told_at: dict[str, list[float]] = {}
+        """When something was said of each principal in the last minute: the attempts of one hide no other one."""
 
     @property
     def refused(self) -> tuple[RefusedAttempt, ...]:
@@ -69,7 +69,7 @@ class RefusalReports:
     def tell(self, principal: str, attempt: str, key: str) -> None:
         """Say that an attempt of a principal was refused, and under which key; of `MOST_TOLD` in a minute at most."""
         now = self._bus.now()
-        self._told_at = [at for at in self._told_at if now - at < 60.0]
-        if len(self._told_at) < MOST_TOLD:
-            self._told_at.append(now)
+        recent = self._told_at[principal] = [at for at in self._told_at.get(principal, ()) if now - at < 60.0]
+        if len(recent) < MOST_TOLD:
+            recent.append(now)
             self._complain(f"refused: {client_text(principal)}: {attempt}{f' on {key}' if key else ''}")

@@ -86,11 +86,13 @@ def test_a_life_whose_key_was_too_long_to_be_kept_hides_no_attempt(monkeypatch: 
     assert [said.split(": ")[1] for said in site.said] == ["comp.bell", "comp.lamp"]
 
 
-def test_of_many_attempts_only_some_are_told_of_in_a_minute() -> None:
+def test_of_many_attempts_of_one_principal_only_some_are_told_of_in_a_minute() -> None:
     site = Reports()
     for number in range(3 * MOST_TOLD):
-        site.reports.tell("", f"attempt {number}", "")
+        site.reports.tell("conf.eve", f"attempt {number}", "")
     assert len(site.said) == MOST_TOLD
-    site.bus.poll(61.0)
     site.reports.tell("conf.bob", "Put", "a/key")
     assert site.said[MOST_TOLD:] == ["refused: conf.bob: Put on a/key"]
+    site.bus.poll(61.0)
+    site.reports.tell("conf.eve", "Put", "a/key")
+    assert site.said[MOST_TOLD + 1 :] == ["refused: conf.eve: Put on a/key"]
