@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from typing import Any
+from typing import Any, TypeVar
 
 from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.deployed import connected, deployed_body, passed_over
@@ -17,16 +17,18 @@ from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
 from selfconf.render.why import told_why
 
+_Found = TypeVar("_Found")
+Told = tuple[_Found, tuple[str, ...]]
+"""What configurators have told, and a complaint for each answer that was left out, as something was wrong with it."""
+
 
 class Configurators:
-    """Asks the configurators of an ecology; what is wrong with an answer is left out of it, and a complaint."""
+    """Asks the configurators of an ecology."""
 
     def __init__(self, bus: SynchronousBus, keys: Keys) -> None:
         self._bus, self._keys = bus, keys
-        self.complaints: tuple[str, ...] = ()
-        """What was wrong with the answers to the last question, in sentences."""
 
-    def documents(self) -> list[tuple[str, Document]]:
+    def documents(self) -> Told[list[tuple[str, Document]]]:
         """What each configurator has deployed, with its name."""
         found: list[tuple[str, Document]] = []
         complaints: list[str] = []
@@ -38,24 +40,25 @@ class Configurators:
                 found.append((name, turtle.parse(sample.payload, sample.key)))
             except (PeerError, TurtleError) as error:
                 complaints.append(f"left out a configuration: {error}")
-        self.complaints = tuple(complaints)
-        return found
+        return found, tuple(complaints)
 
-    def deployed(self) -> dict[str, dict[str, Any]]:
+    def deployed(self) -> Told[dict[str, dict[str, Any]]]:
         """What each configurator has deployed, as JSON, by its name: roles, connections, parameters, bindings."""
-        bodies = [(name, deployed_body(document)) for name, document in self.documents()]
-        return {name: body for name, body in bodies if body is not None}
+        documents, complaints = self.documents()
+        bodies = [(name, deployed_body(document)) for name, document in documents]
+        return {name: body for name, body in bodies if body is not None}, complaints
 
-    def links(self, names: Collection[str], components: Iterable[IRI]) -> dict[IRI, tuple[IRI, ...]]:
+    def links(self, names: Collection[str], components: Iterable[IRI]) -> Told[dict[IRI, tuple[IRI, ...]]]:
         """The sources of each component, of those given and of those that some configurators have connected; sorted."""
         heard: dict[IRI, set[IRI]] = {component: set() for component in components}
-        for name, document in self.documents():
+        documents, complaints = self.documents()
+        for name, document in documents:
             if name in names:
                 for source, sink in connected(document):
                     heard.setdefault(sink, set()).add(source)
-        return {component: tuple(sorted(sources)) for component, sources in sorted(heard.items())}
+        return {component: tuple(sorted(sources)) for component, sources in sorted(heard.items())}, complaints
 
-    def why(self, term: str, at: float | None) -> list[str]:
+    def why(self, term: str, at: float | None) -> Told[list[str]]:
         """Why components play the roles that a term means, in sentences; at a moment, or now."""
         meant = iri_or_local_name(term)
         told: dict[str, list[Notice]] = {}
@@ -65,8 +68,8 @@ class Configurators:
             told.setdefault(notice.configurator, []).append(notice)
         deployed: dict[str, dict[str, Any]] = {}
         if at is None:
-            deployed = self.deployed()
-            rejected += self.complaints
+            deployed, complaints = self.deployed()
+            rejected += complaints
         sentences: list[str] = []
         for configurator, notices in sorted(told.items()):
             events = [notice.event for notice in sorted(notices, key=lambda notice: notice.sequence)]
@@ -75,5 +78,4 @@ class Configurators:
                 sentences += told_why(task_name(notices[0].task), events, meant, at, passed)
             except PeerError as error:
                 rejected.append(f"left out an answer: {error}")
-        self.complaints = tuple(rejected)
-        return sentences
+        return sentences, tuple(rejected)

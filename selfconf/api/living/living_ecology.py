@@ -21,7 +21,7 @@ from selfconf.api.arguments import (
 from selfconf.api.ecology import Ecology
 from selfconf.api.living.component_states import ComponentState, component_states, doubled, told_lives, unadvertised
 from selfconf.api.living.component_terms import iri_or_local_name
-from selfconf.api.living.configurators import Configurators
+from selfconf.api.living.configurators import Configurators, Told
 from selfconf.api.living.echo import HeardSignal, echo
 from selfconf.api.living.output_sources import check_output, follow_output
 from selfconf.api.living.restarting import restarted
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 PAUSES = (0.0, 0.1, 0.4)
 """Seconds before each call of the sites, until one answers: one that has just begun may not be known to its hub."""
-_Result = TypeVar("_Result")
+_Found = TypeVar("_Found")
 
 
 class LivingEcology(Ecology):
@@ -278,17 +278,15 @@ class LivingEcology(Ecology):
         self._running, self._complaints = running, running.complaints
         return running
 
-    def _told(self, found: _Result) -> _Result:
-        """Take over what was wrong with what configurators have told."""
-        self._complaints = self._configurators.complaints
+    def _told(self, told: Told[_Found]) -> _Found:
+        """Return what configurators or sites have told, and keep the complaints."""
+        found, self._complaints = told
         return found
 
     def access(self) -> tuple[SiteAccess, ...]:
         """Who may do what at the hub of each site that has keys, and what was refused there; sorted by site."""
         replies = self._synchronous.ask(self._view.keys.access())
-        found, complaints = site_accesses(replies, self.discover().found)
-        self._complaints = complaints
-        return found
+        return self._told(site_accesses(replies, self.discover().found))
 
     def other_logs(self, known: Collection[str], complain: Callable[[str], None]) -> list[LogSource]:
         """The logs of the sites that live, but for those that are known; `complain` hears once of each silent one."""
@@ -297,19 +295,22 @@ class LivingEcology(Ecology):
 
     def links_of(self, task: str) -> dict[IRI, tuple[IRI, ...]] | None:
         """The sources of each component of a deployed task, as its configurator says; None if none answers for it."""
-        running = self._noted(self._tasks.running()).statuses
-        names = {status.configurator for status in running if status.name == task}
+        running = self._noted(self._tasks.running())
+        names = {status.configurator for status in running.statuses if status.name == task}
         if not names:
             return None
-        components = [component for one in running if one.configurator in names for component in one.components]
-        return self._told(self._configurators.links(names, components))
+        components = [one for status in running.statuses if status.configurator in names for one in status.components]
+        links, complaints = self._configurators.links(names, components)
+        self._complaints = (*running.complaints, *complaints)
+        return links
 
     def dataset(self) -> Dataset:
         """The ecology as RDF: a named graph for each advertisement, and one for each deployed configuration."""
         dataset = super().dataset()
-        for name, document in self._configurators.documents():
+        documents, complaints = self._configurators.documents()
+        for name, document in documents:
             dataset.add(IRI.unchecked(f"urn:selfconf:{self._view.keys.configuration(name)}"), document.triples())
-        self._complaints = (*self.complaints, *self._configurators.complaints)
+        self._complaints = (*self.complaints, *complaints)
         return dataset
 
     def why(self, term: str, at: float | None = None) -> list[str]:
