@@ -17,9 +17,8 @@ from sim.home.floor_plan import Block, CameraMount
 from sim.physics.camera import Camera
 from sim.physics.noise import stream
 from sim.physics.world import World, camera_of
-from sim.robot.stereo import StereoCamera, StereoFrame
+from sim.robot.stereo import StereoCamera
 from sim.say import say
-from sim.signals import PlanarPose2D
 
 MOUNT = "stereo-camera"
 """What the description of the apartment calls the place of the upper camera."""
@@ -72,10 +71,6 @@ class StereoEye(Component):
         self._stereo = StereoCamera(calibration(world.apartment, self.name), chance)
         self.told = float("-inf")
         """The simulated time of the newest exposure that it issued."""
-        self.frame: StereoFrame | None = None
-        """The newest exposure."""
-        self.pose: PlanarPose2D | None = None
-        """What was found in it: that only the tracker knows."""
 
     def started(self) -> None:
         """Say which camera looks: outside of the living room only this line shows it."""
@@ -86,13 +81,13 @@ class StereoEye(Component):
         self._ticks += 1
         if not self.active or self._ticks % self.every_ticks:
             return
-        self.frame = self._stereo.expose(self._world.capture(self._stereo.camera))
-        if float(np.median(self.frame.depth)) < COVERED:
+        frame = self._stereo.expose(self._world.capture(self._stereo.camera))
+        if float(np.median(frame.depth)) < COVERED:
             self.fail("something covers the lens")
             return
         self.told = self._world.time
-        self.emit("depth", self.frame.depth.astype(np.float32), self.told)
-        self.emit("image", self.frame.rgb, self.told)
+        self.emit("depth", frame.depth.astype(np.float32), self.told)
+        self.emit("image", frame.rgb, self.told)
 
 
 class SpareEye(StereoEye):

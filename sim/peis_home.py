@@ -91,7 +91,8 @@ class PeisHome:
         """Sensors first, poses last: a pose is answered with what was sensed before it."""
         self.sonar.tick()
         self.encoder.tick()
-        looking = [camera for camera in self.cameras if camera.active]
+        # Where cameras are components of their own, only the tracker knows what was found in an image.
+        looking = [camera for camera in self.cameras if isinstance(camera, PersonTracker) and camera.active]
         for camera in self.cameras:
             camera.tick()
         self.odometry.tick()

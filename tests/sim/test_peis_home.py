@@ -76,15 +76,15 @@ def test_sparql_can_ask_which_furniture_is_in_the_apartment_and_in_which_room(pl
 
 
 @pytest.fixture
-def playing(apartment: Apartment) -> Iterator[Callable[[float], PeisHome]]:
-    """Makes the program's world at a speed, in an ecology that has no configurator."""
+def playing(apartment: Apartment) -> Iterator[Callable[..., PeisHome]]:
+    """Makes the program's world at a speed, perhaps with cameras of their own, in an ecology without configurator."""
     pytest.importorskip("pybullet", reason="PyBullet is not installed: install the extra sim on Python 3.10 or 3.11")
     from sim.peis_home import PeisHome
 
     made: list[PeisHome] = []
 
-    def make(speed: float) -> PeisHome:
-        made.append(PeisHome(Host(Network(0).node(), "lab"), apartment, 1, speed, "bedroom", gui=False))
+    def make(speed: float, eyes: bool = False) -> PeisHome:
+        made.append(PeisHome(Host(Network(0).node(), "lab"), apartment, 1, speed, "bedroom", False, eyes))
         return made[-1]
 
     yield make
@@ -94,7 +94,7 @@ def playing(apartment: Apartment) -> Iterator[Callable[[float], PeisHome]]:
 
 
 @pytest.mark.sim
-def test_the_world_ends_that_is_told_to_while_the_sensors_look(playing: Callable[[float], PeisHome]) -> None:
+def test_the_world_ends_that_is_told_to_while_the_sensors_look(playing: Callable[..., PeisHome]) -> None:
     home = playing(1.0)
     answers = iter([False])
     home.told.heed_no_more()
@@ -104,7 +104,7 @@ def test_the_world_ends_that_is_told_to_while_the_sensors_look(playing: Callable
 
 @pytest.mark.sim
 def test_as_fast_as_it_goes_is_real_time_while_nothing_tells_poses(
-    playing: Callable[[float], PeisHome], monkeypatch: pytest.MonkeyPatch
+    playing: Callable[..., PeisHome], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     home = playing(float("inf"))
     home.told.heed_no_more()
@@ -113,6 +113,18 @@ def test_as_fast_as_it_goes_is_real_time_while_nothing_tells_poses(
     began = time.monotonic()
     assert home.run(1.0) == "time is up"
     assert time.monotonic() - began >= 1.0
+
+
+@pytest.mark.sim
+@pytest.mark.parametrize("eyes", [False, True])
+def test_images_are_kept_with_what_was_found_in_them_and_without_that_not_at_all(
+    eyes: bool, playing: Callable[..., PeisHome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = playing(10.0, eyes)
+    home.told.heed_no_more()
+    monkeypatch.setattr(f"sim.{'eyes.StereoEye' if eyes else 'equipment.PersonTracker'}.active", True)
+    home.run(0.5)
+    assert [pose is not None for _, _, pose in home.logbook.sights] == ([] if eyes else [True])
 
 
 @pytest.mark.sim
