@@ -264,6 +264,28 @@ def test_a_bulk_that_is_too_large_drops_the_oldest_but_never_the_newest() -> Non
     assert (said, loop.dropped) == ([5], 5)
 
 
+def test_what_has_run_takes_no_room_and_leaves_nothing_to_do() -> None:
+    loop, said = Loop(), list[int]()
+    for number in range(10):
+        loop.enqueue_bulk(partial(said.append, number), Loop.MOST_BYTES // 2)
+        loop.poll()
+    loop.enqueue_bulk(partial(said.append, 10), Loop.MOST_BYTES // 2 - Loop.OVERHEAD)
+    loop.enqueue_bulk(partial(said.append, 11), Loop.MOST_BYTES // 2 - Loop.OVERHEAD)
+    loop.poll()
+    assert (said, loop.dropped) == (list(range(12)), 0)
+    assert loop._waiting.empty()
+
+
+@pytest.mark.parametrize("urgent", [True, False])
+def test_messages_that_say_nothing_are_bounded_too(urgent: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Loop, "MOST_BYTES", 10 * Loop.OVERHEAD)
+    loop, said = Loop(), list[int]()
+    for number in range(12):
+        (loop.enqueue_urgent if urgent else loop.enqueue_bulk)(partial(said.append, number), 0)
+    loop.poll()
+    assert said == (list(range(10)) if urgent else list(range(2, 12)))
+
+
 def test_urgent_messages_that_find_no_room_are_dropped_until_those_before_have_run() -> None:
     loop = Loop()
     said: list[int] = []

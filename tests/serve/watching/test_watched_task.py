@@ -54,8 +54,11 @@ def test_the_refusal_of_a_task_that_waits_is_explained_by_a_notice_that_comes_on
 def test_a_task_that_is_over_holds_nothing() -> None:
     task = WatchedTask("c1")
     task.take_status(Status("c1", "running", iri("t"), 7, 0.0, components=(iri("a"),), task="tidy~c1"))
-    task.hear(notice(1, act="running", configuration={"roles": []}))
+    task.hear(notice(1, act="running", epoch=7, configuration={"roles": []}))
     assert task.body(detached=False)["components"] == [iri("a")]
+    assert task.body(detached=False)["configuration"] is not None
+    task.hear(notice(2, act="running", epoch=8))
+    assert task.body(detached=False)["configuration"] is not None, "one that tells no more than that it runs"
     task.alive = False
     body = task.body(detached=False)
     assert (body["phase"], body["components"], body["configuration"]) == ("gone", [], None)
