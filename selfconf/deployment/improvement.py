@@ -24,8 +24,7 @@ class Improvement:
 
     def __init__(self, context: TaskContext, settling: float | None) -> None:
         """`settling`: after how many seconds what has appeared may be rather had; None: what runs is kept."""
-        self._bus, self._state, self._step = context.ecology.bus, context.state, context.step
-        self._settling = settling
+        self._bus, self._step, self._settling = context.ecology.bus, context.step, settling
         self._undo: Undo = lambda: None
         self._undo_later: Undo = lambda: None
         self._at_the_latest: float | None = None

@@ -183,12 +183,12 @@ class Keeper:
                 runner.stop()
             elif runner is not None:
                 self._leave_what_is_anothers(runner, record, keeper)
-            mine = keeper == self.site and not record.ended and not self._requests.is_left_alone(task)
-            if mine and task not in self.runners:
+            request = self._requests.of(task) if keeper == self.site and not record.ended else None
+            if request is not None and task not in self.runners:
                 if wait := self._view.unrest() if linked else LINKED_AGAIN:
                     self._assign_later(wait)
                 else:
-                    self._run(record)
+                    self._run(record, request)
 
     def _assign_later(self, seconds: float) -> None:
         def assign() -> None:
@@ -232,11 +232,7 @@ class Keeper:
             found.append(Holding(holder, {one: configuration.wants(one) for one in configuration.components}))
         return found
 
-    def _run(self, record: TaskRecord) -> None:
-        request = self._requests.of(record.task)
-        if request is None:
-            return
-
+    def _run(self, record: TaskRecord, request: RunRequest) -> None:
         def ended(_: object) -> None:
             runner = self.runners.pop(record.task, None)
             self._versions.pop(record.task, None)

@@ -36,7 +36,7 @@ class TaskRequests:
             self._requests.pop(task, None)
             self._respites.pop(task, None)
             return
-        if task in self._requests or self.is_left_alone(task):
+        if task in self._requests or self._is_left_alone(task):
             return
         try:
             self._requests[task] = self._request_for(record)
@@ -47,14 +47,13 @@ class TaskRequests:
             self.leave_alone(task, f"the task {task} cannot be read now: {error}")
 
     def of(self, task: str) -> RunRequest | None:
-        """What was read of a task; None where it cannot be run."""
-        return self._requests.get(task)
+        """What was read of a task; None where it cannot be run, or is left alone for a while."""
+        return None if self._is_left_alone(task) else self._requests.get(task)
 
     def leave_alone(self, task: str, trouble: str) -> None:
         """Let a task be for a while that has given trouble, and log that."""
         log.error("%s; trying again in %.0f s", trouble, RESPITE)
         self._respites[task] = self._bus.now() + RESPITE
 
-    def is_left_alone(self, task: str) -> bool:
-        """Whether a task is let be, as it has given trouble."""
+    def _is_left_alone(self, task: str) -> bool:
         return self._respites.get(task, 0.0) > self._bus.now()

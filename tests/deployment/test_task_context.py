@@ -18,7 +18,6 @@ def test_every_part_sees_the_state_as_it_is_now_and_not_as_it_was_when_the_task_
         agent._search,
         agent._retries_while_refused,
         agent._retries_while_running,
-        agent._improvement,
         agent._discovery,
     ):
         assert part._state() is agent.state

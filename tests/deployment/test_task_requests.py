@@ -62,7 +62,6 @@ def test_a_task_for_which_there_is_no_room_now_is_read_again_later(caplog: pytes
     reader.trouble = OSError("no space left on the device")
     for _ in range(3):
         assert not reader.read()
-        assert reader.requests.is_left_alone(RECORD.task)
     assert reader.times == 1
     assert [one.getMessage() for one in caplog.records] == [
         f"the task {RECORD.task} cannot be read now: no space left on the device; trying again in 60 s"
@@ -77,4 +76,14 @@ def test_a_task_that_has_ended_is_forgotten_with_its_trouble() -> None:
     reader.read()
     reader.requests.leave_alone(RECORD.task, "its search broke")
     assert not reader.read(replace(RECORD, ended=True))
-    assert not reader.requests.is_left_alone(RECORD.task)
+    assert reader.read()
+
+
+def test_a_task_that_has_given_trouble_is_not_run_for_a_while() -> None:
+    reader = Reader()
+    assert reader.read()
+    reader.requests.leave_alone(RECORD.task, "its search broke")
+    assert not reader.read()
+    reader.pass_time(RESPITE + 1.0)
+    assert reader.read()
+    assert reader.times == 1
