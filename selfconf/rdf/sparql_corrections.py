@@ -11,6 +11,7 @@ of a value that any advertisement may have. Within `sparql_corrections`
 * a date, a text with a language and NaN are not true (17.2.2);
 * `||` and `&&` have a value if one side alone decides, whichever that is (17.2);
 * an expression that fails is an error, by which a filter does not hold, whatever Python raises for it (17.2);
+* a negative decimal is a term; `FILTER(false)` and its like hold for nothing; rdflib fails, or leaves them out;
 * what a sub-SELECT does not project is its own (12); a sub-SELECT without solutions has no groups (18.5.1);
 * a number is cast to any other kind of number, and to a truth value, and back (17.5);
 * SUM and AVG of what is no number is an error (18.5.1); rdflib fails, or passes over the value.
@@ -18,6 +19,7 @@ of a value that any advertisement may have. Within `sparql_corrections`
 
 from __future__ import annotations
 
+import re
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager
@@ -40,7 +42,7 @@ from selfconf.rdf.literal_comparison import order_of
 _Pairs = Iterator[tuple[Node, Node]]
 _NUMBERS = (int, float, Decimal)
 _NUMERIC_CASTS = (XSD.boolean, XSD.integer, XSD.decimal, XSD.float, XSD.double)
-_FAILURES = (TypeError, ValueError, ArithmeticError, AttributeError, RecursionError)
+_FAILURES = (TypeError, ValueError, ArithmeticError, AttributeError, RecursionError, re.error)
 """What rdflib raises by mistake where an expression has an error."""
 
 
@@ -179,6 +181,20 @@ def _both(expression: Any, context: Any) -> object:
     return _connected(expression, context, False)
 
 
+_collected_filters: Callable[[Any], Any] = vars(algebra)["collectAndRemoveFilters"]
+
+
+def _filters(parts: Any) -> Any:
+    """The condition of all filters of a group; never one that Python takes for none, as a literal may be."""
+    condition = _collected_filters(parts)
+    return Expr("Condition", _either, expr=condition) if isinstance(condition, Literal) else condition
+
+
+def _negative(number: Literal) -> Literal:
+    """A number with a minus before it."""
+    return Literal(f"-{number}", datatype=number.datatype)
+
+
 _evaluated: Callable[..., Any] = vars(Expr)["eval"]
 
 
@@ -262,6 +278,8 @@ _CORRECTIONS: tuple[tuple[object, str, object], ...] = (
     (_INVERSE, "expr", "^" + _GRAMMAR.Param("part", parser.iri | parser.A)),
     (algebra, "translatePath", _path),
     (algebra, "analyse", _lazy),
+    (algebra, "collectAndRemoveFilters", _filters),
+    (parser, "neg", _negative),
     (evaluate, "evalAggregateJoin", _groups),
     (operators, "EBV", _effective_boolean_value),
     (evalutils, "EBV", _effective_boolean_value),

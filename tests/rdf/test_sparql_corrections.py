@@ -22,7 +22,7 @@ SAID = """
 :five :load 5 ; :next :five . :zero :load 0 . :empty :load "" . :false :load false . :heavy :load "heavy" , 7 .
 :german :load "schwer"@de . :dated :load "2020-01-01"^^xsd:date . :unknown :load "x"^^:kilo .
 :nan :load "NaN"^^xsd:double . :wrong :load "many"^^xsd:integer . :linked :next :five , :a . :a :next :b . :b :next :a .
-:bare :note 1 . :decimal :load 5.0 .
+:bare :note 1 . :decimal :load 5.0 . :cold :load -2.5 .
 """
 NODES = sorted({line.split()[0] for line in SAID.replace(" . ", "\n").splitlines() if line.strip()})
 
@@ -96,6 +96,12 @@ def test_a_path_leads_where_oxigraph_finds_that_it_leads(pattern: str) -> None:
         "xsd:decimal(?v) = 5",
         "IF(?v > 4, ?v < 6, false)",
         "COALESCE(?v = 4, true)",
+        "false",
+        "0",
+        "?v IN (-2.5)",
+        "!(-2.5)",
+        "! -2.5 || ?v = 5",
+        'REPLACE(STR(?v), "(", "x") = "x" || ?v = 5',
     ],
 )
 def test_a_condition_holds_where_oxigraph_finds_that_it_holds(condition: str) -> None:
@@ -115,6 +121,11 @@ def test_a_condition_holds_where_oxigraph_finds_that_it_holds(condition: str) ->
 )
 def test_an_aggregate_is_that_of_oxigraph(query: str) -> None:
     assert by_shape(query) == by_oxigraph(query)
+
+
+def test_a_negative_decimal_is_a_term() -> None:
+    query = "SELECT $this { $this :load -2.5 }"
+    assert by_shape(query) == by_oxigraph(query) == {":cold"}
 
 
 def test_a_path_may_be_as_long_as_the_graph() -> None:
