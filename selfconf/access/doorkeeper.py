@@ -11,8 +11,9 @@ which; on its own host a site goes on with its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -151,6 +152,8 @@ class Doorkeeper:
         self._admitted_at = bus.now()
         self._latest: dict[Process, tuple[datetime, datetime]] = {}
         """From and until when the latest certificate is valid that each holder has shown."""
+        self._renews_components = False
+        """Whether the certificates of components are being renewed."""
         self._opens_for_renewed = False
         """Whether the hub is to be opened anew soon, as certificates were renewed."""
         self._shown, self._stamps = stamp(self._credentials.certificate), dict[Path, FileStamp]()
@@ -376,7 +379,19 @@ class Doorkeeper:
             if self._stamps[self._credentials.certificate] != self._shown:
                 self._shown = self._stamps[self._credentials.certificate]
                 self._open_anew()
-            HostAuthority(self._folder).renew_components()
+            if not self._renews_components:
+                self._renew_next(HostAuthority(self._folder).renew_components())
+        except SelfconfError as error:
+            self._tell_fault(str(error))
+
+    def _renew_next(self, renewals: Iterator[None]) -> None:
+        """Take the next step of renewing the certificates of components; between them the bus does other things."""
+        self._renews_components = False
+        try:
+            for _ in renewals:
+                self._renews_components = True
+                self._bus.later(0.0, partial(self._renew_next, renewals))
+                return
         except SelfconfError as error:
             self._tell_fault(str(error))
 

@@ -370,6 +370,25 @@ def test_a_renewed_certificate_is_shown_though_those_of_components_cannot_be_ren
     assert door.said == ["holds no private key in PEM"]
 
 
+def test_while_the_certificates_of_many_components_are_renewed_the_site_does_other_things(
+    door: Door, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each takes some 20 ms, and the site may be running tasks."""
+    host, issued, heard = HostAuthority(door.folder), list[Path](), list[int]()
+    for number in range(5):
+        host.component(Principal.component(IRI(f"urn:lamp{number}")))
+
+    def issue(authority: HostAuthority, folder: Path, *_: object) -> None:
+        issued.append(folder)
+        door.bus.later(0.0, lambda: heard.append(len(issued)))
+
+    monkeypatch.setattr(HostAuthority, "_issue", issue)
+    monkeypatch.setattr(Certificate, "half_over", lambda self, now=None: True)
+    door.pass_time(LOOK_AT_ALL + 1.0)
+    assert len(set(issued)) == 5
+    assert heard[:5] == [1, 2, 3, 4, 5]
+
+
 @pytest.mark.parametrize("copied", [b"\x30\x82", None], ids=["not in PEM", "of another key"])
 def test_by_a_wrong_certificate_the_hub_is_not_opened_anew_until_there_is_a_good_one(
     door: Door, tmp_path: Path, copied: bytes | None

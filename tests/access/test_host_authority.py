@@ -134,10 +134,10 @@ def test_a_component_has_no_certificate_for_longer_than_its_site(authority: Auth
     component = KeysFolder(HostAuthority(attic).component(lamp))
     assert component.own().ends == attic.own().ends
     authority.renew(attic.path, days=0.25)
-    HostAuthority(attic).renew_components()
+    list(HostAuthority(attic).renew_components())
     assert component.own().ends == attic.own().ends
     authority.renew(attic.path, days=30.0)
-    HostAuthority(attic).renew_components()
+    list(HostAuthority(attic).renew_components())
     assert not component.own().half_over(), "it is renewed when half of its time has passed"
 
 
@@ -151,12 +151,12 @@ def test_the_components_of_a_host_are_renewed_together(
     authority.renew(attic.path)
     bell = KeysFolder(HostAuthority(attic).component(Principal.component(IRI("urn:bell"))))
     before = lamp.own(), bell.own()
-    HostAuthority(attic).renew_components()
+    list(HostAuthority(attic).renew_components())
     assert (lamp.own(), bell.own()) == before
     later = datetime.now(timezone.utc) + timedelta(days=0.3)
     monkeypatch.setattr(certificates, "_now", lambda: later)
     assert [one.half_over() for one in before] == [True, False]
-    HostAuthority(attic).renew_components()
+    list(HostAuthority(attic).renew_components())
     assert lamp.own() != before[0]
     assert bell.own() != before[1]
 
@@ -170,7 +170,7 @@ def test_a_component_is_not_renewed_again_and_again_as_its_site_expires(
     before, later = lamp.own(), datetime.now(timezone.utc) + timedelta(days=0.3)
     monkeypatch.setattr(certificates, "_now", lambda: later)
     assert before.half_over()
-    HostAuthority(attic).renew_components()
+    list(HostAuthority(attic).renew_components())
     assert lamp.own() == before, "it would be good for no longer"
 
 
@@ -191,7 +191,7 @@ def test_a_site_whose_certificate_has_expired_issues_none_and_says_so(
         attic.component(Principal.component(IRI("urn:bell")))
     monkeypatch.setattr(certificates, "_now", lambda: Later.now(timezone.utc))
     with pytest.raises(AuthorError, match=r"the certificate of site\.attic has expired"):
-        attic.renew_components()
+        list(attic.renew_components())
 
 
 def test_of_many_components_none_is_looked_at_closely_that_is_not_due(
@@ -202,12 +202,12 @@ def test_of_many_components_none_is_looked_at_closely_that_is_not_due(
     folders = [HostAuthority(attic).component(Principal.component(IRI(f"urn:lamp{number}"))) for number in range(5)]
     keys_read: list[Path] = []
     monkeypatch.setattr(host_authority, "read_pair", lambda path: keys_read.append(path) or read_pair(path))
-    HostAuthority(attic).renew_components()
+    list(HostAuthority(attic).renew_components())
     assert len(keys_read) == 1, "that of the authority"
     (folders[2] / "certificate.pem").unlink()
     (folders[3] / "certificate.pem").write_bytes((tmp_path / "authority/authority.pem").read_bytes())
     kept = [(folders[number] / "certificate.pem").read_bytes() for number in (0, 1, 4)]
     authority.renew(attic.path, days=0.25)
-    HostAuthority(attic).renew_components()
+    list(HostAuthority(attic).renew_components())
     assert not set(kept) & {(folders[number] / "certificate.pem").read_bytes() for number in (0, 1, 4)}
     assert not (folders[2] / "certificate.pem").exists(), "it is made as its process is started"
