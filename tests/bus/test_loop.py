@@ -153,6 +153,28 @@ def test_nothing_is_said_after_the_end() -> None:
     assert not said
 
 
+def test_the_end_waits_for_what_runs_on_the_thread_of_the_loop(caplog: pytest.LogCaptureFixture) -> None:
+    loop, began, over = Loop(), threading.Event(), list[bool]()
+
+    def slow() -> None:
+        began.set()
+        threading.Event().wait(0.1)
+        over.append(True)
+
+    loop.run_aside()
+    loop.wake_up(slow)
+    assert began.wait(10.0)
+    loop.end()
+    assert over == [True]
+    own = Loop()
+    own.run_aside()
+    own.wake_up(own.end)
+    thread = own._thread
+    assert thread is not None
+    thread.join(10.0)
+    assert (thread.is_alive(), caplog.text) == (False, "")
+
+
 def test_the_end_in_the_middle_of_a_round_is_the_end() -> None:
     loop = Loop()
     said: list[int] = []
