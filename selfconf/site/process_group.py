@@ -87,11 +87,11 @@ class ProcessGroup:
 
     def terminate(self) -> None:
         """Ask all of it to end."""
-        self._signalled(signal.SIGTERM)
+        self._send(signal.SIGTERM)
 
     def kill(self) -> None:
         """End all of it."""
-        self._signalled(signal.SIGKILL)
+        self._send(signal.SIGKILL)
 
     def wait(self, seconds: float) -> bool:
         """Wait until the program itself has ended; return whether it has."""
@@ -114,12 +114,12 @@ class ProcessGroup:
             pause *= 2
         return True
 
-    def _signalled(self, number: int) -> bool:
-        """Send a signal to all of the group, and to what has left it; return whether a process has received it."""
-        reached = self._has_number() and _reached(os.killpg, self.number, number)
+    def _send(self, number: int) -> None:
+        """Send a signal to all of the group, and to what has left it."""
+        if self._has_number():
+            _reached(os.killpg, self.number, number)
         for process in self._outside():
-            reached = self._sent_outside(process, number) or reached
-        return reached
+            self._send_outside(process, number)
 
     def _is_in_group(self) -> bool:
         """Whether a process is left in the group that has not ended."""
@@ -156,18 +156,21 @@ class ProcessGroup:
                     return os.getpgid(process) != self.number
         return False
 
-    def _sent_outside(self, process: int, number: int) -> bool:
-        """Send a signal to a process outside, unless its number has become another's; return whether it was sent."""
+    def _send_outside(self, process: int, number: int) -> None:
+        """Send a signal to a process outside, unless its number has become another's."""
         if not hasattr(os, "pidfd_open") or not hasattr(signal, "pidfd_send_signal"):
-            return _reached(os.kill, process, number)
+            _reached(os.kill, process, number)
+            return
         try:
             held = os.pidfd_open(process)
         except ProcessLookupError:
-            return False
+            return
         except OSError:  # a kernel without it, or no descriptor is left
-            return _reached(os.kill, process, number)
+            _reached(os.kill, process, number)
+            return
         try:
-            return self._is_outside(process) and _reached(signal.pidfd_send_signal, held, number)
+            if self._is_outside(process):
+                _reached(signal.pidfd_send_signal, held, number)
         finally:
             os.close(held)
 

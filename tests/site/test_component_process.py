@@ -89,7 +89,7 @@ def test_one_living_component_is_enough_and_without_one_the_process_has_some_tim
 def test_a_frozen_process_without_a_life_is_in_trouble_soon(network: Network, process: ComponentProcess) -> None:
     network.run(lambda: False, FROZEN + 1.0)
     assert process.trouble() is None
-    process.group._signalled(signal.SIGSTOP)
+    process.group._send(signal.SIGSTOP)
     assert until(lambda: stopped(process.group.number))
     cause, sentence = process.trouble() or (None, "")
     assert cause is Cause.CRASH
