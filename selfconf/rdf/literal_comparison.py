@@ -52,6 +52,8 @@ def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
     """How two literals compare: negative, zero or positive. Raises one of UNORDERED where they have no order."""
     if _MARKUP & {one.datatype, other.datatype} or _value_space(one) != _value_space(other):
         raise TypeError("the two have no order")
+    if one.ill_typed or other.ill_typed:  # rdflib gives 300 to "300"^^xsd:byte, and orders it by its datatype
+        raise TypeError("what is no form of its datatype has no value")
     if one.value != one.value or other.value != other.value:
         raise TypeError("NaN is neither less nor greater than any number")
     if one.language:  # rdflib orders by the tag first, as it is written: `en` comes after `EN`

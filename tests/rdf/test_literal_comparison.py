@@ -88,6 +88,7 @@ def test_one_number_in_two_forms_is_equal() -> None:
         (typed("true", "boolean"), typed("0", "integer")),
         (typed("PT1H", "duration"), typed("5", "decimal")),
         (Literal("x", IRI("urn:x:own")), typed("5", "integer")),
+        *product([typed("300", "byte"), typed("-3", "unsignedByte")], [typed("5", "integer"), typed("5.0", "decimal")]),
         (typed("1.0", "decimal"), NAN),
         (NAN, typed("1", "integer")),
         (typed("1", "float"), NAN),
