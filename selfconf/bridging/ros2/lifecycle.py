@@ -16,7 +16,7 @@ from selfconf import ros2
 from selfconf.bridging.ros2.domain import RosDomain
 from selfconf.bridging.ros2.tokens import RosEndpoint
 from selfconf.bus.port import Replies, Sample, Undo
-from selfconf.ros2 import MessageError
+from selfconf.ros2 import MessageError, MessageType
 
 CHANGE, STATE, EVENT = "change_state", "get_state", "transition_event"
 """The names of the services and of the topic, below that of the node."""
@@ -170,9 +170,7 @@ class NodeLifecycle:
         self, endpoint: RosEndpoint, fields: Mapping[str, Any], heard: Callable[[Mapping[str, Any] | str], None]
     ) -> None:
         """Ask one of the services; `heard` receives the fields of its answer, or why there are none."""
-        # By the name alone: these definitions are older than hashes, and some implementations hash them in their way.
-        kind = ros2.usual_type(endpoint.type.name)
-        parts = None if kind is None else ros2.service_parts(kind)
+        parts = ros2.service_parts(_usual_type(endpoint))
         assert parts is not None, "the services of lifecycle nodes are known"
         answered = parts.response
 
@@ -191,9 +189,19 @@ class NodeLifecycle:
     def _transition(self, event: RosEndpoint, sample: Sample) -> None:
         """The node has told of a transition."""
         try:
-            goal = ros2.message_fields(sample.payload, event.type)["goal_state"]
-        except (MessageError, AttributeError):  # the latter for a definition of the message that is not known
+            goal = ros2.message_fields(sample.payload, _usual_type(event))["goal_state"]
+        except MessageError:
             return
         if self._active and goal["id"] != ACTIVE:
             self._active = self._activated = False
             self._fail(f"the lifecycle node {self._name} has become {goal['label'] or goal['id']}")
+
+
+def _usual_type(endpoint: RosEndpoint) -> MessageType:
+    """The type of what makes a node a lifecycle node, by its name alone.
+
+    These definitions are older than hashes, and some implementations hash them in their way.
+    """
+    kind = ros2.usual_type(endpoint.type.name)
+    assert kind is not None, "the types of lifecycle nodes are known"
+    return kind

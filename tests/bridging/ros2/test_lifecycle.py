@@ -23,24 +23,28 @@ NEXT = {(1, 1): 2, (2, 3): 3, (3, 4): 2}
 """The state that a transition leads to from another one."""
 
 
-def key_of(name: str) -> str:
-    """The end of the keys of a type."""
+ODD_HASH = "RIHS01_" + "7" * 64
+"""The hash of a program that hashes definitions in its own way."""
+
+
+def key_of(name: str, hashed: str = "") -> str:
+    """The end of the keys of a type, by its usual hash or by another one."""
     kind = ros2.usual_type(name)
     assert kind is not None
     package, segment, local = name.split("/")
-    return f"{package}::{segment}::dds_::{local}_/{kind.hash}"
+    return f"{package}::{segment}::dds_::{local}_/{hashed or kind.hash}"
 
 
 class Managed:
     """A lifecycle node that does what it is told, but for one transition."""
 
-    def __init__(self, stand_in: StandIn, state: int = 1, fails: int = 0, instead: int = 0) -> None:
+    def __init__(self, stand_in: StandIn, state: int = 1, fails: int = 0, instead: int = 0, hashed: str = "") -> None:
         """`fails` is the transition that it does not make; it says that it did where it is in a state `instead`."""
         self.state, self.made, self._fails, self._instead = state, list[int](), fails, instead
         name = stand_in.name
-        event = key_of("lifecycle_msgs/msg/TransitionEvent")
-        stand_in.serves(f"/{name}/change_state", self.change, key_of("lifecycle_msgs/srv/ChangeState"))
-        stand_in.serves(f"/{name}/get_state", self.say, key_of("lifecycle_msgs/srv/GetState"))
+        event = key_of("lifecycle_msgs/msg/TransitionEvent", hashed)
+        stand_in.serves(f"/{name}/change_state", self.change, key_of("lifecycle_msgs/srv/ChangeState", hashed))
+        stand_in.serves(f"/{name}/get_state", self.say, key_of("lifecycle_msgs/srv/GetState", hashed))
         stand_in.token("MP", f"/{name}/transition_event", key=event)
         self._events = stand_in.bus.publisher(f"{DOMAIN}/{name}/transition_event/{event}", Urgency.EVENT)
 
@@ -184,9 +188,12 @@ def test_a_node_that_stays_in_a_transition_is_waited_for_no_longer_than_one_may_
         assert managed.made == []
 
 
-def test_a_node_that_leaves_the_active_state_by_itself_has_failed(living: LivingStage, tmp_path: Path) -> None:
+@pytest.mark.parametrize("hashed", ["", ODD_HASH])
+def test_a_node_that_leaves_the_active_state_by_itself_has_failed(
+    living: LivingStage, tmp_path: Path, hashed: str
+) -> None:
     with bridging_domain(living, tmp_path / "ads") as found:
-        managed = complete(found, Managed(found.node("map")))
+        managed = complete(found, Managed(found.node("map"), hashed=hashed))
         found.activate("map")
         assert until(lambda: managed.state == 3), found.complaints
 
