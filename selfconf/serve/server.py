@@ -105,11 +105,11 @@ class Record:
 
     def note(self, change: EcologyChange) -> None:
         """Note a change; where the disk is full it is missing in the history, and can be asked for all the same."""
-        self._replace(change.graphs)
+        self._replace({**change.graphs, **change.deployed})
         if self._history is None:
             return
         try:
-            past = self._history.note(change.graphs, change.events)
+            past = self._history.note(change.deployed, change.events)
         except CANNOT_WRITE as error:
             log.error("a change is missing in the history: %s", error)
         else:

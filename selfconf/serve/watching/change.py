@@ -13,8 +13,6 @@ from selfconf.protocol.messages import TaskRecord
 
 Body = dict[str, Any]
 """A JSON object."""
-DEPLOYED = "urn:selfconf:selfconf/"
-"""What the names of the graphs begin with in which configurators tell what they have deployed."""
 
 
 @immutable
@@ -27,7 +25,9 @@ class EcologyChange:
     tasks: Mapping[str, Body | None] = field(default_factory=dict)
     events: tuple[Body, ...] = ()
     graphs: Mapping[str, bytes] = field(default_factory=dict)
-    """N-Triples by the name of the graph; empty for one that is gone."""
+    """What components advertise, as N-Triples by the name of the graph; empty for one that is gone."""
+    deployed: Mapping[str, bytes] = field(default_factory=dict)
+    """What configurators tell of what they have deployed, likewise."""
     records: Mapping[str, TaskRecord] = field(default_factory=dict)
     """The templates of tasks, with how each is searched for, by the identity of the task."""
 

@@ -27,7 +27,7 @@ from selfconf.protocol.keys import configurator_of
 from selfconf.rdf.provenance import CONFIGURATION, failure_triples, moment
 from selfconf.rdf.turtle import ox_term
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
-from selfconf.serve.watching.change import DEPLOYED, Body
+from selfconf.serve.watching.change import Body
 
 log = logging.getLogger(__name__)
 
@@ -99,12 +99,12 @@ class History:
         self._unsettled.clear()
         return {name: self._triples(name) for name in over}
 
-    def note(self, graphs: Mapping[str, bytes], events: Iterable[Body] = ()) -> dict[str, bytes]:
+    def note(self, deployed: Mapping[str, bytes], events: Iterable[Body] = ()) -> dict[str, bytes]:
         """Note what has happened to tasks, then what configurators tell of what they have deployed.
 
         Returns what has ended by that. Raises one of CANNOT_WRITE where it cannot be written; then it is noted later.
         """
-        self._to_note.update((graph, told) for graph, told in graphs.items() if graph.startswith(DEPLOYED))
+        self._to_note.update(deployed)
         try:
             self._look_whether_removed()
             return self._note_all(events)

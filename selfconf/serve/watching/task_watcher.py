@@ -25,6 +25,8 @@ from selfconf.serve.watching.watched_task import WatchedTask
 log = logging.getLogger(__name__)
 _EPOCH = re.compile("[0-9]{1,18}")
 
+DEPLOYED = "urn:selfconf:selfconf/"
+"""What the names of the graphs begin with in which configurators tell what they have deployed."""
 LOOK_ANEW = 10.0
 """Seconds between two looks at all configurators."""
 TOGETHER = 0.05

@@ -18,9 +18,9 @@ from selfconf.model.wording import one_line
 from selfconf.protocol.keys import component_chunk, life_of, owner_of
 from selfconf.rdf import turtle
 from selfconf.rdf.provenance import CONFIGURATION
-from selfconf.serve.watching.change import DEPLOYED, Body, EcologyChange
+from selfconf.serve.watching.change import Body, EcologyChange
 from selfconf.serve.watching.component_bodies import component_body
-from selfconf.serve.watching.task_watcher import TOGETHER, TaskWatcher
+from selfconf.serve.watching.task_watcher import DEPLOYED, TOGETHER, TaskWatcher
 
 LINK_CHECK = 0.5
 """Seconds between two looks whether the link is another one, over which everything is to be looked at anew."""
@@ -189,11 +189,13 @@ class EcologyWatcher:
         self._shown = shown
         # What was asked for at the beginning comes from several configurators, one after the other.
         events, self._events = tuple(sorted(self._events, key=_moment)), []
-        *earlier, graphs = self._tasks.take_graphs()
+        *earlier, deployed = self._tasks.take_graphs()
         for before in earlier:
-            self._hand_on(EcologyChange(graphs=before))
+            self._hand_on(EcologyChange(deployed=before))
         records = self._tasks.take_records()
-        self._hand_on(EcologyChange(components=components, tasks=tasks, events=events, graphs=graphs, records=records))
+        self._hand_on(
+            EcologyChange(components=components, tasks=tasks, events=events, deployed=deployed, records=records)
+        )
 
     def _hand_on(self, change: EcologyChange) -> None:
         if not change.empty:

@@ -9,3 +9,4 @@ def test_a_change_of_anything_is_not_empty() -> None:
     assert EcologyChange().empty
     assert not EcologyChange(sites={"attic": None}).empty
     assert not EcologyChange(graphs={"urn:g": b""}).empty
+    assert not EcologyChange(deployed={"urn:g": b""}).empty

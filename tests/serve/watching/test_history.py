@@ -14,8 +14,8 @@ from selfconf.rdf.provenance import CONFIGURATION
 from selfconf.rdf.turtle import ntriples, parse
 from selfconf.rdf.vocabulary import PROV, SC, TYPE
 from selfconf.serve.watching import history
-from selfconf.serve.watching.change import DEPLOYED
 from selfconf.serve.watching.history import History
+from selfconf.serve.watching.task_watcher import DEPLOYED
 from tests.lab import Lab, iri
 
 GRAPH, OTHER_GRAPH = DEPLOYED + "lab/conf/c1/cfg", DEPLOYED + "lab/conf/c2/cfg"
@@ -36,7 +36,7 @@ def told(number: int) -> bytes:
 
 def test_a_configuration_ends_when_another_takes_its_place_or_its_configurator_goes(tmp_path: Path) -> None:
     kept = History(tmp_path, lambda: 86_400.0)
-    assert kept.note({GRAPH: told(1), "urn:a-component": told(9)}) == {}
+    assert kept.note({GRAPH: told(1)}) == {}
     (ended,) = kept.note({GRAPH: told(2)}).items()
     assert ended[0] == name(1)
     assert b'invalidatedAtTime> "1970-01-02T00:00:00' in ended[1]

@@ -11,8 +11,8 @@ from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.discovery.inquiry import DISCOVERY_ATTEMPTS
 from selfconf.rdf.provenance import CONFIGURATION
-from selfconf.serve.watching.change import DEPLOYED, EcologyChange
-from selfconf.serve.watching.task_watcher import LOOK_ANEW
+from selfconf.serve.watching.change import EcologyChange
+from selfconf.serve.watching.task_watcher import DEPLOYED, LOOK_ANEW
 from selfconf.serve.watching.watcher import ASKED_AGAIN, EcologyWatcher
 from selfconf.site.site import Site
 from tests.lab import Lab, iri
@@ -38,7 +38,7 @@ class Seen:
             (self.components, change.components),
             (self.tasks, change.tasks),
             (self.sites, change.sites),
-            (self.graphs, change.graphs),
+            (self.graphs, {**change.graphs, **change.deployed}),
         ):
             for name, body in new.items():
                 if body:
