@@ -43,6 +43,13 @@ class SourceDocument:
     shown: str
     name: str
     octets: bytes
+    first_page: SourceDocument | None = None
+    """The first page of the list of which it is a further one."""
+
+    @property
+    def whole(self) -> SourceDocument:
+        """What stands for the document, or for the list of which it is a page."""
+        return self.first_page or self
 
     def text(self) -> str:
         """The text of the document, which is UTF-8, without a mark of the byte order. Raises AuthorError."""
@@ -103,10 +110,12 @@ def _too_large(shown: str) -> AuthorError:
 
 def _fetched(url: str) -> Iterator[SourceDocument]:
     """What a URL answers, page by page. Raises AuthorError."""
-    pages = Pages(url)
+    pages, first = Pages(url), None
     while pages.url is not None:
         octets, links = _answer(pages.url)
-        yield document_at(pages.url, octets, pages.number)
+        page = document_at(pages.url, octets, pages.number, first)
+        first = page.whole
+        yield page
         pages.go_on(links, octets)
 
 
@@ -125,11 +134,11 @@ def _answer(url: str) -> tuple[bytes, list[str]]:
         raise AuthorError(f"cannot fetch {url}: {getattr(error, 'reason', None) or error}") from None
 
 
-def document_at(url: str, octets: bytes, page: int = 1) -> SourceDocument:
+def document_at(url: str, octets: bytes, page: int = 1, first_page: SourceDocument | None = None) -> SourceDocument:
     """What a URL has answered, named after the end of its path; further pages of one list have a number as well."""
     parts = urlsplit(url)
     name = parts.path.rstrip("/").rpartition("/")[2] or parts.hostname or "thing"
-    return SourceDocument(url, name if page == 1 else f"{name}-{page}", octets)
+    return SourceDocument(url, name if page == 1 else f"{name}-{page}", octets, first_page)
 
 
 def _body(url: str, reply: HTTPResponse, deadline: float) -> bytes:

@@ -144,6 +144,7 @@ def test_all_pages_of_a_list_are_fetched_each_as_a_document_of_its_own(server: s
         (f"{server}/things?page=2", "things-2", b"2"),
         (f"{server}/things?page=3", "things-3", b"3"),
     ]
+    assert [one.whole is found[0] for one in found] == [True] * 3
     assert errors == []
 
 

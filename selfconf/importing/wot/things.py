@@ -60,10 +60,13 @@ class DescribedThing:
 
 
 def import_things(sources: Iterable[SourceDocument], ledger: ImportLedger) -> Iterator[ImportedDocument]:
-    """The things that JSON documents describe: each holds one, or several, as a directory answers with."""
-    for _, group in groupby(described_things(sources, ledger), lambda thing: id(thing.source)):
+    """The things that JSON documents describe: each holds one, or several, as a directory answers with.
+
+    The pages of a directory are one document: a thing may come to another page, or a page be gone, by the next import.
+    """
+    for _, group in groupby(described_things(sources, ledger), lambda thing: id(thing.source.whole)):
         things = list(group)
-        source = things[0].source
+        source = things[0].source.whole
         prefixes = {prefix: base for thing in things for prefix, base in thing.prefixes.items()}
         descriptions = tuple(thing.component.described() for thing in things)
         yield ImportedDocument(stem(source), source.name, descriptions, prefixes)

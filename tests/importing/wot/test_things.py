@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from selfconf.importing import ImportReport
+from selfconf.importing import ImportLedger, ImportReport, document_at
+from selfconf.importing.wot import import_things
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import SC
 from tests.importing.imports import Workshop, left_out
@@ -65,6 +66,17 @@ def test_a_collection_is_imported_as_its_members(workshop: Workshop) -> None:
     assert "<urn:dev:lamp> a " in written
     assert "<urn:dev:door> a " in written
     assert left_out(report) == {"empty documents": 1}
+
+
+def test_the_pages_of_a_directory_are_one_document() -> None:
+    """Else a thing that comes to another page would be advertised in two files, of which no import replaces one."""
+    pages = [[], ["lamp", "door"], ["bell"]]
+    texts = [f"[{', '.join(described(id=f'urn:dev:{name}') for name in page)}]".encode() for page in pages]
+    first = document_at("http://192.0.2.7/things", texts[0])
+    further = [document_at(f"{first.shown}?page={page}", texts[page - 1], page, first) for page in (2, 3)]
+    other = document_at("http://192.0.2.8/things", texts[2])
+    found = list(import_things([first, *further, other], ImportLedger("urn:selfconf:wot:", lambda _: None)))
+    assert [(document.name, len(document.descriptions)) for document in found] == [("things", 3), ("things", 1)]
 
 
 def test_titles_are_kept_in_their_languages(workshop: Workshop) -> None:
