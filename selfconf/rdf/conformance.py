@@ -67,8 +67,8 @@ _TARGETS = frozenset(
 )
 _CLASSES = frozenset((rdflib.RDFS.Class, rdflib.OWL.Class))
 """A shape that is a class has its instances as targets (SHACL, 2.1.3.3)."""
-_NOTHING = IRI("urn:selfconf:nothing")
-"""A node about which nothing is said."""
+_NOTHING = IRI("urn:-")
+"""A node about which nothing is said; its name is short, so that no pattern takes long."""
 _NO_ORDER = (*UNORDERED, ReportableRuntimeError)
 """What comes through pySHACL where two values have no order; the last is its own, for blank nodes."""
 _TOO_DEEP = re.compile("Validation path too deep|Path traversal depth is too much")

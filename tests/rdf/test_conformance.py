@@ -63,6 +63,10 @@ def test_the_targets_of_the_shape_itself_do_not_matter() -> None:
     assert outside(":shape sh:targetNode :bad ; sh:property [ sh:path :size ; sh:minCount 1 ] .") == {"bare"}
 
 
+def test_a_pattern_that_takes_years_for_long_names_judges_nodes_with_short_ones() -> None:
+    assert outside(":shape sh:pattern '^(?=([a-z:-]+)+!)' .") == {"good", "bad", "bare"}
+
+
 def test_a_query_that_would_leave_is_not_evaluated() -> None:
     with pytest.raises(TemplateError, match="leave out SERVICE"):
         outside(":shape sh:sparql [ sh:select 'SELECT $this { SERVICE <http://127.0.0.1:1/> { ?s ?p ?o } }' ] .")

@@ -42,6 +42,7 @@ def places(text: str) -> list[tuple[int, int]]:
         "sh:property [ sh:path :p ; sh:minCount 1 ; sh:in ( 1 2 ) ]",
         "sh:property [ sh:path :p ; sh:minCount +1 ; sh:maxCount 02 ; sh:minLength -0 ]",
         "sh:or ( [ sh:class :A ] [ sh:class :B ] )",
+        "sh:pattern '^(?=([a-z:-]+)+!)'",  # which takes years for a long name
         "sh:property [ sh:path ( :p :q ) ; sh:pattern '^a+$' ]",
         "sh:property [ sh:path ( :p :q ) ; sh:pattern 'a(b' ; sh:flags 'q' ]",
         "sh:sparql [ sh:select 'SELECT $this WHERE { $this a ?type }' ]",
