@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,7 +22,7 @@ class Account:
     eyes: list[str] = field(default_factory=list)
     """The cameras that looked inside of a composite, one after another."""
     played: list[dict[str, Any]] = field(default_factory=list)
-    search_seconds: list[float] = field(default_factory=list)
+    searches: list[dict[str, Any]] = field(default_factory=list)
     end: dict[str, Any] | None = None
     ready: bool = False
     refused: bool = False
@@ -44,7 +45,7 @@ class Account:
         """Note an act of the configurator; it words itself, and is passed over where it has no words."""
         act = fact["act"]
         if act == "composed":
-            self.search_seconds.append(fact["seconds"])
+            self.searches.append(fact)
         elif act == "lost":
             self.losses.append(fact)
         elif act == "running":
@@ -79,13 +80,37 @@ class Account:
         self.played.append(fact)
         return f"{time}         {fact['speaker']} {event}"
 
+    @property
+    def loss(self) -> dict[str, Any] | None:
+        """The loss of a source of poses; a navigator that was ended meanwhile, say, is no part of the experiment."""
+        sources = {source for configuration in self.configurations for source in _players(configuration, "position")}
+        return next((loss for loss in self.losses if loss["component"] in sources), None)
+
+    def around_loss(self) -> list[dict[str, Any]]:
+        """The last configuration with the source that was lost, and the first one without; else the newest alone."""
+        if self.loss is None:
+            return self.configurations[-1:]
+        lost, all_of_them = self.loss["component"], self.configurations
+        without = (n for n, found in enumerate(all_of_them) if n > 0 and lost not in _players(found, "position"))
+        after = next(without, len(all_of_them))
+        return all_of_them[after - 1 : after + 1]
+
     def gap(self) -> float | None:
-        """Seconds from the first loss that mattered to the first pose of the source that took over."""
-        if not self.losses:
-            return None
-        lost = self.losses[0]
-        later = [pose["real"] for pose in self.first_poses if pose["real"] > lost["time"]]
-        return later[0] - lost["time"] if later else None
+        """Seconds from that loss to the first pose of the source that took over."""
+        lost = self.loss["time"] if self.loss else math.inf
+        return next((pose["real"] - lost for pose in self.first_poses if pose["real"] >= lost), None)
+
+    def search(self) -> float | None:
+        """Seconds that the search for the next configuration took."""
+        lost = self.loss["time"] if self.loss else math.inf
+        return next((search["seconds"] for search in self.searches if search["time"] >= lost), None)
+
+
+def _players(configuration: dict[str, Any], role: str) -> list[str]:
+    """The IRIs of the components that play a role, given by the last segment of its IRI."""
+    return [
+        player for played in configuration["roles"] if short(played["role"]) == role for player in played["components"]
+    ]
 
 
 def short(iri: str) -> str:

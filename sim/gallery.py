@@ -43,10 +43,9 @@ def _run_record(account: Account, apartment: Apartment, logbook: dict[str, NDArr
     supplies = tuple(_supplies(times, logbook["sources"]))
     failures: tuple[Failure, ...] = ()
     tracked = [supply for supply in supplies if supply.component == SPOKEN["tracker"]]
-    if account.losses and tracked:
+    if account.loss and tracked:
         at = samples[int(np.searchsorted(times, tracked[-1].end))]
-        loss = account.losses[0]
-        failures = (Failure(at.time, at.x, at.y, SPOKEN["tracker"], loss["detail"]),)
+        failures = (Failure(at.time, at.x, at.y, SPOKEN["tracker"], account.loss["detail"]),)
     stand = standing_point(apartment, GOAL)
     return RunRecord(
         samples,
@@ -78,9 +77,9 @@ def _sights(logbook: dict[str, NDArray[Any]]) -> Iterator[CameraImage]:
 
 
 def _wirings(account: Account) -> Iterator[Wiring]:
-    lost = {loss["component"] for loss in account.losses}
+    lost = account.loss["component"] if account.loss else None
     before: set[str] = set()
-    for title, configuration in zip(("before the failure", "after the failure"), account.configurations, strict=False):
+    for title, configuration in zip(("before the failure", "after the failure"), account.around_loss(), strict=False):
         components = {c: role["role"] for role in configuration["roles"] for c in role["components"]}
         links = [
             Link(short(c["from"]["component"]), c["from"]["output"], short(c["to"]["component"]), c["to"]["input"])
@@ -92,7 +91,7 @@ def _wirings(account: Account) -> Iterator[Wiring]:
                 IRI(role).short,
                 tuple(dict.fromkeys(link.input for link in links if link.sink == short(component))),
                 tuple(dict.fromkeys(link.output for link in links if link.source == short(component))),
-                failed=component in lost,
+                failed=component == lost,
                 fresh=bool(before) and component not in before,
             )
             for component, role in components.items()

@@ -15,14 +15,13 @@ GOAL = "bedroom"
 
 def summary(account: Account) -> Iterator[str]:
     """The run in a few lines: configurations, the gap, where she ended."""
-    for word, configuration in zip(("before", "after"), account.configurations, strict=False):
+    for word, configuration in zip(("before", "after"), account.around_loss(), strict=False):
         names = [short(component) for role in configuration["roles"] for component in role["components"]]
         yield f"{word + ':':9}{', '.join(names)}"
     gap = account.gap()
     if gap is not None:
-        searched = account.search_seconds[1] * 1000 if len(account.search_seconds) > 1 else 0.0
         yield f"{'gap:':9}{gap * 1000:.1f} ms from FAIL to the first pose of the new source at the navigator"
-        yield f"{'':9}({searched:.1f} ms of it for composing the new configuration)"
+        yield f"{'':9}({(account.search() or 0.0) * 1000:.1f} ms of it for composing the new configuration)"
     if account.end is not None:
         error = arrival_error(account)
         touched = ", ".join(account.end["touched"]) or "nothing"
@@ -31,9 +30,9 @@ def summary(account: Account) -> Iterator[str]:
 
 
 def result(account: Account) -> dict[str, Any]:
-    """The run as figures: outcome, error in metres, what failed and why, the gap and the search in seconds."""
+    """The run as figures: outcome, error in metres, which source of poses failed and why, gap and search in seconds."""
     assert account.end is not None
-    loss = account.losses[0] if account.losses else None
+    loss = account.loss
     return {
         "outcome": account.end["outcome"],
         "simulated_seconds": account.end["time"],
@@ -42,7 +41,7 @@ def result(account: Account) -> dict[str, Any]:
         "lost": short(loss["component"]) if loss else None,
         "cause": loss["cause"] if loss else None,
         "gap": account.gap(),
-        "search": account.search_seconds[1] if len(account.search_seconds) > 1 else None,
+        "search": account.search(),
         "configurations": account.configurations,
     }
 
