@@ -192,16 +192,13 @@ class Composites:
         composite = self.living.get(component)
         if composite is None or composite.prospect is None:
             return
-        prospect = composite.prospect
-        usable = {one: a for one, a in self._advertisements.items() if a.profile.inside is None or one in self._able}
 
         def able() -> None:
-            begun = composite.prospect is not prospect or composite.runtime.activation.holds
-            if not begun and self.living.get(component) is composite:
+            if not composite.runtime.activation.holds and self.living.get(component) is composite:
                 self._pauses[component] = min(2 * self._pause(composite), LONGEST_LOOK)
                 self._end(component)
 
-        prospect.look(usable, able)
+        composite.prospect.look(self._advertisements, able)
 
     def _request(self, inside: Inside, values: Mapping[str, Term], fed: Callable[[], Set[str]]) -> RunRequest:
         component, composer = inside.composite, inside.composer_with(values)
