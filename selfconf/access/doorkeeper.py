@@ -152,6 +152,8 @@ class Doorkeeper:
         self._admitted_at = bus.now()
         self._latest: dict[Process, tuple[datetime, datetime]] = {}
         """From and until when the latest certificate is valid that each holder has shown."""
+        self._opens_for_own = False
+        """Whether the hub is to be opened anew, as the certificate of the site was renewed."""
         self._renews_components = False
         """Whether the certificates of components are being renewed."""
         self._opens_for_renewed = False
@@ -377,15 +379,17 @@ class Doorkeeper:
             left = read_certificate(self._credentials.certificate).seconds_left()
             self._look_at_all = min(self._look_at_all, self._bus.now() + left / 4)
             if self._stamps[self._credentials.certificate] != self._shown:
-                self._shown = self._stamps[self._credentials.certificate]
-                self._open_anew()
+                self._shown, self._opens_for_own = self._stamps[self._credentials.certificate], True
             if not self._renews_components:
                 self._renew_next(HostAuthority(self._folder).renew_components())
         except SelfconfError as error:
             self._tell_fault(str(error))
 
     def _renew_next(self, renewals: Iterator[None]) -> None:
-        """Take the next step of renewing the certificates of components; between them the bus does other things."""
+        """Take the next step of renewing the certificates of components; between them the bus does other things.
+
+        A renewed certificate of the site is shown after the last one: links are made anew with theirs then.
+        """
         self._renews_components = False
         try:
             for _ in renewals:
@@ -394,6 +398,9 @@ class Doorkeeper:
                 return
         except SelfconfError as error:
             self._tell_fault(str(error))
+        if self._opens_for_own:
+            self._opens_for_own = False
+            self._open_anew()
 
     # Reports.
 
