@@ -83,8 +83,7 @@ class EventStream:
         life, _, number = last.partition("-")
         if life != self.life or not number.isdecimal() or len(number) > _LONGEST_NUMBER or int(number) > self._number:
             return None
-        first = self._kept[0].number if self._kept else self._number + 1
-        if int(number) + 1 < first:
+        if self._kept and int(number) + 1 < self._kept[0].number:
             return None
         return [event for event in self._kept if event.number > int(number)]
 

@@ -73,12 +73,14 @@ def test_who_was_away_too_long_or_heard_another_server_is_told_to_begin_anew() -
             f"{stream.life}-1",
             "other-7",
             "nonsense",
+            f"{stream.life}-x",
             f"{stream.life}-{EVENTS_KEPT + 99}",
             f"{stream.life}-{'9' * 5000}",
         ):
             _, event = await heard(stream.lines(["change"], last), 2)
             assert "event: reset" in event
         assert stream.missed(f"{stream.life}-2") is not None
+        assert stream.missed(stream.last) == EventStream.missed(new := EventStream(), new.last) == []
 
     asyncio.run(play())
 

@@ -13,7 +13,7 @@ from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import LogPart, LogQuestion, SignalEncoding
 from selfconf.protocol.stamps import StampWriter
-from selfconf.serve.onlooker import BYTES_A_SECOND, LOG_LINES, LONGEST_TOLD, Onlooker
+from selfconf.serve.onlooker import BYTES_A_SECOND, GLANCE, LOG_LINES, LONGEST_TOLD, Onlooker
 from tests.lab import iri
 from tests.serve.shown import found
 
@@ -69,6 +69,15 @@ def test_signals_are_told_with_their_rate_and_in_glances(stage: Stage) -> None:
     told = len(stage.told)
     stage.put_each(0.1, 10)
     assert len(stage.told) == told
+
+
+def test_nothing_is_followed_any_more_where_looking_has_ended_between_two_glances(stage: Stage) -> None:
+    stage.onlooker.begin()
+    stage.put_each(0.001, GLANCE)
+    assert stage.followed[-1] is False
+    stage.onlooker.end()
+    stage.let_pass(5.0)
+    assert stage.followed[-1] is False
 
 
 def test_of_a_camera_no_more_is_taken_than_a_network_can_spare(stage: Stage) -> None:
@@ -137,6 +146,7 @@ def test_who_prints_more_than_an_answer_holds_is_followed_from_the_end_on(stage:
     stage.onlooker.begin()
     stage.let_pass(3.5)
     assert asked[:4] == ["", "7", "", "7"]
+    assert stage.all("log") == [{"lines": [], "anew": True}] * 2
 
 
 def test_a_server_that_may_look_on_only_says_so(stage: Stage) -> None:
