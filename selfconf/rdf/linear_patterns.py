@@ -1,26 +1,19 @@
 """Regular expressions inside pySHACL and rdflib, at a cost that the texts of strangers cannot choose.
 
 pySHACL (`sh:pattern`) and rdflib (REGEX and REPLACE of SPARQL) ask `re`, which can take years. Within `linear_patterns`
-their modules see another `re`, which answers the same by `selfconf.rdf.shacl.pattern`. Queries are parsed once as
-well, not once for each component: parsing takes longer than most answers. In them `"x"` and `"x"^^xsd:string` are one
-string, as in RDF 1.1. And pySHACL does not write the terms of each result into the text of its report, which took a
-quarter of the time and is not read.
+their modules see another `re`, which answers the same by `selfconf.rdf.shacl.pattern`.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
-from pyshacl.constraints import constraint_component
 from pyshacl.constraints.core import string_based_constraints
 from pyshacl.constraints.core.string_based_constraints import PatternConstraintComponent
-from rdflib import XSD, Literal
-from rdflib.plugins.sparql import algebra, operators, processor
+from rdflib.plugins.sparql import operators
 
 from selfconf.rdf.library_patches import replaced
 from selfconf.rdf.shacl import Pattern, pattern, shacl_pattern
@@ -66,42 +59,11 @@ def _with_all_flags(component: Any, shape: Any) -> None:
     component.compiled_cache = {rule: _Expression(shacl_pattern(str(rule), flags)) for rule in component.string_rules}
 
 
-_parse, _translate = vars(processor)["parseQuery"], vars(processor)["translateQuery"]
-
-
-@lru_cache(maxsize=64)
-def _prepared(text: str, base: str | None, namespaces: tuple[tuple[str, Any], ...]) -> Any:
-    """A query ready to be evaluated, as often as it is asked."""
-    return _translate(_parse(text), base, dict(namespaces))
-
-
-_named = vars(algebra)["translatePName"]
-
-
-def _plainly_named(part: Any, prologue: Any) -> Any:
-    """What a name or a literal of a query stands for; a string has no datatype, as in graphs (`rdflib_terms`)."""
-    found = _named(part, prologue)
-    return Literal(str(found)) if isinstance(found, Literal) and found.datatype == XSD.string else found
-
-
-def _recalled(text: str, base: str | None = None, namespaces: Mapping[str, Any] | None = None) -> Any:
-    return _prepared(text, base, tuple(sorted((namespaces or {}).items())))
-
-
-def _unread(graph: object, node: object) -> str:
-    """A term in the text of a report."""
-    return ""
-
-
 _LINEAR = _LinearRe("re")
 _INSTEAD: tuple[tuple[object, str, object], ...] = (
     (string_based_constraints, "re", _LINEAR),
     (PatternConstraintComponent, "__init__", _with_all_flags),
     (operators, "re", _LINEAR),
-    (processor, "parseQuery", str),  # parsed by `_recalled`, where it has not been
-    (processor, "translateQuery", _recalled),
-    (algebra, "translatePName", _plainly_named),
-    (constraint_component, "stringify_node", _unread),
 )
 
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from rdflib import Graph
 
 from selfconf import library
-from selfconf.rdf.linear_patterns import linear_patterns
 from selfconf.rdf.positions import parse_with_positions
+from selfconf.rdf.prepared_queries import prepared_queries
 from tests.harness.effort import examples
 
 SHAPES = Graph().parse(next(path for path in library.shapes() if path.stem == "configuration"))
@@ -146,13 +146,13 @@ def test_an_optional_input_need_not_be_fed_however_that_is_written(optional: str
     said = f'"{optional}"^^<http://www.w3.org/2001/XMLSchema#boolean>'
     wanting = f'\n:a sc:hasInput [ sc:name "i" ; sc:signalType :Text ; sc:optional {said} ] .'
     data, _ = parse_with_positions(alone.turtle() + wanting, "")
-    with linear_patterns():  # the queries of the shape are parsed once, not once for each case
+    with prepared_queries():  # the queries of the shape are parsed once, not once for each case
         assert pyshacl.validate(data, shacl_graph=SHAPES)[0] is conforms
 
 
 @settings(max_examples=examples(40), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(worlds())
 def test_the_shape_holds_for_configurations_and_for_nothing_else(world: World) -> None:
-    with linear_patterns():  # the queries of the shape are parsed once, not once for each world
+    with prepared_queries():  # the queries of the shape are parsed once, not once for each world
         conforms, _, text = pyshacl.validate(Graph().parse(data=world.turtle(), format="turtle"), shacl_graph=SHAPES)
     assert conforms == world.is_configuration(), text

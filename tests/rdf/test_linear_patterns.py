@@ -9,7 +9,7 @@ import pyshacl
 import pytest
 from pyshacl.constraints.core import string_based_constraints
 from rdflib import Graph
-from rdflib.plugins.sparql import operators, processor
+from rdflib.plugins.sparql import operators
 
 from selfconf.rdf.linear_patterns import linear_patterns
 from tests.lab import PREFIXES
@@ -62,14 +62,6 @@ def test_what_would_take_years_is_decided_at_once() -> None:
         assert ask(f'REPLACE("{LONG}", "{SLOW}", "") = "{LONG}"')
         assert not conforms(LONG, SLOW)
     assert time.process_time() - began < 2
-
-
-def test_a_query_is_prepared_once_however_often_it_is_asked() -> None:
-    with linear_patterns():
-        first, second = (processor.prepareQuery("ASK { :a :p ?o }", initNs={"": "urn:x:"}) for _ in range(2))
-        other = processor.prepareQuery("ASK { :a :p ?o }", initNs={"": "urn:y:"})
-    assert first is second
-    assert first is not other
 
 
 def fail_inside() -> None:

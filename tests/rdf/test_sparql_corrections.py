@@ -10,7 +10,7 @@ import rdflib
 
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import violations
-from selfconf.rdf.linear_patterns import linear_patterns
+from selfconf.rdf.prepared_queries import prepared_queries
 from selfconf.rdf.rdflib_terms import to_rdflib
 from selfconf.rdf.sparql_corrections import sparql_corrections
 from selfconf.rdf.turtle import document as turtle
@@ -133,7 +133,7 @@ def test_a_path_may_be_as_long_as_the_graph() -> None:
     step, nodes = rdflib.URIRef("urn:x:next"), [rdflib.URIRef(f"urn:x:{number}") for number in range(2_000)]
     for before, after in pairwise(nodes):
         chain.add((before, step, after))
-    with linear_patterns(), sparql_corrections():
+    with prepared_queries(), sparql_corrections():
         assert chain.query("ASK { <urn:x:0> <urn:x:next>+ <urn:x:1999> }").askAnswer
         assert not chain.query("ASK { <urn:x:1> <urn:x:next>+ <urn:x:0> }").askAnswer
         assert len(chain.query("SELECT ?b { <urn:x:0> <urn:x:next>* ?b }")) == 2_000
@@ -142,7 +142,7 @@ def test_a_path_may_be_as_long_as_the_graph() -> None:
 
 def test_each_pair_that_a_path_joins_is_found_once() -> None:
     circle = rdflib.Graph().parse(data="@prefix : <urn:x:> . :a :p :b . :b :p :a .", format="turtle")
-    with linear_patterns(), sparql_corrections():
+    with prepared_queries(), sparql_corrections():
         assert len(circle.query("SELECT ?b { <urn:x:a> <urn:x:p>* ?b }")) == 2
         assert len(circle.query("SELECT ?a { ?a <urn:x:p>+ <urn:x:a> }")) == 2
         assert len(circle.query("SELECT ?a ?b { ?a <urn:x:p>* ?b }")) == 4
