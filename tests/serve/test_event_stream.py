@@ -80,7 +80,8 @@ def test_who_was_away_too_long_or_heard_another_server_is_told_to_begin_anew() -
             _, event = await heard(stream.lines(["change"], last), 2)
             assert "event: reset" in event
         assert stream.missed(f"{stream.life}-2") is not None
-        assert stream.missed(stream.last) == EventStream.missed(new := EventStream(), new.last) == []
+        begun = EventStream()
+        assert stream.missed(stream.last) == begun.missed(begun.last) == []
 
     asyncio.run(play())
 
