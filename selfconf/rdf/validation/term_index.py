@@ -41,8 +41,6 @@ def skeleton(iri: str) -> str:
 
 def one_slip_apart(one: str, other: str) -> bool:
     """Whether one text becomes another by inserting, deleting or replacing one character, or swapping neighbours."""
-    if one == other or abs(len(one) - len(other)) > 1:
-        return one == other
     start = next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
     a, b = one[start:], other[start:]
     return a[1:] == b[1:] or a[1:] == b or a == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])

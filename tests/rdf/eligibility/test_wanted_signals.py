@@ -6,10 +6,10 @@ import pytest
 
 from selfconf.model.port_likeness import WantedPorts
 from selfconf.model.term import IRI
-from selfconf.rdf.eligibility.wanted_signals import wanted_ports, without_port_shapes
+from selfconf.rdf.eligibility.wanted_signals import required_signals, wanted_ports, without_port_shapes
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.turtle import document as turtle
-from selfconf.rdf.vocabulary import SH
+from selfconf.rdf.vocabulary import SC, SH
 from tests.lab import PREFIXES
 
 ROLE, PRICE, TAX, CAR = (IRI(f"https://example.org/peis-home#{name}") for name in ("r", "Price", "Tax", "Car"))
@@ -64,6 +64,25 @@ def test_inputs_and_outputs_are_told_apart_and_alternatives_are_one_want() -> No
 )
 def test_other_shapes_ask_for_no_signal(shape: str) -> None:
     assert wanted(shape) is None
+
+
+@pytest.mark.parametrize(
+    ("path", "required"),
+    [
+        ("( sc:hasOutput sc:signalType )", True),
+        ("( sc:hasOutput sc:signalType rdfs:subClassOf )", True),
+        (f"( sc:hasOutput sc:signalType {BELOW} )", True),
+        ("( sc:hasOutput sc:signalType :like )", False),
+        ("( sc:hasOutput :like )", False),
+        ("( :like sc:signalType )", False),
+        ("sc:hasOutput", False),
+    ],
+)
+def test_a_type_is_required_of_a_port_where_a_path_leads_to_types_of_ports_and_upward(
+    path: str, required: bool
+) -> None:
+    found = required_signals(role(f"sh:property [ sh:path {path} ; sh:hasValue :Price ]"), ROLE)
+    assert found == (((SC.hasOutput, PRICE),) if required else ())
 
 
 def test_a_shape_within_itself_ends() -> None:

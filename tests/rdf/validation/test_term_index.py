@@ -42,6 +42,8 @@ def test_a_namespace_that_is_nearly_a_known_one_is_told() -> None:
         ("selfconf", "slefconf", True),
         ("selfconf", "selfconf", True),
         ("selfconf", "selfcnfo", False),
+        ("selfconf", "solvconf", False),
+        ("self", "selfconf", False),
         ("shacl", "shex", False),
         ("owl", "prov", False),
     ],
