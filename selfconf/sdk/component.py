@@ -135,7 +135,10 @@ class Component:
         """
 
     def fed(self, port: str) -> None:
-        """An input that had lost its last source has another, whose first signal is received next."""
+        """An input that had lost its last source has another, whose first signal is received next.
+
+        An actuator that rests, as another input is still unfed, receives that signal once it is started again.
+        """
 
     def connected(self, operation: str) -> None:
         """An operation that this component needs is connected to one that offers it; called after each `started`."""

@@ -297,6 +297,27 @@ def test_an_actuator_that_is_released_while_it_is_blind_is_stopped_once() -> Non
     assert stage.recorder.said == [("unfed", "position"), ("stopped",)]
 
 
+def test_an_actuator_that_rests_hears_that_an_input_is_fed_and_its_signal_once_it_is_started() -> None:
+    ports = Ports((*DRIVE_PROFILE.inputs, Input("map", (IRI("urn:s:Pose"),))))
+    stage = Stage(Driving(), replace(DRIVE_PROFILE, ports=ports))
+    tracker, chart = stage.neighbour(), stage.neighbour(component=CHART)
+    inputs = {"position": (Wire(TRACKER, "pose"),), "map": (Wire(CHART, "pose"),)}
+    stage.call(reserve())
+    stage.call(apply(1, US, inputs, {"goal": Literal("x")}))
+    tracker.bus.close()
+    chart.bus.close()
+    stage.let_pass(2 * TOLERATES)
+    assert stage.recorder.said[-1] == ("stopped",)
+    stage.recorder.said.clear()
+    stage.neighbour(life="life-u", component=CHART).component.emit("pose", "map")
+    stage.let_pass(0.1)
+    assert stage.recorder.said == [("fed", "map")]
+    stage.neighbour(life="life-u").component.emit("pose", 2)
+    stage.let_pass(0.1)
+    assert stage.recorder.said[1:3] == [("goal", "x"), ("started",)]
+    assert stage.recorder.said[3:] == [("fed", "position"), ("position", 2), ("map", "map")]
+
+
 def test_each_input_may_be_unfed_for_that_long_by_itself() -> None:
     inputs = (Input("left", (IRI("urn:s:Pose"),)), Input("right", (IRI("urn:s:Pose"),)))
     stage = Stage(Driving(), replace(DRIVE_PROFILE, ports=Ports(inputs)))
