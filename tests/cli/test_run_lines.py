@@ -49,7 +49,9 @@ def test_a_task_that_looks_in_vain_again_and_again_says_so_once(capsys: pytest.C
     once = told(capsys, LOOK)
     assert once[-1].strip() == "waiting for the ecology to change"
     assert told(capsys, LOOK * 4) == once
-    assert told(capsys, [*LOOK * 3, TaskStopped()]) == [*once, "       taken down"]
+    assert told(capsys, [*LOOK, *LOOK[:2], *LOOK]) == once, "a look that was broken off says nothing"
+    for looks in (LOOK * 3, [*LOOK, *LOOK[:2]]):
+        assert told(capsys, [*looks, TaskStopped()]) == [*once, "       taken down"]
 
 
 def test_what_a_look_comes_to_is_told_once_it_differs(capsys: pytest.CaptureFixture[str]) -> None:
@@ -67,6 +69,20 @@ def test_a_task_that_runs_after_it_has_waited_tells_everything_since_it_looked(
     lines = told(capsys, again)
     assert lines[-len(told(capsys, LOOK)) :] == told(capsys, LOOK)
     assert sum("LOST" in line for line in lines) == 1
+
+
+def test_of_what_has_crashed_it_is_told_once_where_its_last_words_are(capsys: pytest.CaptureFixture[str]) -> None:
+    report = TextLines(sc.template(CLOCK), "--ecology mine")
+    for cause in ("fail", "crash", "crash"):
+        report(ComponentLost(SCREEN if cause == "crash" else ROLE, cause, ""))
+    hints = [line for line in capsys.readouterr().err.splitlines() if "selfconf log" in line]
+    assert [hint.strip() for hint in hints] == ["`selfconf log screen --ecology mine` shows what it has printed"]
+
+
+def test_what_takes_long_is_told_as_it_begins(capsys: pytest.CaptureFixture[str]) -> None:
+    report = TextLines(sc.template(CLOCK))
+    report(LOOK[0])
+    assert capsys.readouterr().err
 
 
 def test_a_failure_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from selfconf import rendezvous
-from selfconf.cli.settings import VARIABLES
+from selfconf.cli.main import parser
+from selfconf.cli.settings import VARIABLES, found_settings
 from tests.cli.command import Outcome, run
 from tests.cli.processes import Home, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, write_advertisements
@@ -83,6 +84,33 @@ def test_the_environment_goes_before_the_file(
 ) -> None:
     monkeypatch.setenv("SELFCONF_ECOLOGY", "elsewhere")
     assert configure(capsys).is_one_sentence("no site of the ecology 'elsewhere'")
+
+
+@pytest.mark.parametrize(
+    ("typed", "variable", "ecology", "from_project"),
+    [
+        ("", "", "mine", {"ads", "ecology", "strategy"}),
+        ("", "theirs", None, {"strategy"}),
+        ("other", "theirs", "other", {"strategy"}),
+        ("other", "", "other", {"strategy"}),
+    ],
+)
+def test_each_option_has_its_value_from_the_first_that_says_one(
+    project: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    typed: str,
+    variable: str,
+    ecology: str | None,
+    from_project: set[str],
+) -> None:
+    (project / "selfconf.toml").write_text('ads = "home"\necology = "mine"\nstrategy = "best"\n')
+    monkeypatch.setenv("SELFCONF_ECOLOGY", variable)
+    settings, broken = found_settings(print)
+    assert broken is None
+    words = ["configure", "../navigate.ttl", *(["--ecology", typed] if typed else [])]
+    given = parser(words[:1], settings).parse_args(words)
+    settings.fill(given)
+    assert (given.ecology, given.strategy, given.from_project) == (ecology, "best", from_project)
 
 
 def test_the_ecology_of_the_file_is_that_of_every_command(project: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator, AsyncIterator
 
 import pytest
 
@@ -59,6 +59,10 @@ def test_who_was_away_hears_what_was_missed() -> None:
             stream.put("change", number)
         lines = stream.lines(["change"], f"{stream.life}-3")
         _, *events = await heard(lines, 3)
+        assert stream.listeners == 1
+        assert isinstance(lines, AsyncGenerator)
+        await lines.aclose()
+        assert stream.listeners == 0
         assert [event.split("data: ")[1] for event in events] == ["3\n\n", "4\n\n"]
 
     asyncio.run(play())
@@ -77,9 +81,12 @@ def test_who_was_away_too_long_or_heard_another_server_is_told_to_begin_anew() -
             f"{stream.life}-{EVENTS_KEPT + 99}",
             f"{stream.life}-{'9' * 5000}",
         ):
-            _, event = await heard(stream.lines(["change"], last), 2)
+            lines = stream.lines(["change"], last)
+            _, event = await heard(lines, 2)
             assert "event: reset" in event
-        assert stream.missed(f"{stream.life}-2") is not None
+            stream.put("change", "next")
+            assert '"next"' in (await heard(lines, 1))[0]
+        assert stream.missed(f"{stream.life}-{stream._kept[0].number - 1}") is not None
         begun = EventStream()
         assert stream.missed(stream.last) == begun.missed(begun.last) == []
 
