@@ -274,8 +274,9 @@ def hangs_unnoticed(history: History) -> Iterator[str]:
 
 
 def undecided_after_faults(history: History) -> Iterator[str]:
-    """Once the faults have ceased, a task is soon running or refused, if no component is slow to start."""
-    if history.ceased and not any(life.recorder.slow for life in history.lives):
+    """Once the faults have ceased, a task is soon running or refused, if no component is slow to start, or busy."""
+    busy = (life.recorder.slow or life.thread.busy_until > history.network.time for life in history.lives)
+    if history.ceased and not any(busy):
         for agent in history.living():
             if agent.state.phase not in DECIDED:
                 yield f"{agent.name} is neither running nor refused"
