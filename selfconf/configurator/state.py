@@ -269,14 +269,14 @@ class State:
 
     @property
     def goes_on_unseen(self) -> bool:
-        """Whether all that is wanted is held and nothing of it was lost, though some is not advertised any more.
+        """Whether all of the target is held and nothing of it was lost, though some is not advertised any more.
 
         Then a search that finds nothing says that a site is out of sight, not that a component is.
         """
-        if not self.unseen or self.wanted is None:
+        if not self.unseen or self.target is None:
             return False
         return all(
-            one in self.held and self.held[one].reserved and one not in self.lost for one in self.wanted.components
+            one in self.held and self.held[one].reserved and one not in self.lost for one in self.target.components
         )
 
     @property
