@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from selfconf.bus.key_expressions import intersects
 
-chunks = st.sampled_from(["a", "b", "@ctl", "*", "**"])
+chunks = st.sampled_from(["a", "b", "ab", "a$*", "ab$*", "@ctl", "*", "**"])
 
 
 @given(st.lists(chunks, min_size=1, max_size=5), st.lists(chunks, min_size=1, max_size=5))
