@@ -88,6 +88,11 @@ def coloured(*lines: str) -> bytes:
     ).encode()
 
 
+def test_what_is_no_line_of_zenoh_is_passed_over_and_the_next_one_counts() -> None:
+    odd = "\x1b[2mthread 'rx' panicked: it is unauthorized to say so"
+    assert found(log_of(odd, "", *denied("a/b"))) == [("comp.x", "Put", "a/b", 1)]
+
+
 def test_ends_of_chunks_do_not_matter() -> None:
     log = RefusalLog(clock=lambda: 7.0)
     first, last = denied("a/b")
