@@ -15,12 +15,15 @@ FEW = 5
 
 
 def failed(report: Path) -> list[str]:
-    """The tests that have failed, as pytest takes them; ValueError if the report does not name them."""
+    """The tests that have failed, as pytest takes them; ValueError if the report names none, or a file of tests."""
     try:
         cases = list(ElementTree.parse(report).iter("testcase"))
     except (OSError, ElementTree.ParseError) as error:
         raise ValueError(f"there is no report: {error}") from None
     bad = [case for case in cases if case.find("failure") is not None or case.find("error") is not None]
+    files = [str(case.get("name")) for case in bad if not case.get("classname")]
+    if files:
+        raise ValueError(f"no test has run, as these cannot be read: {', '.join(files)}")
     names = [f"{case.get('classname', '').replace('.', '/')}.py::{case.get('name')}" for case in bad]
     if not names:
         raise ValueError("no test has failed, so something else has")

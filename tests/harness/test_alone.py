@@ -23,7 +23,12 @@ def test_failures_and_errors_are_named_as_pytest_takes_them(tmp_path: Path) -> N
     ]
 
 
-@pytest.mark.parametrize("text", [None, "", "<testsuites/>"], ids=["nothing", "no XML", "no failure"])
+UNREAD = '<testsuite><testcase classname="" name="tests.bus.test_loop"><error message="no"/></testcase></testsuite>'
+
+
+@pytest.mark.parametrize(
+    "text", [None, "", "<testsuites/>", UNREAD], ids=["nothing", "no XML", "no failure", "a file that cannot be read"]
+)
 def test_where_no_failure_is_named_nothing_is_run_again_and_that_is_a_failure(
     text: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -12,8 +12,9 @@ from selfconf.errors import AuthorError
 from selfconf.rdf.provenance import CONFIGURATION
 from selfconf.rdf.turtle import ntriples, parse
 from selfconf.rdf.vocabulary import SC
-from selfconf.serve.watching.change import DEPLOYED, EcologyChange
+from selfconf.serve.watching.change import EcologyChange
 from selfconf.serve.watching.history import History
+from selfconf.serve.watching.task_watcher import DEPLOYED
 from selfconf.serve.watching.watcher import EcologyWatcher
 from tests.lab import ADVERTISEMENTS, Lab, iri
 
@@ -177,7 +178,7 @@ def test_after_three_failures_the_history_tells_at_each_moment_what_the_run_has_
     history = History(tmp_path / "history", lambda: lab.network.time)
 
     def note(change: EcologyChange) -> None:
-        history.note(change.graphs, change.events)
+        history.note(change.deployed, change.events)
 
     EcologyWatcher(lab.network.node(), "lab", note, lambda: lab.network.time).begin()
     assert lab.running(lab.agent(patient=True))
