@@ -29,6 +29,8 @@ class ComponentProcess:
         """Whether its end, which may be still to come, was counted as a crash."""
         self.end_wanted = False
         """Whether a person has it ended: that is no crash, whatever a task has lost by it."""
+        self.asked_for = False
+        """Whether it was asked for while it ran: by a task that saw no life of it."""
         self.silent_since = -math.inf
         """When one of its pipes has ended; long ago as long as none has."""
 
@@ -48,6 +50,11 @@ class ComponentProcess:
     def lived(self) -> bool:
         """Whether one of its components has had a life."""
         return any(watch.lived for watch in self._watches.values())
+
+    @property
+    def lives(self) -> bool:
+        """Whether one of its components has a life."""
+        return any(watch.alive for watch in self._watches.values())
 
     def is_life(self, component: IRI, life: str) -> bool:
         """Whether a life of a component is its own, as far as is known."""

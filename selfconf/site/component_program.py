@@ -131,6 +131,7 @@ class ComponentProgram:
         self._asked.intersection_update(self._profiles)  # one may have been given another command since
         if self._process is not None and self._ending is None:
             self._process.follow(self._profiles.values())
+            self._process.asked_for = True
             return
         self._count_lost(after)
         wait = self._limit.wait(self._bus.now(), self._restarts())
@@ -147,25 +148,32 @@ class ComponentProgram:
             else:
                 self._launch()
 
-    def end(self, gone: Callable[[], None], again: bool = False, *, wanted: bool = False) -> None:
+    def end(self, gone: Callable[[], None], *, wanted: bool = False) -> None:
         """End the process: TERM, after `TERMINATION` seconds KILL; then call `gone`. It can be started again.
 
-        Where it is being ended already, what has been asked to follow stays: a start, after which it is waited for.
-        `wanted` is that a person has it ended.
+        Where it is being ended already, what has been asked to follow stays: a start, after which it is waited for. And
+        unless the end is `wanted`, as a person has it ended, it is that of a task which wants a life of before to act
+        no more: what has ended by itself is started again as after every crash, and so is what another task waits for.
         """
-        self._end_pause()
+        self._check()  # it may have ended a moment ago
+        if wanted:
+            self._end_pause()
         if self._process is None:
             gone()
         elif self._ending is not None:
             self._ending.when_gone.append(gone)
         else:
-            self._ending = _Ending(self._bus.now(), again, [gone])
-            self._process.end_wanted = wanted
-            if self._process.group.frozen():
-                self._process.group.kill()  # it would have to go on, and might act, before it could end by itself
-            else:
-                self._process.group.terminate()
-            self._check_in(ENDING_CHECK)
+            again = self._process.asked_for and not self._process.lives and not wanted
+            self._begin_ending(self._process, _Ending(self._bus.now(), again, [gone]), wanted)
+
+    def _begin_ending(self, process: ComponentProcess, ending: _Ending, wanted: bool = False) -> None:
+        self._ending = ending
+        process.end_wanted = wanted
+        if process.group.frozen():
+            process.group.kill()  # it would have to go on, and might act, before it could end by itself
+        else:
+            process.group.terminate()
+        self._check_in(ENDING_CHECK)
 
     def give_up(self) -> None:
         """Start it again no more by itself: no component has its command any more."""
@@ -292,14 +300,14 @@ class ComponentProgram:
         self._report(
             process, Cause.CRASH, f"the process that its site started for it has ended with code {code}{outlook}"
         )
-        self.end(lambda: None, again)  # what it has started may still run
+        self._begin_ending(process, _Ending(self._bus.now(), again))  # what it has started may still run
         self._check()
 
     def _end_for(self, process: ComponentProcess, cause: Cause, trouble: str) -> None:
         """End a process that cannot say itself that something is wrong with it."""
         self._count_crash(process)
         self._report(process, cause, f"its process {trouble}; its site ends it{self._outlook()}")
-        self.end(lambda: None, again=True)
+        self._begin_ending(process, _Ending(self._bus.now(), again=True))
 
     def _start_again(self) -> None:
         """Start the program after a pause, if it has not crashed too often."""

@@ -163,12 +163,13 @@ def acts_on_part(history: History) -> Iterator[str]:
     """An actuator acts only while no other task holds a part of its configuration.
 
     That is the one that ran before for as long as a better one is being prepared, of which parts may be held. One that
-    is at rest, as it is blind, does not act.
+    is at rest, as it is blind, does not act; one that has no part in what its task wants now is about to be released.
     """
     for life in acting(history):
         if not life.runtime.profile.outputs and is_on(life):
             for agent in supervisors(history, life):
                 plans = [plan for plan in (agent.state.target, agent.state.fallback) if plan is not None]
+                plans = [plan for plan in plans if life.component in plan.components]
                 amiss = [list(held_by_others(history, plan, agent)) for plan in plans]
                 for part in amiss[-1] if amiss and all(amiss) else ():
                     yield f"{life.name} acts for {agent.name}, and {part}"

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from selfconf.bus.memory import MemoryBus
+from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 
@@ -27,19 +28,30 @@ class SimulatedProcesses:
         self._history, self._site, self._names = history, site, names
         self._nodes: dict[str, MemoryBus | None] = {}
         """The node of each process that is to run; None while it begins."""
+        self._asked_for: set[MemoryBus] = set()
+        """The nodes of processes that were asked for while they ran: a task saw no life of them."""
         self._restarts: dict[str, int] = {}
 
     def start(self, profile: Profile, sharing: Iterable[Profile] = (), after: str = "") -> None:
         """Start the process of a component, unless it runs."""
         name = self._names[profile.component]
-        if name not in self._nodes:
+        node = self._nodes.get(name)
+        if node is not None:
+            self._asked_for.add(node)
+        elif name not in self._nodes:
             self._restarts[name] = 0
             self._begin(name)
 
     def end(self, component: IRI, life: str = "", ended: Callable[[], None] = lambda: None) -> None:
-        """End the process of a component for good."""
-        node = self._nodes.pop(self._names[component], None)
-        if node is not None:
+        """End the process of a component, if it lives the life that is meant; one that is waited for begins again."""
+        name = self._names[component]
+        node = self._nodes.get(name)
+        if node is not None and node.open:
+            (run,) = (one for one in self._history.processes if one.node is node)
+            if life and run.runtime.life != life:
+                raise PeerError(f"this site has not started the life {life} of {component}")
+            if node not in self._asked_for or run.awake:
+                del self._nodes[name]
             node.close()
         ended()
 

@@ -69,6 +69,7 @@ def test_no_history_in_which_code_is_busy_or_hangs_on_breaks_an_invariant(batch:
         pytest.param(5001337, COMPOSED, id="the answer of what a task has reserved is lost, as another component ends"),
         pytest.param(403772, PAPER, id="a site is cut off after its answer, while another has not answered"),
         pytest.param(9308178, PAPER, id="a life that has ended since answers an earlier call when the next is held"),
+        pytest.param(997001605, PAPER, id="what has crashed, and one task waits for, another has its site end"),
     ],
 )
 def test_a_history_that_was_broken_once_is_not_any_more(seed: int, ecology: FaultyEcology, folder: Path) -> None:

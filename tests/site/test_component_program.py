@@ -252,6 +252,55 @@ def test_what_a_site_has_ended_for_a_task_counts_as_a_crash_when_that_task_asks_
     assert live(network, lambda: bool(ended))
 
 
+@pytest.mark.parametrize("noticed", [True, False])
+def test_what_has_crashed_begins_again_though_a_task_wants_the_life_of_before_to_act_no_more(
+    network: Network, tmp_path: Path, site: Callable[..., Site], noticed: bool
+) -> None:
+    made, heard = site(python(NUMBERED)), fails(network)
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    life, ended = given_life(made), list[bool]()
+    os.kill(runs(tmp_path)[-1], signal.SIGKILL)
+    os.waitid(os.P_PID, runs(tmp_path)[-1], os.WEXITED | os.WNOWAIT)
+    assert not noticed or live(network, lambda: bool(heard) and program(made).group is None)
+    made.processes.end(SLEEPER, life, lambda: ended.append(True))
+    assert live(network, lambda: len(runs(tmp_path)) == 2)
+    assert ended
+    assert len(heard) == 1
+
+
+def test_what_is_ended_for_one_task_begins_again_for_another_that_waits_for_it(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    life, ended = given_life(made), list[bool]()
+    leave = network.node().announce(KEYS.life(SLEEPER, life))
+    made.start(SLEEPER)
+    network.run(lambda: False, 0.1)
+    os.kill(runs(tmp_path)[-1], signal.SIGSTOP)
+    leave()
+    network.run(lambda: False, 0.1)
+    made.processes.end(SLEEPER, life, lambda: ended.append(True))
+    assert live(network, lambda: len(runs(tmp_path)) == 2)
+    assert ended
+
+
+def test_what_is_ended_while_it_lives_is_waited_for_by_no_task(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED))
+    made.start(SLEEPER)
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    network.node().announce(KEYS.life(SLEEPER, given_life(made)))
+    network.run(lambda: False, 0.1)
+    made.processes.end(SLEEPER, given_life(made))
+    assert live(network, lambda: program(made).group is None)
+    assert not live(network, lambda: len(runs(tmp_path)) == 2, 0.5)
+
+
 def test_what_a_person_has_ended_counts_as_no_crash_though_a_task_has_lost_it_by_that(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:
