@@ -155,7 +155,8 @@ class ComponentProgram:
         unless the end is `wanted`, as a person has it ended, it is that of a task which wants a life of before to act
         no more: what has ended by itself is started again as after every crash, and so is what another task waits for.
         """
-        self._check()  # it may have ended a moment ago
+        if self._ending is None:
+            self._check()  # it may have ended a moment ago
         if wanted:
             self._end_pause()
         if self._process is None:

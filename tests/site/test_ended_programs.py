@@ -115,8 +115,9 @@ def test_only_the_life_that_the_site_has_started_is_ended(
     assert live(network, lambda: bool(ended))
 
 
+@pytest.mark.parametrize("gone", [False, True])
 def test_a_start_while_the_process_ends_comes_after_its_end(
-    network: Network, tmp_path: Path, site: Callable[..., Site]
+    network: Network, tmp_path: Path, site: Callable[..., Site], gone: bool
 ) -> None:
     slow = (
         'import os, signal; signal.signal(signal.SIGTERM, lambda *_: open("told", "w").close());'
@@ -129,6 +130,8 @@ def test_a_start_while_the_process_ends_comes_after_its_end(
     assert live(network, (tmp_path / "here" / str(group.number)).exists)
     made.processes.end(SLEEPER)
     made.start(SLEEPER)
+    if gone:  # which the site has not noticed
+        os.waitid(os.P_PID, group.number, os.WEXITED | os.WNOWAIT)
     made.processes.end(SLEEPER)  # as another task does that has shared it, and has not heard yet that it ends
     assert program(made).group is group
     assert live(network, lambda: program(made).group not in (None, group))
