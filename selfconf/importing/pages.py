@@ -15,6 +15,8 @@ from selfconf.errors import AuthorError
 from selfconf.http_origin import http_origin
 
 MOST_PAGES = 1000
+LONGEST_URL = 2000
+"""A page whose URL has more characters is not read."""
 COLLECTION = "ThingCollection"
 """The type of a list of things that has them as its `members`."""
 _PARAMETER = r'\s*;\s*([^\s=",;]+)\s*(?:=\s*(?:"((?:[^"\\]|\\.)*)"|([^\s",;]*)))?'
@@ -45,10 +47,12 @@ class Pages:
         if following is None:
             return
         try:
+            if len(following) > LONGEST_URL or not following.isprintable() or " " in following:
+                raise ValueError  # as a stranger says it, it could also write on a terminal
             there = urldefrag(urljoin(here, following)).url
             elsewhere = http_origin(there) != http_origin(here)
         except ValueError:
-            raise AuthorError(f"{here} goes on at {following!r}, which is no URL") from None
+            raise AuthorError(f"{here} goes on at {following[:200]!r}, which is no URL") from None
         if elsewhere:
             raise AuthorError(f"{here} goes on at {there}, which is another server; name that as well to have it read")
         if there in self._read:

@@ -59,6 +59,16 @@ def test_what_is_no_json_is_the_last_page() -> None:
     assert after(octets=b'{"@type": "ThingCollection", "next"') is None
 
 
+def test_a_url_that_none_can_be_is_told_without_its_control_characters_and_in_part() -> None:
+    for following in ("/a\x1b[2J", "/a\u202eb", "/a b", "/" + "a" * 3000):
+        found = Pages(HERE)
+        with pytest.raises(AuthorError, match="which is no URL") as raised:
+            found.go_on([], json.dumps({"@type": "ThingCollection", "next": following}).encode())
+        assert str(raised.value).isprintable()
+        assert len(str(raised.value)) < 300
+        assert found.url is None
+
+
 @pytest.mark.parametrize(
     ("link", "words"),
     [

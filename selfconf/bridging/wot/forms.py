@@ -2,8 +2,8 @@
 
 Of several forms for an operation the first counts that a bridge can use, those with JSON before those without. What it
 can use is HTTP without URI variables, to a host that it may reach, with security schemes for which it has credentials;
-`ThingForms.problems` says in sentences what came of the others. (W3C Web of Things Thing
-Description 1.1, sections 5.3.4 and 8.3.1.)
+`ThingForms.problems` says in sentences what came of the others. (W3C Web of Things Thing Description 1.1, sections
+5.3.4 and 8.3.1.)
 """
 
 from __future__ import annotations
