@@ -127,6 +127,8 @@ def violations(
             return found
     except TimeUp:
         raise TemplateError(f"{called} takes more than {SHAPE_SECONDS:g} s of processor time", file=source) from None
+    except MatchTooCostly as error:  # with nothing said, so that the text is the shape's own
+        raise TemplateError(f"{called} cannot be judged: {error}", file=source) from None
     except ValidationFailure as error:
         raise TemplateError(f"{called} cannot be judged: {first_line(str(error.message))}", file=source) from error
     except _ILL_FORMED as error:

@@ -67,6 +67,12 @@ def test_a_pattern_that_takes_years_for_long_names_judges_nodes_with_short_ones(
     assert outside(":shape sh:pattern '^(?=([a-z:-]+)+!)' .") == {"good", "bad", "bare"}
 
 
+def test_a_query_that_matches_a_costly_pattern_against_its_own_text_is_blamed_for_the_pattern() -> None:
+    asked = f"SELECT $this {{ BIND (STR('{'a' * 80}!') AS ?text) FILTER (REGEX(?text, '^(a+)+\\\\\\\\1+$')) }}"
+    with pytest.raises(TemplateError, match=r"cannot be judged: matching the pattern .* takes too long"):
+        outside(f':shape sh:sparql [ sh:select "{asked}" ] .')
+
+
 def test_a_query_that_would_leave_is_not_evaluated() -> None:
     with pytest.raises(TemplateError, match="leave out SERVICE"):
         outside(":shape sh:sparql [ sh:select 'SELECT $this { SERVICE <http://127.0.0.1:1/> { ?s ?p ?o } }' ] .")

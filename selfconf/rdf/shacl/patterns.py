@@ -16,7 +16,7 @@ import warnings
 from functools import lru_cache
 from typing import Any
 
-from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
+from selfconf.rdf.deadline import ProcessorTimeUp, processor_limit
 from selfconf.rdf.shacl.automaton import Automaton, NotRegular, TooManySteps, parsed
 
 CHEAP = 10_000
@@ -31,8 +31,8 @@ LONGEST_TRY = 0.03
 """How much of it may go into one text."""
 
 
-class MatchTooCostly(TimeUp):
-    """Whether a text is like a pattern takes too long to find out."""
+class MatchTooCostly(BaseException):
+    """Whether a text is like a pattern takes too long to find out; no `Exception`, as the libraries catch those."""
 
     def __init__(self, pattern: str, text: str) -> None:
         super().__init__(pattern)
@@ -40,7 +40,7 @@ class MatchTooCostly(TimeUp):
 
     def __str__(self) -> str:
         shown = self.text if len(self.text) <= 40 else f"{self.text[:40]}..."
-        return f"matching the sh:pattern {self.pattern!r} against {shown!r} takes too long"
+        return f"matching the pattern {self.pattern!r} against {shown!r} takes too long"
 
 
 class Pattern:

@@ -38,6 +38,7 @@ from selfconf.rdf.shacl import (
     LISTS,
     ONLY_WITH_A_PATH,
     STATED_ONCE,
+    MatchTooCostly,
     of_values,
     pattern_fault,
     said_alone,
@@ -315,6 +316,8 @@ def _trial(shapes: Graph, *roles: str) -> str | None:
         report, text = judged(stage, aimed(shapes, map(IRI.unchecked, roles), [IRI(_STAND_IN)]))
     except (ReportableRuntimeError, AssertionError, ValueError, TypeError, KeyError) as error:
         return _sentence(reason_of(error))
+    except MatchTooCostly as error:
+        return _sentence(str(error))
     return _sentence(first_line(text)) if isinstance(report, ValidationFailure) else None
 
 

@@ -102,6 +102,13 @@ def test_what_is_wrong_with_a_shape_is_told_where_it_stands(shape: str, column: 
     assert sentence in found[0].message
 
 
+def test_a_query_with_a_costly_pattern_of_its_own_is_told_at_its_role() -> None:
+    query = f"SELECT $this {{ BIND (STR('{'a' * 80}!') AS ?text) FILTER (REGEX(?text, '^(a+)+\\\\\\\\1+$')) }}"
+    (only,) = malformed(f':r a sc:Role ; sh:sparql [ sh:select "{query}" ] .')
+    assert only.code == "SC-T13"
+    assert "matching the pattern" in only.message
+
+
 def test_a_query_that_would_leave_this_machine_is_refused() -> None:
     query = "SELECT $this WHERE { SERVICE <http://example.org/> { $this a ?type } }"
     (only,) = malformed(f":r a sc:Role ; sh:sparql [ sh:select '{query}' ] .")
