@@ -20,7 +20,7 @@ def open_descriptors() -> int:
 
 
 def sockets_at(port: int, *, from_here: bool = False) -> Iterator[socket.socket]:
-    """Each socket whose own end has a port, the one that listens included; it is closed after use, the original not.
+    """Each socket of TCP whose own end has a port, with the one that listens; it is closed after use, the original not.
 
     `from_here`: those that are connected to that port of the other end.
     """
@@ -30,5 +30,6 @@ def sockets_at(port: int, *, from_here: bool = False) -> Iterator[socket.socket]
                 continue
             with socket.fromfd(int(path.name), socket.AF_INET, socket.SOCK_STREAM) as found:
                 address = found.getpeername() if from_here else found.getsockname()
-                if isinstance(address, tuple) and address[1] == port:  # it is a path where it is of another family
+                is_stream = found.getsockopt(socket.SOL_SOCKET, socket.SO_TYPE) == socket.SOCK_STREAM
+                if is_stream and isinstance(address, tuple) and address[1] == port:  # a path, of another family
                     yield found

@@ -21,6 +21,12 @@ def test_the_sockets_of_either_end_of_a_port_are_found() -> None:
         assert list(sockets_at(port, from_here=True)) == []
 
 
+def test_a_socket_of_datagrams_is_none_of_them() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
+        listening.bind(("127.0.0.1", 0))
+        assert list(sockets_at(listening.getsockname()[1])) == []
+
+
 def test_a_socket_that_is_found_stays_open() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         found = []

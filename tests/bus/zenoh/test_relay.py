@@ -116,6 +116,15 @@ def test_what_has_connected_while_a_hub_was_opened_is_to_connect_again(monkeypat
         hub.close()
 
 
+def test_a_hub_listens_for_datagrams_too() -> None:
+    """To cut the connections that are made too early, its one socket of UDP is not to be shut down."""
+    hub = Hub("udp/127.0.0.1:0")
+    try:
+        client([hub.endpoint]).close()
+    finally:
+        hub.close()
+
+
 def test_strangers_who_fill_the_door_of_a_hub_keep_out_neither_its_host_nor_others_for_long(tmp_path: Path) -> None:
     authority = Authority.init(tmp_path / "authority")
     hub = Hub("tls/127.0.0.1:0", Security(authority.credentials((PrincipalKind.SITE,), "home")))
