@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import re
 from pathlib import Path
 
 from selfconf.cli.options import add_ontology_argument, domain, number_option
@@ -18,6 +19,7 @@ ROS2_EXAMPLE = """  selfconf bridge ros2 --connect tcp/127.0.0.1:7447 --domain 0
   selfconf bridge ros2 --definitions /opt/ros/jazzy/share --definitions ~/ws/install/lab_msgs/share --ecology home"""
 EXAMPLE = f"{WOT_EXAMPLE}\n{ROS2_EXAMPLE}"
 MOST_HERTZ = 100.0
+_HOST = re.compile(r"[\w.-]+|\[?[0-9A-Fa-f.]*:[0-9A-Fa-f.]*:[0-9A-Fa-f.:]*\]?")
 LISTENING = "where to listen, as for `selfconf site`"
 
 
@@ -49,6 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     wot.add_argument(
         "--host",
         metavar="HOST",
+        type=_host,
         action="append",
         default=[],
         help="a further host to which descriptions may lead that were fetched; repeatable",
@@ -103,6 +106,14 @@ def run(given: argparse.Namespace) -> int:
         else:
             serve_things(given.sources, given.rate, given.credentials, given.host, site, complain)
     return 0
+
+
+def _host(text: str) -> str:
+    if not _HOST.fullmatch(text):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no host; it takes a name or an address, such as 192.0.2.7, without scheme and port"
+        )
+    return text.strip("[]")  # as URLs have an address of IPv6
 
 
 def _rate(text: str) -> float:

@@ -109,6 +109,17 @@ def test_a_rate_is_a_number_of_hertz(rate: str, capsys: pytest.CaptureFixture[st
     assert "is no rate" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("host", ["", "a b", "http://lamp.local", "lamp.local:80", "192.0.2.7/24", "me@lamp"])
+def test_a_host_is_a_name_or_an_address(host: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        parser(["bridge"]).parse_args(["bridge", "wot", "x", "--host", host])
+    assert ended.value.code == 2
+    assert f"{host!r} is no host" in capsys.readouterr().err
+    hosts = [word for one in ("lamp.local", "192.0.2.7", "::1", "[2001:DB8::1]") for word in ("--host", one)]
+    given = parser(["bridge"]).parse_args(["bridge", "wot", "x", *hosts])
+    assert given.host == ["lamp.local", "192.0.2.7", "::1", "2001:DB8::1"]
+
+
 def test_an_extra_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     run(capsys, "bridge", "wot", "x", "--ecology", "e").is_one_sentence("install the extra `wot`")

@@ -32,6 +32,7 @@ from selfconf.importing import (
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI, Literal
+from selfconf.model.wording import listed
 from selfconf.rdf.vocabulary import SC, UNIT, XSD
 
 _Imported = TypeVar("_Imported", ImportedPort, ImportedOperation)
@@ -120,8 +121,11 @@ def interactions(
     """
     component, affordances = thing.component, _Affordances(thing.description)
     fields = _fields(component, ontologies, forms)
+    left_out: list[str] = []
 
-    def usable(imported: Iterable[_Imported], interaction: Callable[..., _Done | None]) -> dict[_Imported, _Done]:
+    def usable(
+        kind: str, imported: Iterable[_Imported], interaction: Callable[..., _Done | None]
+    ) -> dict[_Imported, _Done]:
         """What is done with each port or operation with which anything can be done."""
         found = {}
         for each in imported:
@@ -129,13 +133,17 @@ def interactions(
             done = interaction(each, affordances, forms, fields)
             if done is not None:
                 found[each] = done
-            elif forms.tried == tried and affordances.have(each.name):
+            elif forms.tried > tried:
+                left_out.append(f"the {kind} {each.name[:80]!r}")
+            elif affordances.have(each.name):
                 forms.problems[f"no form of {each.name[:80]!r} is by HTTP, plain or by {' or '.join(FOLLOWED)}"] = None
         return found
 
-    outputs = usable(component.outputs, _output)
-    inputs = usable(component.inputs, _write)
-    operations = usable(component.operations, _action)
+    outputs = usable("output", component.outputs, _output)
+    inputs = usable("input", component.inputs, _write)
+    operations = usable("operation", component.operations, _action)
+    if left_out:
+        forms.problems[f"so {listed(left_out)} {'is' if len(left_out) == 1 else 'are'} left out"] = None
     inputs |= _commands(operations, {port.name for port in inputs})
     bridged = replace(
         component,

@@ -158,6 +158,7 @@ def test_what_has_no_form_that_can_be_used_is_not_advertised_and_named() -> None
         "no form of 'level' is by HTTP, plain or by sse or longpoll",
         "no form of 'pressed' is by HTTP, plain or by sse or longpoll",
         "the form 'mqtt://192.0.2.7/x' leads to no http or https URL",
+        "so the output 'on', the input 'on' and the operation 'blink' are left out",
     )
 
 
