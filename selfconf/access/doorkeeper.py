@@ -12,24 +12,24 @@ which; on its own host a site goes on with its own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from selfconf.access.certificate_files import read_certificate, read_pair
-from selfconf.access.certificates import Certificate
 from selfconf.access.disputed_components import believed, claims
 from selfconf.access.expiry import CertificateWatch
 from selfconf.access.host_authority import HostAuthority
+from selfconf.access.hub_reopening import HubReopening
 from selfconf.access.keys_folder import KeysFolder
 from selfconf.access.other_sites import SITES_ANSWER, OtherSites
 from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.refusal_reports import RefusalReports
 from selfconf.access.rules import AccessRules, rules_of
+from selfconf.access.shown_certificates import Process, ShownCertificates, holders
 from selfconf.bus.answering import answering
 from selfconf.bus.credentials import Credentials
-from selfconf.bus.port import Bus, Replies, Request, Urgency
+from selfconf.bus.port import Bus, Replies, Request
 from selfconf.bus.zenoh import RefusalLog
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.files import FileStamp, stamp
@@ -43,12 +43,8 @@ LOOK = 1.0
 """How often, in seconds, it is checked whether the folder of keys has changed, and what was refused."""
 LOOK_AT_ALL = 10.0
 """After how many seconds at most the rules are made anew, and certificates renewed, though nothing seems to change."""
-RAREST_RETRY = 30.0
-"""After how many seconds at most it is tried again to open the hub."""
 FAULT_AGAIN = 600.0
 """After how many seconds a fault that lasts is reported again."""
-WARNED = 0.05
-"""Seconds between the word that a hub is about to be opened anew and that."""
 RENEWED_TOGETHER = 2.0
 """Seconds after which a hub is opened anew for a renewed certificate: a program looks at its own once a second."""
 GONE_AFTER = 10.0
@@ -62,16 +58,7 @@ KNOWN_FOR = 6
 
 def first_rules(ecology: str, site: str, folder: KeysFolder, own: Mapping[IRI, IRI]) -> AccessRules:
     """The rules that follow from what a site knows by itself; `own` as of a `SiteIdentity`."""
-    return rules_of(ecology, site, _processes(own.items()), {}, _principals(folder, ecology))
-
-
-Process = tuple[Principal, ...]
-"""The principals of the certificate of a process, its subject first."""
-
-
-def _principals(folder: KeysFolder, ecology: str) -> list[Process]:
-    """Who has shown a good certificate."""
-    return [one.principals for one in folder.admitted(ecology).values()]
+    return rules_of(ecology, site, _processes(own.items()), {}, holders(folder, ecology))
 
 
 def _processes(components: Iterable[tuple[IRI, IRI]]) -> list[Process]:
@@ -132,9 +119,10 @@ class Doorkeeper:
         self._bus, self._hub, self._complain = bus, hub, complain
         self._keys, self._name, self._folder = Keys(site.ecology), site.name, site.folder
         self._credentials, self._own = site.credentials, site.own
-        self._warned = False
-        """Whether the hub is about to be opened anew."""
-        self._warning = bus.publisher(self._keys.reopens(site.name), Urgency.EVENT)
+        self._reopening = HubReopening(
+            bus, self._keys.reopens(site.name), hub.relays, self._open_anew, self._tell_fault
+        )
+        self._certificates = ShownCertificates(site.folder, site.ecology, bus.now)
         self._ruled: _Advertised | None = None
         """What was advertised, and by which sites, when the rules were made."""
         self._disputed: frozenset[IRI] = frozenset()
@@ -143,21 +131,10 @@ class Doorkeeper:
         self._reports = RefusalReports(bus, hub.refusals, complain, lambda one: self.rules.allow(one))
         self._faults: dict[str, float] = {}
         """What was said to be wrong with the keys or the hub, and when."""
-        self._pause = LOOK
-        self._undo_retry: Callable[[], None] = lambda: None
         self._renews_soon = False
         """Whether the rules are about to be made anew."""
-        self._admitted = set[Certificate]()
-        """The good certificates that were shown in these moments, and since when that is noted."""
-        self._admitted_at = bus.now()
-        self._latest: dict[Process, tuple[datetime, datetime]] = {}
-        """From and until when the latest certificate is valid that each holder has shown."""
-        self._opens_for_own = False
-        """Whether the hub is to be opened anew, as the certificate of the site was renewed."""
         self._renews_components = False
         """Whether the certificates of components are being renewed."""
-        self._opens_for_renewed = False
-        """Whether the hub is to be opened anew soon, as certificates were renewed."""
         self._shown, self._stamps = stamp(self._credentials.certificate), dict[Path, FileStamp]()
         """The stamp of the certificate that the hub shows, and those of the folder of keys when all was looked at."""
         self._look_at_all = bus.now()
@@ -179,12 +156,13 @@ class Doorkeeper:
     def _introduced(self, request: Request) -> None:
         """A client shows a certificate: the hub lets it in if the authority has issued it."""
         try:
-            shown = decode(request.payload, Introduction).certificate
-            known = self._admit(shown)
-            self._note_renewal(Certificate.read(shown.encode()))
+            shown = self._certificates.admit(decode(request.payload, Introduction).certificate)
+            if self._certificates.renews(shown) and self._has_life_here(shown.principals[0]):
+                self._reopening.within(RENEWED_TOGETHER)
+            known = self.rules.knows(shown.principals)
             if not known:
                 self._renew_rules_soon()
-            known = known and not self._warned  # the hub is about to be opened anew, perhaps as it does not know it yet
+            known = known and not self._reopening.is_near  # perhaps that is as the hub does not know it yet
             beside = tuple(sorted(self._hub.sites()))
             request.reply(self._keys.introduce(self._name), encode(Introduction(self._own_pem(), known, beside)))
         except PeerError as error:
@@ -199,38 +177,14 @@ class Doorkeeper:
         """The certificate of this site as it lies in its file now. Raises AuthorError."""
         return read_certificate(self._credentials.certificate).pem.decode()
 
-    def _admit(self, pem: str) -> bool:
-        """Whether the rules in force know the holder of a certificate. Raises PeerError for one that is not good.
+    def _has_life_here(self, holder: Principal) -> bool:
+        """Whether a holder is one of which lives seem to end, without a warning, as its certificate expires.
 
-        AuthorError is raised for what is wrong with the folder of keys. One that is shown again within moments is not
-        looked at again: it takes a site milliseconds each time.
+        Zenoh ends a link when the certificate expires by which it was made. A component has a life here, and so has
+        another site of this host.
         """
-        now = self._bus.now()
-        if now - self._admitted_at > LOOK:
-            self._admitted, self._admitted_at = set(), now
-        shown = Certificate.read(pem.encode())
-        if shown not in self._admitted:
-            self._folder.admit(self._keys.ecology, shown.pem)
-            self._admitted.add(shown)
-        return self.rules.knows(shown.principals)
-
-    def _note_renewal(self, shown: Certificate) -> None:
-        """Have the hub opened anew soon after a component, or a site of this host, has renewed its certificate.
-
-        Zenoh ends a link when the certificate expires by which it was made: lives would seem to end, without a warning.
-        """
-        holder, validity = shown.principals, (shown.begins, shown.ends)
-        before = self._latest.setdefault(holder, validity)
-        self._latest[holder] = max(before, validity)
-        is_beside = holder[0].kind is PrincipalKind.SITE and holder[0].name in self._beside()
-        has_life_here = is_beside or holder[0].kind is PrincipalKind.COMPONENT
-        if validity > before and has_life_here and not self._opens_for_renewed:
-            self._opens_for_renewed = True
-            self._bus.later(RENEWED_TOGETHER, self._open_for_renewed)
-
-    def _open_for_renewed(self) -> None:
-        self._opens_for_renewed = False
-        self._open_anew()
+        is_beside = holder.kind is PrincipalKind.SITE and holder.name in self._beside()
+        return is_beside or holder.kind is PrincipalKind.COMPONENT
 
     def _renew_rules_soon(self) -> None:
         """Have the rules made anew once what is done now is done, however many show their certificates meanwhile."""
@@ -260,7 +214,7 @@ class Doorkeeper:
             try:
                 answer = decode(sample.payload, Introduction)
                 all_know &= answer.known
-                known &= self._admit(answer.certificate)
+                known &= self.rules.knows(self._certificates.admit(answer.certificate).principals)
             except PeerError as error:
                 all_know = False
                 self._reports.tell("", str(error), sample.key)
@@ -282,7 +236,7 @@ class Doorkeeper:
     # The rules.
 
     def _made(self) -> AccessRules:
-        shown = _principals(self._folder, self._keys.ecology)
+        shown = holders(self._folder, self._keys.ecology)
         sites = {process[0].name for process in shown if process[0].kind is PrincipalKind.SITE}
         own, others, beside, gone = ruled = self._advertised()
         advertised = {self._name: frozenset(own), **{s: c for s, c in others.items() if s in sites}}
@@ -330,30 +284,12 @@ class Doorkeeper:
             return
         if rules != self.rules:
             self.rules = rules
-            self._open_anew()
+            self._reopening.now()
 
     def _open_anew(self) -> None:
-        """Have the hub opened anew, and tell all clients before: a hub takes its clients off one after the other."""
-        if not self._hub.relays():
-            self._enforced()
-        elif not self._warned:
-            self._warned = True
-            self._warning.put(b"")
-            self._bus.later(WARNED, self._enforced)
-
-    def _enforced(self) -> None:
-        """Have the hub opened anew; as long as that fails try again, more and more rarely."""
-        self._undo_retry()
-        self._warned = False
-        try:
-            read_pair(self._credentials.certificate.with_suffix(""))  # the hub as it is would be closed, and not open
-            self._hub.open_anew(self.rules)
-        except SelfconfError as error:
-            self._tell_fault(f"the hub cannot be opened with its new rules: {error}; trying again")
-            self._undo_retry = self._bus.later(self._pause, self._enforced)
-            self._pause = min(2 * self._pause, RAREST_RETRY)
-        else:
-            self._pause = LOOK
+        """Have the hub opened anew. Raises SelfconfError."""
+        read_pair(self._credentials.certificate.with_suffix(""))  # the hub as it is would be closed, and not open
+        self._hub.open_anew(self.rules)
 
     def _look(self) -> None:
         """Look at what changes without a message: the folder of keys, the time, and what was refused."""
@@ -378,8 +314,6 @@ class Doorkeeper:
         try:
             left = read_certificate(self._credentials.certificate).seconds_left()
             self._look_at_all = min(self._look_at_all, self._bus.now() + left / 4)
-            if self._stamps[self._credentials.certificate] != self._shown:
-                self._shown, self._opens_for_own = self._stamps[self._credentials.certificate], True
             if not self._renews_components:
                 self._renew_next(HostAuthority(self._folder).renew_components())
         except SelfconfError as error:
@@ -398,9 +332,10 @@ class Doorkeeper:
                 return
         except SelfconfError as error:
             self._tell_fault(str(error))
-        if self._opens_for_own:
-            self._opens_for_own = False
-            self._open_anew()
+        own = stamp(self._credentials.certificate)
+        if own != self._shown:
+            self._shown = own
+            self._reopening.now()
 
     # Reports.
 
