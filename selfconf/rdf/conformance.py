@@ -6,25 +6,20 @@ rdflib with literal normalisation off for the whole process, and any other store
 
 from __future__ import annotations
 
-import logging
 import math
 import re
 import time
-import warnings
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import rdflib
 from pyparsing import ParseException
 from pyshacl import validate
-from pyshacl.constraints import constraint_component
 from pyshacl.errors import (
     ConstraintLoadError,
     ReportableRuntimeError,
     ShapeLoadError,
-    ShapeRecursionWarning,
     ValidationFailure,
 )
 from pyshacl.graph_abstraction import DataGraph
@@ -34,18 +29,13 @@ from pyshacl.validator import Validator
 from selfconf.errors import TemplateError
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
-from selfconf.rdf.constraint_lookup import index_constraints
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
-from selfconf.rdf.library_patches import replaced
-from selfconf.rdf.linear_patterns import linear_patterns
-from selfconf.rdf.literal_comparison import UNORDERED, only_ordered
+from selfconf.rdf.literal_comparison import UNORDERED
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
-from selfconf.rdf.prepared_queries import prepared_queries
-from selfconf.rdf.query_validators import query_validators
+from selfconf.rdf.pyshacl_corrections import corrected
 from selfconf.rdf.rdflib_terms import rdflib_term
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
-from selfconf.rdf.sparql_corrections import sparql_corrections
 from selfconf.rdf.turtle import Node
 
 Focus = TypeVar("Focus", bound=Node)
@@ -59,8 +49,6 @@ SHARE_SECONDS, MOST_SHARE_SECONDS = 0.004, 0.04
 """Processor time that each component may take, as long as none conforms, and at most."""
 LEAST_SECONDS = 0.03
 """Processor time for one more try; clocks of processor time go by milliseconds."""
-_LOGS = tuple(map(logging.getLogger, ("pyshacl.validator", "pyshacl-validate")))
-"""The logs of pySHACL; the second writes to stderr by itself."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 _ASKING = rdflib.URIRef("urn:selfconf:asking")
 _DEEPEST_TRIAL = DEEPEST_SHAPE + 1
@@ -116,7 +104,7 @@ def violations(
         raise TemplateError(f"{called} is not evaluated: {reason}", file=source)
     try:
         # The limit last: the processor time of a thread that judges meanwhile, and is waited for, would count.
-        with _corrected(), processor_limit(SHAPE_SECONDS):
+        with corrected(), processor_limit(SHAPE_SECONDS):
             judge = _Judge(subjects, shapes, shape)
             found: dict[Focus, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
@@ -139,7 +127,6 @@ class _Judge:
     """pySHACL, asked about one node after another, so that each answers for its own statements alone."""
 
     def __init__(self, subjects: rdflib.Graph, shapes: rdflib.Graph, shape: IRI) -> None:
-        index_constraints()
         dataset = load_from_source(subjects, multigraph=True)
         dataset.default_union = True  # pySHACL looks at all of its graphs
         data = DataGraph.from_rdflib(dataset)
@@ -222,37 +209,6 @@ class _Shares:
         return wrong
 
 
-@contextmanager
-def _corrected() -> Iterator[None]:
-    """In the block, pySHACL and rdflib judge as the recommendations say, in linear time, and print nothing."""
-    with linear_patterns(), only_ordered(), query_validators(), prepared_queries(), sparql_corrections(), _silent():
-        yield
-
-
-def _unread(graph: object, node: object) -> str:
-    """A term in the text of a report."""
-    return ""
-
-
-@contextmanager
-def _silent() -> Iterator[None]:
-    """No warning that a shape comes back to itself, no errors in the log, which are raised besides, no terms in texts.
-
-    SHACL leaves open what such a shape means (3.4.3); pySHACL takes it to hold where it comes back. The text of a
-    report is not read, and to write terms into it takes a quarter of the time.
-    """
-    before = [log.disabled for log in _LOGS]
-    for log in _LOGS:
-        log.disabled = True
-    try:
-        with replaced(((constraint_component, "stringify_node", _unread),)), warnings.catch_warnings():
-            warnings.simplefilter("ignore", ShapeRecursionWarning)
-            yield
-    finally:
-        for log, disabled in zip(_LOGS, before, strict=True):
-            log.disabled = disabled
-
-
 def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, Any, Any]]]]) -> list[ShapeViolated]:
     """What a node lacks, sorted: of each property shape, and of each constraint on the node itself, one violation."""
     least: dict[tuple[object, ...], ShapeViolated] = {}
@@ -282,8 +238,7 @@ def _in_english(messages: Iterable[rdflib.term.Node]) -> str:
 
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:
     """The report of pySHACL and its text."""
-    index_constraints()
-    with _corrected():
+    with corrected():
         _, report, text = validate(
             subjects, shacl_graph=shapes, inference="none", advanced=False, max_validation_depth=_DEEPEST_TRIAL
         )

@@ -2,32 +2,22 @@
 
 pySHACL also orders what has no order, a date and a number by the names of their datatypes, two IRIs by their letters,
 and so lets `sh:minInclusive 5` pass any date, and `sh:lessThan` too. Here only literals of one value space have an
-order, as in SPARQL, and NaN has none; within `only_ordered` pySHACL asks for it here. There it also keeps blank nodes
-from `sh:minLength 0`, as SHACL has it (4.4.1): they have no length.
+order, as in SPARQL, and NaN has none; pySHACL is corrected by that (`selfconf.rdf.pyshacl_corrections`).
 
 Loading both takes longer than most configurations, so `selfconf.rdf.shacl` imports this module when a test needs it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Callable
 from datetime import datetime, timedelta
 from decimal import Decimal
-from typing import Any
 
 import rdflib
-from pyshacl.constraints.core import value_range_constraints
-from pyshacl.constraints.core.property_pair_constraints import (
-    LessThanConstraintComponent,
-    LessThanOrEqualsConstraintComponent,
-)
-from pyshacl.constraints.core.string_based_constraints import MinLengthConstraintComponent
 from pyshacl.rdfutil.compare import compare_literal
 from rdflib.xsd_datetime import Duration
 
 from selfconf.model.term import Literal, Term
-from selfconf.rdf.library_patches import replaced
 from selfconf.rdf.rdflib_terms import rdflib_term
 
 UNORDERED = (TypeError, ArithmeticError)
@@ -48,7 +38,7 @@ def _value_space(literal: rdflib.Literal) -> object:
     return next((classes for classes in _VALUE_SPACES if kind in classes), literal.datatype)
 
 
-def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
+def compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
     """How two literals compare: negative, zero or positive. Raises one of UNORDERED where they have no order."""
     if _MARKUP & {one.datatype, other.datatype} or _value_space(one) != _value_space(other):
         raise TypeError("the two have no order")
@@ -59,50 +49,6 @@ def _compare_in_order(one: rdflib.Literal, other: rdflib.Literal) -> int:
     if one.language:  # rdflib orders by the tag first, as it is written: `en` comes after `EN`
         return (str(one) > str(other)) - (str(one) < str(other))
     return _compare(one, other)
-
-
-def only_ordered() -> AbstractContextManager[None]:
-    """In the block, pySHACL lets a value pass beside a limit, or another property, only if the two have an order."""
-    return replaced(_OURS)
-
-
-def _less(component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any) -> tuple[bool, Any]:
-    return _compared(component, values, others, graph, focus, lambda order: order < 0)
-
-
-def _less_or_equal(
-    component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any
-) -> tuple[bool, Any]:
-    return _compared(component, values, others, graph, focus, lambda order: order <= 0)
-
-
-def _compared(
-    component: Any, values: Iterable[Any], others: Iterable[Any], graph: Any, focus: Any, holds: Callable[[int], bool]
-) -> tuple[bool, Any]:
-    """What pySHACL wants to know of a constraint on two properties: whether it is violated, and the results."""
-    orders = [(value, order_of(value, other)) for value in values for other in others]
-    wrong = [value for value, order in orders if order is None or not holds(order)]
-    return bool(wrong), [component.make_v_result(graph, focus, value_node=value) for value in wrong]
-
-
-def _long_enough(component: Any, least: Any, graph: Any, nodes: Mapping[Any, Iterable[Any]]) -> tuple[bool, Any]:
-    """What pySHACL wants to know of `sh:minLength`: whether it is violated, and the results."""
-    wrong = [
-        component.make_v_result(graph, focus, value_node=value)
-        for focus, values in nodes.items()
-        for value in values
-        if isinstance(value, rdflib.BNode) or len(component.value_node_to_string(value)) < least.value
-    ]
-    return bool(wrong), wrong
-
-
-_OURS: tuple[tuple[object, str, object], ...] = (
-    (value_range_constraints, "compare_literal", _compare_in_order),
-    (LessThanConstraintComponent, "_compare_lt", _less),
-    (LessThanOrEqualsConstraintComponent, "_compare_ltoe", _less_or_equal),
-    (MinLengthConstraintComponent, "_evaluate_string_rule", _long_enough),
-)
-"""What pySHACL compares by: where it is, its name, and what takes its place."""
 
 
 def well_typed(literal: Literal) -> bool:
@@ -136,6 +82,6 @@ def order_of(one: rdflib.term.Node, other: rdflib.term.Node) -> int | None:
     if isinstance(one.value, str) != isinstance(other.value, str):
         return None
     try:
-        return _compare_in_order(one, other)
+        return compare_in_order(one, other)
     except UNORDERED:
         return None

@@ -27,8 +27,7 @@ from pyshacl.validator import Validator
 from rdflib import Graph
 from rdflib.term import Node
 
-from selfconf.rdf.constraint_lookup import index_constraints
-from selfconf.rdf.library_patches import replaced
+from selfconf.rdf.pyshacl_corrections import index_constraints, replaced
 
 _DEEPEST = 50
 """How many shapes within shapes pySHACL follows.

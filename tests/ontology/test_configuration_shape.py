@@ -13,7 +13,7 @@ from rdflib import Graph
 
 from selfconf import library
 from selfconf.rdf.positions import parse_with_positions
-from selfconf.rdf.prepared_queries import prepared_queries
+from selfconf.rdf.pyshacl_corrections.prepared_queries import prepared_queries
 from tests.harness.effort import examples
 
 SHAPES = Graph().parse(next(path for path in library.shapes() if path.stem == "configuration"))

@@ -25,9 +25,9 @@ from rdflib.term import Node
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.model.immutable import immutable
 from selfconf.rdf import vocabulary
-from selfconf.rdf.literal_comparison import only_ordered
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.pyshacl_corrections import only_ordered
 from selfconf.rdf.rdflib_terms import merged
 from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.validation.described_elsewhere import with_hierarchy

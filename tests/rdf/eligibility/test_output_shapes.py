@@ -15,7 +15,7 @@ from selfconf.rdf.conformance import judged
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.output_shapes import OutputShape, SeenOutputs
 from selfconf.rdf.eligibility.partitioner import Partitioner
-from selfconf.rdf.literal_comparison import only_ordered
+from selfconf.rdf.pyshacl_corrections import only_ordered
 from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
 from selfconf.rdf.turtle import Document, parse
 from selfconf.rdf.vocabulary import SC, SH

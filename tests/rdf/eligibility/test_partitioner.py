@@ -17,7 +17,7 @@ from selfconf.rdf import rdflib_terms
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement
 from selfconf.rdf.eligibility.partitioner import Partitioner
-from selfconf.rdf.literal_comparison import only_ordered
+from selfconf.rdf.pyshacl_corrections import only_ordered
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.vocabulary import RDF, SC

@@ -7,7 +7,7 @@ import pytest
 import rdflib
 
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.linear_patterns import linear_patterns
+from selfconf.rdf.pyshacl_corrections.linear_patterns import linear_patterns
 from selfconf.rdf.shacl.value_tests import PairTest, ValueTest, compiled
 from selfconf.rdf.vocabulary import SH, XSD
 

@@ -7,7 +7,7 @@ from pyshacl import shape
 from pyshacl.constraints import ALL_CONSTRAINT_PARAMETERS, CONSTRAINT_PARAMETERS_MAP
 from rdflib import Graph, URIRef
 
-from selfconf.rdf.constraint_lookup import index_constraints
+from selfconf.rdf.pyshacl_corrections.constraint_lookup import index_constraints
 from selfconf.rdf.rdflib_terms import to_rdflib
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import PREFIXES

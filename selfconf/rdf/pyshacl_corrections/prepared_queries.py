@@ -14,7 +14,7 @@ from typing import Any
 from rdflib import XSD, Literal
 from rdflib.plugins.sparql import algebra, processor
 
-from selfconf.rdf.library_patches import replaced
+from selfconf.rdf.pyshacl_corrections.library_patches import replaced
 
 _parse, _translate = vars(processor)["parseQuery"], vars(processor)["translateQuery"]
 

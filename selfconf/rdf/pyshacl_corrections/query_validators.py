@@ -23,7 +23,7 @@ from rdflib import Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.term import IRI
-from selfconf.rdf.library_patches import replaced
+from selfconf.rdf.pyshacl_corrections.library_patches import replaced
 
 _asked, _selected = vars(AskConstraintValidator)["validate"], vars(SelectConstraintValidator)["validate"]
 _bound = vars(SPARQLQueryHelper)["pre_bind_variables"]

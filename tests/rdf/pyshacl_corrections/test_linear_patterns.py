@@ -11,7 +11,7 @@ from pyshacl.constraints.core import string_based_constraints
 from rdflib import Graph
 from rdflib.plugins.sparql import operators
 
-from selfconf.rdf.linear_patterns import linear_patterns
+from selfconf.rdf.pyshacl_corrections.linear_patterns import linear_patterns
 from tests.lab import PREFIXES
 
 SLOW, LONG = r"^(\\w+\\s?)*$", "a" * 60 + "!"

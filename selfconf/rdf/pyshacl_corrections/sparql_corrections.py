@@ -36,8 +36,8 @@ from rdflib.plugins.sparql.parserutils import CompValue, Expr, value
 from rdflib.plugins.sparql.sparql import NotBoundError, SPARQLError, SPARQLTypeError
 from rdflib.term import Node
 
-from selfconf.rdf.library_patches import replaced
 from selfconf.rdf.literal_comparison import order_of
+from selfconf.rdf.pyshacl_corrections.library_patches import replaced
 
 _Pairs = Iterator[tuple[Node, Node]]
 _NUMBERS = (int, float, Decimal)

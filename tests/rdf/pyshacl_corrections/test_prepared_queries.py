@@ -5,7 +5,7 @@ from __future__ import annotations
 from rdflib import Graph
 from rdflib.plugins.sparql import processor
 
-from selfconf.rdf.prepared_queries import prepared_queries
+from selfconf.rdf.pyshacl_corrections.prepared_queries import prepared_queries
 
 
 def test_a_query_is_prepared_once_however_often_it_is_asked() -> None:

@@ -10,9 +10,9 @@ import rdflib
 
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import violations
-from selfconf.rdf.prepared_queries import prepared_queries
+from selfconf.rdf.pyshacl_corrections.prepared_queries import prepared_queries
+from selfconf.rdf.pyshacl_corrections.sparql_corrections import sparql_corrections
 from selfconf.rdf.rdflib_terms import to_rdflib
-from selfconf.rdf.sparql_corrections import sparql_corrections
 from selfconf.rdf.turtle import document as turtle
 
 XSD = "http://www.w3.org/2001/XMLSchema#"

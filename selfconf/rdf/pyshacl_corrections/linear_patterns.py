@@ -15,7 +15,7 @@ from pyshacl.constraints.core import string_based_constraints
 from pyshacl.constraints.core.string_based_constraints import PatternConstraintComponent
 from rdflib.plugins.sparql import operators
 
-from selfconf.rdf.library_patches import replaced
+from selfconf.rdf.pyshacl_corrections.library_patches import replaced
 from selfconf.rdf.shacl import Pattern, pattern, shacl_pattern
 
 

@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-from selfconf.rdf.library_patches import replaced
+from selfconf.rdf.pyshacl_corrections.library_patches import replaced
 
 
 class _Owner:
