@@ -216,6 +216,7 @@ class Lab:
         self.components: dict[str, Recorder] = {}
         self.runtimes: dict[str, ComponentRuntime] = {}
         self.complaints: list[str] = []
+        self.sites: dict[str, Site] = {}
         self.composites: dict[str, Composites] = {}
         """Those of each site, as far as any of them live."""
         self.events: list[RunEvent] = []
@@ -233,7 +234,7 @@ class Lab:
             node, "lab", described_in, self.complaints.append, unable=lambda why: site.tell_unable(why)
         )
         site = Site(node, "lab", name, shelf, changed=composites.refresh)
-        self.composites[name] = composites
+        self.sites[name], self.composites[name] = site, composites
         return site
 
     def _shelf(self, folder: Path, names: Sequence[str]) -> Shelf:
