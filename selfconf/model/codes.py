@@ -235,11 +235,19 @@ CODES: tuple[Code, ...] = (
         ':camera a sc:Component, :Camera ; sc:hasOperation [ sc:name "takePhoto" ; sc:response rob:Image ] .',
     ),
     Code(
-        "SC-A22", "A composite has its template in its file, the ports and types of that, and only parameters of that.",
+        "SC-A22", "A composite has the ports of its template, and their types, and only parameters of its template.",
         "What is outside of it is connected to what its template connects inside, and is set to what that is bound to.",
         f"{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] .",
         f'{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] ;\n'
         '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+    ),
+    Code(
+        "SC-A23", "A composite stands in one file with its template.",
+        "What is inside of it is configured from the file that it is advertised in.",
+        ":radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] .",
+        f'{_INSIDE}\n:radio-set a sc:Component, :RadioSet ; sc:grounding [ sc:template :play ] ;\n'
+        '    sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ] .',
+        Severity.WARNING,
     ),
     Code(
         "SC-T01", "A template has an IRI and is a sc:Template.",

@@ -10,6 +10,7 @@ from rdflib.term import Node
 
 from selfconf import library
 from selfconf.model.codes import BY_CODE
+from selfconf.model.diagnostic import Severity
 from selfconf.rdf.positions import parse_with_positions
 from selfconf.rdf.read_shapes import ReadShapes
 from selfconf.rdf.validation.shape_violations import reported_violations
@@ -90,6 +91,12 @@ def test_every_shape_with_a_sentence_states_one_code_of_the_catalogue() -> None:
     for shape in ALL.subjects(SHAPES.code):
         (code,) = ALL.objects(shape, SHAPES.code)
         assert str(code) in BY_CODE
+
+
+def test_a_shape_is_as_severe_as_its_code() -> None:
+    for shape, code in ALL.subject_objects(SHAPES.code):
+        warns = ALL.value(shape, SH.severity) == SH.Warning
+        assert BY_CODE[str(code)].severity is (Severity.WARNING if warns else Severity.ERROR), shape
 
 
 @pytest.mark.slow

@@ -22,7 +22,7 @@ from rdflib.plugins.sparql.sparql import Query
 from rdflib.query import Result
 from rdflib.term import Node
 
-from selfconf.model.diagnostic import Diagnostic, Severity
+from selfconf.model.diagnostic import Diagnostic
 from selfconf.model.immutable import immutable
 from selfconf.rdf import vocabulary
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED
@@ -75,7 +75,6 @@ class ReportedViolation:
 
     shape: URIRef
     message: str
-    severity: Severity
     focus: Node
     path: Node | None
     value: Node | None
@@ -203,7 +202,6 @@ def reported_violations(
         yield ReportedViolation(
             shape,
             str(result.get(_SH.resultMessage)),
-            Severity.WARNING if result.get(_SH.resultSeverity) == _SH.Warning else Severity.ERROR,
             focus,
             path,
             result.get(_SH.value),
@@ -255,9 +253,8 @@ def shape_violations(
             offset,
             str(shapes.all.value(violation.shape, _SHAPES.code)),
             violation.message,
-            violation.severity,
-            _remedy(violation, graph),
-            str(violation.shape),
+            hint=_remedy(violation, graph),
+            shape=str(violation.shape),
         )
         for offset, violation in _without_firsts(_once_for_each_list(found, graph), graph)
     ]
