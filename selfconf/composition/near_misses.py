@@ -14,7 +14,7 @@ from selfconf.composition.composer import Composer
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.nearness import ranked
-from selfconf.model.obstacle import UnfitOutput, UnlikePorts, WrongType
+from selfconf.model.obstacle import NoAlternative, UnfitOutput, UnlikePorts, WrongType
 from selfconf.model.partition import NearMiss
 from selfconf.model.port_likeness import PortLikeness
 from selfconf.model.profile import Condition, Input, Output, Profile
@@ -69,7 +69,8 @@ def ranked_near_misses(
 
 def _is_slip(miss: NearMiss) -> bool:
     """Whether a component has a type that was probably meant to be the one that a role asks for."""
-    return isinstance(miss.obstacle, WrongType) and miss.obstacle.relation is not None
+    wrong = miss.obstacle.obstacles if isinstance(miss.obstacle, NoAlternative) else (miss.obstacle,)
+    return any(isinstance(one, WrongType) and one.relation is not None for one in wrong)
 
 
 def fault_of(

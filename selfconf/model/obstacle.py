@@ -7,6 +7,7 @@ programs.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import Enum
 from typing import ClassVar
 
@@ -17,7 +18,7 @@ from selfconf.model.setting_names import setting
 from selfconf.model.signal_likeness import Degree, SignalMatch
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.model.unit_dimension import differ_in_dimension
-from selfconf.model.wording import in_full, in_words, term_in_words
+from selfconf.model.wording import in_full, in_words, listed, one_line, term_in_words
 
 _LIMITS = {
     "minInclusive": "at least",
@@ -213,14 +214,20 @@ class PropertyUnmet:
     code: ClassVar[str] = "property-unmet"
     path: IRI
     faults: tuple[Fault, ...]
+    message: str = ""
+    """What the author of the shape says of that (`sh:message`)."""
 
     @property
     def clause(self) -> str:
         """The obstacle as clauses: about the component where it lacks the property, else about the property."""
-        return "; ".join(f"{_subject_of(fault)} {fault.said(self.path.short)}" for fault in self.faults)
+        return self._with_message(f"{_subject_of(fault)} {fault.said(self.path.short)}" for fault in self.faults)
 
     def __str__(self) -> str:
-        return "; ".join(fault.said(self.path.short) for fault in self.faults)
+        return self._with_message(fault.said(self.path.short) for fault in self.faults)
+
+    def _with_message(self, clauses: Iterable[str]) -> str:
+        said = "; ".join(clauses)
+        return f"{said} ({one_line(self.message)})" if self.message else said
 
 
 @immutable
@@ -256,9 +263,14 @@ class Excluded(_Predicate):
 
     code: ClassVar[str] = "excluded"
     several: bool = False
+    classes: tuple[IRI, ...] = ()
+    paths: tuple[IRI, ...] = ()
+    """The classes and properties by which it meets that."""
 
     def __str__(self) -> str:
-        return "is several things of which it must be one" if self.several else "is what it must not be"
+        said = "is several things of which it must be one" if self.several else "is what it must not be"
+        what = f": {listed(_with_article(kind.short) for kind in self.classes)}" if self.classes else ""
+        return f"{said}{what}, by its {listed(path.short for path in self.paths)}" if self.paths else f"{said}{what}"
 
 
 @immutable

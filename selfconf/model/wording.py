@@ -73,6 +73,16 @@ def listed(names: Iterable[str]) -> str:
     return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
+def in_english(messages: Iterable[tuple[str, str]]) -> str:
+    """Of the language tags and texts of a message that in none, or in English, as all others are; else the first."""
+
+    def rank(message: tuple[str, str]) -> tuple[bool, str, str]:
+        language = message[0].lower()
+        return language.partition("-")[0] not in ("", "en"), language, message[1]
+
+    return min(messages, key=rank, default=("", ""))[1]
+
+
 def in_words(values: Iterable[Term]) -> str:
     """Values for people: `Astrid or Pippi`; of literals also what tells them from others, `"1"` from `1`."""
     names = sorted({term_in_words(value) for value in values})

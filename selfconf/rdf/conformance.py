@@ -29,6 +29,7 @@ from pyshacl.validator import Validator
 from selfconf.errors import TemplateError
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
+from selfconf.model.wording import in_english
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
 from selfconf.rdf.literal_comparison import UNORDERED
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
@@ -218,22 +219,13 @@ def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, 
             if subject == result:
                 said.setdefault(predicate, []).append(value[1] if isinstance(value, tuple) else value)
         path = next(iter(said.get(_SH.resultPath, ())), None)
-        message = _in_english(said.get(_SH.resultMessage, ())) or "does not conform"
+        messages = said.get(_SH.resultMessage, ())  # pySHACL hands them on in no order
+        message = in_english((getattr(one, "language", None) or "", str(one)) for one in messages) or "does not conform"
         one = ShapeViolated(message, IRI.unchecked(str(path)) if isinstance(path, rdflib.URIRef) else None)
         constraint = (*said.get(_SH.sourceConstraintComponent, ()), message) if path is None else ()
         thing = (*said.get(_SH.sourceShape, ()), *constraint)
         least[thing] = min(one, least.get(thing, one), key=lambda violation: violation.message)
     return sorted(least.values(), key=lambda violation: violation.message) or [ShapeViolated("does not conform")]
-
-
-def _in_english(messages: Iterable[rdflib.term.Node]) -> str:
-    """Of a message in several languages that in none, or in English, as all others are; else the first by language."""
-
-    def rank(message: rdflib.term.Node) -> tuple[bool, str, str]:
-        language = ((message.language if isinstance(message, rdflib.Literal) else None) or "").lower()
-        return language.partition("-")[0] not in ("", "en"), language, str(message)
-
-    return str(min(messages, key=rank, default=""))  # pySHACL hands them on in no order
 
 
 def judged(subjects: rdflib.Graph, shapes: rdflib.Graph) -> tuple[object, str]:

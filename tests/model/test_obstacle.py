@@ -89,6 +89,21 @@ WORDED: list[tuple[Obstacle, str, str]] = [
     ),
     (Excluded(), "is what it must not be", "it is what it must not be"),
     (
+        Excluded(classes=(CAMERA, SENSOR)),
+        "is what it must not be: a Camera and a Sensor",
+        "it is what it must not be: a Camera and a Sensor",
+    ),
+    (
+        Excluded(several=True, classes=(CAMERA,), paths=(PLACE,)),
+        "is several things of which it must be one: a Camera, by its place",
+        "it is several things of which it must be one: a Camera, by its place",
+    ),
+    (
+        PropertyUnmet(PLACE, (Missing(),), "Ask\nAnna"),
+        "has no place (Ask\\nAnna)",
+        "it has no place (Ask\\nAnna)",
+    ),
+    (
         Excluded(several=True),
         "is several things of which it must be one",
         "it is several things of which it must be one",

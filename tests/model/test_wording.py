@@ -11,6 +11,7 @@ from selfconf.model.wording import (
     LONGEST_REMARK,
     MANY,
     client_text,
+    in_english,
     in_full,
     in_words,
     is_one_line,
@@ -44,6 +45,14 @@ def test_a_remark_is_a_part_of_one_line_and_not_longer_than_a_screen() -> None:
     assert plain("a\tb\n") == "a\tb\n"
     assert is_one_line("ä 日本 ✓")
     assert one_line("x" * 10_000) == "x" * LONGEST_REMARK + "…"
+
+
+def test_a_message_is_said_in_english_or_without_a_language_else_in_the_first_one() -> None:
+    german, english, plain = ("de", "zu heiß"), ("en-GB", "too hot"), ("", "hot")
+    assert in_english([german, english]) == "too hot"
+    assert in_english([english, german, plain]) == "hot"
+    assert in_english([("fr", "chaud"), german]) == "zu heiß"
+    assert in_english([]) == ""
 
 
 def test_values_are_sorted_and_told_from_others_that_look_alike() -> None:

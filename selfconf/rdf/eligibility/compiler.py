@@ -23,6 +23,7 @@ from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.wording import in_english
 from selfconf.rdf.eligibility.role_tests import ClassTest, Count, PropertyTest, QualifiedCount, RoleTest, SelfTest
 from selfconf.rdf.permitted_fields import SHAPE_ANNOTATIONS, STRUCTURE
 from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
@@ -142,8 +143,13 @@ class ShapeCompiler:
         parts = _PropertyParts()
         for predicate, raw in dict.fromkeys(self.document.about(shape)):
             self._constraint_of_values(predicate, raw, parts)
-        test = self._test(path, parts)
-        yield replace(test, qualified=tuple(self._qualified(parts.qualified))) if parts.qualified else test
+        qualified = tuple(self._qualified(parts.qualified)) if parts.qualified else ()
+        yield replace(self._test(path, parts), qualified=qualified, message=self._message(shape))
+
+    def _message(self, shape: Term) -> str:
+        """What the author of a shape says of a component that does not conform to it; empty where that is nothing."""
+        said = self.document.values(shape, SH.message)
+        return in_english((one.language or "", one.lexical) for one in said if isinstance(one, Literal))
 
     def _test(self, path: IRI, parts: _PropertyParts) -> PropertyTest:
         """The test of the values of a path, but for how many of them conform to another shape."""

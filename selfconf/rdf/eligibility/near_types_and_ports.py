@@ -10,13 +10,13 @@ elsewhere (`composition.near_misses`), by these ports and by the words of the ro
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Container, Iterator
 from difflib import SequenceMatcher
 from functools import lru_cache
 
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import replace
-from selfconf.model.obstacle import TypeRelation, WrongType
+from selfconf.model.obstacle import NoAlternative, TypeRelation, WrongType
 from selfconf.model.partition import NearMiss
 from selfconf.model.port_likeness import WantedPorts
 from selfconf.model.term import IRI, Literal
@@ -24,7 +24,7 @@ from selfconf.model.text_likeness import words
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.nearly_eligible import nearly
 from selfconf.rdf.eligibility.partitioner import EligibleComponent, Partitioner
-from selfconf.rdf.eligibility.role_tests import ClassTest, CompiledRole
+from selfconf.rdf.eligibility.role_tests import ClassTest, CompiledRole, Count, RoleTest
 from selfconf.rdf.eligibility.wanted_signals import wanted_ports, without_port_shapes
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import LABEL, RDFS, SC
@@ -33,6 +33,8 @@ CLOSE = 0.8
 """How alike two local names are (0 to 1) to be taken for one that is misspelt: one letter of five."""
 MOST_NAMED = 5
 """How many are named for one role."""
+UNRELATED = 3
+"""How likely a type was meant that is related to none that is wanted."""
 
 
 def near_misses_by_type(
@@ -44,7 +46,7 @@ def near_misses_by_type(
 
     `known` is the hierarchy that the ontologies have, whatever the role sees.
     """
-    found = {kind: _relation(role.classes, kind, partitioner.hierarchy, known) for kind in ecology.type_sets}
+    found = {kind: _relation(role, kind, partitioner.hierarchy, known) for kind in ecology.type_sets}
     likely = [(relation, types) for types, relation in found.items() if relation is not None]
     type_sets = sorted(likely, key=lambda one: (one[0][0], str(one[0][1]), sorted(one[1])))
     left = MOST_NAMED
@@ -57,13 +59,36 @@ def near_misses_by_type(
 
 
 def _relation(
-    classes: Sequence[ClassTest], types: frozenset[IRI], seen: Hierarchy, known: Hierarchy
-) -> tuple[int, WrongType] | None:
+    role: CompiledRole, types: frozenset[IRI], seen: Hierarchy, known: Hierarchy
+) -> tuple[int, WrongType | NoAlternative] | None:
     """How likely (0 most) and in what words the one test that these types fail was meant to pass them."""
-    failed = [test.kind for test in classes if not test.admits(types, seen)]
+    failed = [lacking for test in role.tests if (lacking := _lacking(test, types, seen))]
     if len(failed) != 1:
         return None
-    (wanted,) = failed
+    likely = [_likely(wanted, types, known) for wanted in failed[0]]
+    rank = min(how for how, _ in likely)
+    if rank == UNRELATED and all(test.kind in failed[0] for test in role.classes):
+        return None
+    obstacles = tuple(obstacle for _, obstacle in likely)
+    return rank, obstacles[0] if len(obstacles) == 1 else NoAlternative(obstacles)
+
+
+def _lacking(test: RoleTest, types: frozenset[IRI], seen: Hierarchy) -> tuple[IRI, ...]:
+    """The classes that some types lack for a test: one, or one of each alternative; none where they pass it.
+
+    None as well of a test that looks at more than types.
+    """
+    if isinstance(test, ClassTest):
+        return () if test.admits(types, seen) else (test.kind,)
+    if not isinstance(test, Count) or not all(isinstance(one, ClassTest) for group in test.groups for one in group):
+        return ()
+    found = [next((c for one in group for c in _lacking(one, types, seen)), None) for group in test.groups]
+    lacking = tuple(dict.fromkeys(kind for kind in found if kind is not None))
+    return lacking if found.count(None) < test.minimum else ()
+
+
+def _likely(wanted: IRI, types: frozenset[IRI], known: Hierarchy) -> tuple[int, WrongType]:
+    """How likely (0 most) and in what words some types were meant to be of a class."""
     for offered in sorted(types - {SC.Component}):
         if _alike(offered, wanted):
             return 0, WrongType(wanted, offered, TypeRelation.SIMILAR)
@@ -71,7 +96,7 @@ def _relation(
             return 1, WrongType(wanted, offered, TypeRelation.BELOW)
         if known.matches(wanted, offered):
             return 2, WrongType(wanted, offered, TypeRelation.ABOVE)
-    return (3, WrongType(wanted)) if any(test.kind != wanted for test in classes) else None
+    return UNRELATED, WrongType(wanted)
 
 
 def _alike(offered: IRI, wanted: IRI) -> bool:

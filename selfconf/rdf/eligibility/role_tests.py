@@ -93,6 +93,8 @@ class PropertyTest:
     each: tuple[ValueTest, ...] = ()
     compared: tuple[PairTest, ...] = ()
     qualified: tuple[QualifiedCount, ...] = ()
+    message: str = ""
+    """What the author says of a component that fails (`sh:message`)."""
 
     @property
     def looked_at(self) -> Iterator[IRI]:
@@ -112,7 +114,7 @@ class PropertyTest:
             wrong = frozenset([value for value in values if not pair.passes(value, others)])
             if wrong:
                 faults.append(ConstraintFailed(wrong, pair.constraint, pair.other))
-        return PropertyUnmet(self.path, tuple(faults)) if faults else None
+        return PropertyUnmet(self.path, tuple(faults), self.message) if faults else None
 
     # complexity: one case for each field of the test, in the order in which faults are reported
     def faults(self, values: frozenset[Term]) -> Iterator[Fault]:
@@ -175,20 +177,30 @@ class Count:
     maximum: int | None = None
 
     def obstacle(self, profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
-        found = [
-            next((reason for test in group if (reason := test.obstacle(profile, hierarchy)) is not None), None)
-            for group in self.groups
-        ]
-        lacking = tuple(obstacle for obstacle in found if obstacle is not None)
-        passed = len(found) - len(lacking)
+        lacking = tuple(reason for group in self.groups if (reason := _first(group, profile, hierarchy)) is not None)
+        passed = len(self.groups) - len(lacking)
         if passed < self.minimum:
             return NoAlternative(lacking)
         if self.maximum is not None and passed > self.maximum:
-            return Excluded(several=self.maximum > 0)
+            passing = list(self._passing(profile, hierarchy))
+            classes = dict.fromkeys(test.kind for test in passing if isinstance(test, ClassTest))
+            paths = dict.fromkeys(test.path for test in passing if isinstance(test, PropertyTest))
+            return Excluded(self.maximum > 0, tuple(classes), tuple(paths))
         return None
+
+    def _passing(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[RoleTest]:
+        """The tests of the groups that a component passes; of groups in groups likewise."""
+        for group in self.groups:
+            if _first(group, profile, hierarchy) is None:
+                for test in group:
+                    yield from test._passing(profile, hierarchy) if isinstance(test, Count) else (test,)
 
 
 RoleTest = ClassTest | SelfTest | PropertyTest | ParameterTest | Count
+
+
+def _first(tests: Iterable[RoleTest], profile: Profile, hierarchy: Hierarchy) -> Obstacle | None:
+    return next((reason for test in tests if (reason := test.obstacle(profile, hierarchy)) is not None), None)
 
 
 def obstacles(tests: Iterable[RoleTest], profile: Profile, hierarchy: Hierarchy) -> list[Obstacle]:

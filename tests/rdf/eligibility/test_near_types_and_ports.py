@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
-from selfconf.model.obstacle import TypeRelation, WrongType
+from selfconf.model.obstacle import NoAlternative, TypeRelation, WrongType
 from selfconf.model.partition import NearMiss
 from selfconf.rdf import advertisements
 from selfconf.rdf.advertisements.advertisement import Advertisement
@@ -45,6 +45,25 @@ def test_a_component_that_lacks_one_class_of_several_is_a_near_miss_after_those_
     assert misses[1].obstacle == WrongType(iri("Display"))
     asking_more = "sh:class :Clock , :Display ; sh:property [ sh:path :p ; sh:minCount 1 ]"
     assert near(asking_more, ads) == []
+
+
+CLOK = ":a a sc:Component, :Clok ."
+
+
+def test_a_component_of_a_misspelt_type_is_near_to_alternatives_of_classes_too() -> None:
+    ads = ":a a sc:Component, :Clok . :b a sc:Component, :Lamp . :c a sc:Component, :Bell ."
+    (miss,) = near("sh:or ( [ sh:class :Bel ] [ sh:class :Clock ] )", CLOK)
+    assert miss.obstacle == NoAlternative(
+        (WrongType(iri("Bel")), WrongType(iri("Clock"), iri("Clok"), TypeRelation.SIMILAR))
+    )
+    # Each alternative is written unlike every type; only that of another class that is asked for comes near.
+    assert near("sh:or ( [ sh:class :Radar ] [ sh:class :Whistle ] )", ads) == []
+    (miss,) = near("sh:class :Bell ; sh:or ( [ sh:class :Radar ] [ sh:class :Whistle ] )", ads)
+    assert (miss.component, str(miss.obstacle)) == (iri("c"), "is no Radar and is no Whistle")
+
+
+def test_alternatives_that_ask_for_more_than_classes_are_not_guessed_at() -> None:
+    assert near("sh:or ( [ sh:class :Clock ] [ sh:property [ sh:path :p ; sh:minCount 1 ] ] )", CLOK) == []
 
 
 TEMPLATE = """

@@ -43,6 +43,13 @@ def test_near_misses_are_those_of_the_class_whom_one_thing_keeps_out() -> None:
     assert found == [("pippi-drive", "its support is Pippi, not Astrid")]
 
 
+def test_a_near_miss_is_told_in_the_words_of_the_author_too() -> None:
+    message = 'sh:message "nur Astrid"@de , "only Astrid drives"@en'
+    text = f"{ROLE} sh:class rob:MotorDrive ; sh:property [ sh:path rob:support ; sh:in ( :Astrid ) ; {message} ] ."
+    found = near(text, ADVERTISEMENTS["pippi"])
+    assert found == [("pippi-drive", "its support is Pippi, not Astrid (only Astrid drives)")]
+
+
 def test_a_component_of_no_alternative_class_is_no_near_miss() -> None:
     assert near(f"{ROLE} sh:or ( [ sh:class :Lift ] [ sh:class :Crane ] ) .", *ADVERTISEMENTS.values()) == []
 

@@ -137,11 +137,22 @@ NO_BELL = WrongType(iri("Bell"))
         (Count((PASSED, FAILED), 1), None),
         (Count((FAILED, FAILED), 1), NoAlternative((NO_BELL, NO_BELL))),
         (Count((PASSED + FAILED,), 1), NoAlternative((NO_BELL,))),
-        (Count((PASSED, PASSED), 1, 1), Excluded(several=True)),
-        (Count((PASSED,), 0, 0), Excluded()),
+        (Count((PASSED, PASSED), 1, 1), Excluded(several=True, classes=(iri("Lamp"),))),
+        (Count((PASSED,), 0, 0), Excluded(classes=(iri("Lamp"),))),
+        (Count(((PropertyTest(P, maximum=0),), FAILED), 0, 0), Excluded(paths=(P,))),
+        (Count(((Count((FAILED, PASSED), 1),),), 0, 0), Excluded(classes=(iri("Lamp"),))),
         (Count((FAILED,), 0, 0), None),
     ],
-    ids=["or", "or, in vain", "and inside or", "xone, twice", "not, in vain", "not"],
+    ids=[
+        "or",
+        "or, in vain",
+        "and inside or",
+        "xone, twice",
+        "not, in vain",
+        "not a property",
+        "not of alternatives",
+        "not",
+    ],
 )
 def test_of_several_groups_as_many_are_passed_as_are_asked_for(test: Count, obstacle: object) -> None:
     assert test.obstacle(LAMP, NOTHING_ABOVE) == obstacle
