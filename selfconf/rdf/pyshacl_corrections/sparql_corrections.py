@@ -14,7 +14,9 @@ of a value that any advertisement may have. Within `sparql_corrections`
 * a negative decimal is a term; `FILTER(false)` and its like hold for nothing; rdflib fails, or leaves them out;
 * what a sub-SELECT does not project is its own (12); a sub-SELECT without solutions has no groups (18.5.1);
 * a number is cast to any other kind of number, and to a truth value, and back (17.5);
-* SUM and AVG of what is no number is an error (18.5.1); rdflib fails, or passes over the value.
+* a text is cast to a date, a time or a duration, and a date to a moment and back, as XPath has it (17.5, 17.6);
+* SUM and AVG of what is no number is an error (18.5.1); rdflib fails, or passes over the value;
+* MIN and MAX of IRIs is an IRI (18.5.1); rdflib makes a text of it.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from typing import Any
 from rdflib import RDF, XSD, Graph, Literal
 from rdflib.paths import InvPath, MulPath, NegatedPath, eval_path
 from rdflib.plugins.sparql import algebra, evaluate, evalutils, operators, parser
-from rdflib.plugins.sparql.aggregates import Aggregator, Average, Sum
+from rdflib.plugins.sparql.aggregates import Aggregator, Average, Extremum, Sum
 from rdflib.plugins.sparql.evalutils import _eval
 from rdflib.plugins.sparql.parserutils import CompValue, Expr, value
 from rdflib.plugins.sparql.sparql import NotBoundError, SPARQLError, SPARQLTypeError
@@ -38,10 +40,14 @@ from rdflib.term import Node
 
 from selfconf.rdf.literal_comparison import order_of
 from selfconf.rdf.pyshacl_corrections.library_patches import replaced
+from selfconf.rdf.rdflib_literals import literal
 
 _Pairs = Iterator[tuple[Node, Node]]
 _NUMBERS = (int, float, Decimal)
 _NUMERIC_CASTS = (XSD.boolean, XSD.integer, XSD.decimal, XSD.float, XSD.double)
+_TIME_CASTS = (XSD.dateTime, XSD.date, XSD.time, XSD.duration, XSD.dayTimeDuration, XSD.yearMonthDuration)
+_MOMENT = re.compile(r"(?P<date>-?\d+-\d\d-\d\d)(?:T(?P<time>[\d:.]+))?(?P<zone>Z|[+-][\d:]+)?")
+"""What a date, or a date with a time, consists of."""
 _FAILURES = (TypeError, ValueError, ArithmeticError, AttributeError, RecursionError, re.error)
 """What rdflib raises by mistake where an expression has an error."""
 
@@ -223,6 +229,28 @@ def _cast(call: Any, context: Any) -> object:
     return Literal(float(given.value), datatype=call.iri)
 
 
+def _cast_in_time(call: Any, context: Any) -> object:
+    """The value of a call such as `xsd:date(?v)`, of a text or of a date with or without a time (XPath, 19.1.5)."""
+    (given,) = call.expr
+    if not isinstance(given, Literal) or given.ill_typed or given.language:
+        raise SPARQLTypeError(f"{given!r} is no {call.iri}")
+    text, kind = str(given), given.datatype
+    moment = _MOMENT.fullmatch(text) if kind in (XSD.date, XSD.dateTime) and kind != call.iri else None
+    if moment is not None and call.iri in (XSD.dateTime, XSD.date, XSD.time):
+        date, time, zone = moment.groups("")
+        text = {
+            XSD.dateTime: f"{date}T{time or '00:00:00'}{zone}",
+            XSD.date: f"{date}{zone}",
+            XSD.time: f"{time}{zone}",
+        }[call.iri]
+    elif kind not in (None, XSD.string, call.iri):
+        raise SPARQLTypeError(f"{given!r} is no {call.iri}")
+    found = literal(text, call.iri)
+    if found.ill_typed:
+        raise SPARQLTypeError(f"{text!r} is no {call.iri}")
+    return found
+
+
 _may_be_joined_lazily: Callable[[Any, Any], bool] = vars(algebra)["analyse"]
 
 
@@ -269,6 +297,12 @@ class _Average(_OfNumbers, Average):
     """AVG."""
 
 
+def _set_extremum(aggregate: Any, bindings: Any) -> None:
+    """Have MIN or MAX be the term that was found."""
+    if aggregate.value is not None:
+        bindings[aggregate.var] = aggregate.value
+
+
 _GRAMMAR: Any = parser
 _INVERSE = _GRAMMAR.PathOneInPropertySet.exprs[-1]
 """What rdflib parses as `^:p` in `!( ... )`, where it forgets the property."""
@@ -290,8 +324,13 @@ _CORRECTIONS: tuple[tuple[object, str, object], ...] = (
     (
         operators,
         "_CUSTOM_FUNCTIONS",
-        {**vars(operators)["_CUSTOM_FUNCTIONS"], **dict.fromkeys(_NUMERIC_CASTS, (_cast, True))},
+        {
+            **vars(operators)["_CUSTOM_FUNCTIONS"],
+            **dict.fromkeys(_NUMERIC_CASTS, (_cast, True)),
+            **dict.fromkeys(_TIME_CASTS, (_cast_in_time, True)),
+        },
     ),
+    (Extremum, "set_value", _set_extremum),
     (
         Aggregator,
         "accumulator_classes",

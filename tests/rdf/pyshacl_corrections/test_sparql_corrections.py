@@ -22,6 +22,8 @@ SAID = """
 :five :load 5 ; :next :five . :zero :load 0 . :empty :load "" . :false :load false . :heavy :load "heavy" , 7 .
 :german :load "schwer"@de . :dated :load "2020-01-01"^^xsd:date . :unknown :load "x"^^:kilo .
 :nan :load "NaN"^^xsd:double . :wrong :load "many"^^xsd:integer . :linked :next :five , :a . :a :next :b . :b :next :a .
+:due :load "2020-06-01T10:00:00Z"^^xsd:dateTime . :noted :load "2020-01-01Z" . :late :load "2020-01-01T10:00:00Z" .
+:hour :load "10:00:00Z" . :day :load "P1D" , "P1D"^^xsd:duration . :never :load "2020-13-01" .
 :bare :note 1 . :decimal :load 5.0 . :cold :load -2.5 .
 """
 NODES = sorted({line.split()[0] for line in SAID.replace(" . ", "\n").splitlines() if line.strip()})
@@ -97,6 +99,11 @@ def test_a_path_leads_where_oxigraph_finds_that_it_leads(pattern: str) -> None:
         "xsd:integer(?v) = 5",
         "xsd:boolean(?v)",
         "xsd:decimal(?v) = 5",
+        'xsd:date(?v) > "2019-12-31"^^xsd:date',
+        'STR(xsd:dateTime(?v)) >= "2020-01-01T00:00:00"',
+        'xsd:time(?v) > "09:00:00Z"^^xsd:time',
+        'xsd:dayTimeDuration(?v) = "P1D"^^xsd:dayTimeDuration',
+        "BOUND(?v) && BOUND($this) && (xsd:date(?v) = ?v || xsd:time(?v) = ?v || xsd:dateTime(?v) = ?v)",
         "IF(?v > 4, ?v < 6, false)",
         "COALESCE(?v = 4, true)",
         "false",
@@ -119,6 +126,8 @@ def test_a_condition_holds_where_oxigraph_finds_that_it_holds(condition: str) ->
         "SELECT $this { $this :load ?v } GROUP BY $this HAVING (AVG(?v) > 4)",
         "SELECT $this { $this :load ?v . { SELECT $this (COUNT(?v) AS ?n) { $this :next ?v } GROUP BY $this } }",
         "SELECT $this { $this :next ?w . { SELECT $this (COUNT(?w) AS ?n) { $this :load ?w } GROUP BY $this } }",
+        "SELECT $this { $this :next ?v } GROUP BY $this HAVING (MAX(?v) = :b)",
+        "SELECT $this { $this :next ?v } GROUP BY $this HAVING (isIRI(MIN(?v)))",
         "SELECT $this { $this :load ?w . { SELECT $this (COUNT(?v) AS ?n) { $this :next ?v } GROUP BY $this } }",
     ],
 )
