@@ -128,10 +128,12 @@ class ThingForms:
         """Where a form leads. Raises UnusableFormError."""
         if not isinstance(href, str):
             raise UnusableFormError("a form has no href")
-        if "{" in href:
-            raise UnusableFormError(f"the form {href[:80]!r} has URI variables, which a signal does not set")
         try:
-            url = _plain(urljoin(self._base, href))
+            # A base may have URI variables, too.
+            url = urljoin(self._base, href)
+            if "{" in url:
+                raise UnusableFormError(f"the form {href[:80]!r} has URI variables, which a signal does not set")
+            url = _plain(url)
             http_origin(url)
         except ValueError:
             raise UnusableFormError(f"the form {href[:80]!r} leads to no http or https URL") from None

@@ -70,6 +70,15 @@ def test_a_form_counts_from_the_base_else_from_where_the_description_comes_from(
     assert found.url == "http://127.0.0.1:8080/things/on"
 
 
+def test_a_form_that_counts_from_a_base_with_uri_variables_is_named_and_one_that_does_not_is_used() -> None:
+    forms = forms_of({"base": "http://192.0.2.7/{room}/"})
+    assert forms.find({"forms": [{"href": "on"}]}, "readproperty") is None
+    assert "URI variables" in "".join(forms.problems)
+    found = forms.find({"forms": [{"href": "/on"}]}, "readproperty")
+    assert found is not None
+    assert found.url == "http://192.0.2.7/on"
+
+
 @pytest.mark.parametrize(
     ("form", "words"),
     [
