@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from enum import Enum
 
 from selfconf.bus.port import Bus
 from selfconf.model.profile import Profile
@@ -17,6 +18,16 @@ MOST_WATCHED = 8
 """Of how many components of a process the lives are followed: they share a process, and if that hangs, they all do."""
 
 
+class CountedAs(Enum):
+    """What the end of a process, which may be still to come, was counted as."""
+
+    OPEN = "open"
+    """As nothing yet: it is a crash if a task has lost by it what it held."""
+    CRASH = "crash"
+    WANTED = "wanted"
+    """As what a person wants: that is no crash, whatever a task has lost by it."""
+
+
 class ComponentProcess:
     """One started process, and what the site has seen of it."""
 
@@ -25,10 +36,7 @@ class ComponentProcess:
         self._bus, self._keys, self.group, self.life = bus, keys, group, life
         self._watches: dict[IRI, LifeWatch] = {}
         self._closed = False
-        self.crash_counted = False
-        """Whether its end, which may be still to come, was counted as a crash."""
-        self.end_wanted = False
-        """Whether a person has it ended: that is no crash, whatever a task has lost by it."""
+        self.counted_as = CountedAs.OPEN
         self.asked_for = False
         """Whether it was asked for while it ran: by a task that saw no life of it."""
         self.silent_since = -math.inf

@@ -33,7 +33,7 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Cause, Fail
 from selfconf.rendezvous import KEYS_VARIABLE, LIFE_VARIABLE
-from selfconf.site.component_process import ComponentProcess
+from selfconf.site.component_process import ComponentProcess, CountedAs
 from selfconf.site.printed_lines import PrintedLines
 from selfconf.site.process_group import ProcessGroup
 from selfconf.site.restart_limit import CRASH_WINDOW, DEFAULT_RESTARTS, RestartLimit
@@ -143,7 +143,7 @@ class ComponentProgram:
         elif self._limit.first(self._bus.now()):
             self._launch()
         elif self._pause is None:
-            if self._last is not None and self._last.crash_counted:
+            if self._last is not None and self._last.counted_as is CountedAs.CRASH:
                 self._start_again()
             else:
                 self._launch()
@@ -165,11 +165,12 @@ class ComponentProgram:
             self._ending.when_gone.append(gone)
         else:
             again = self._process.asked_for and not self._process.lives and not wanted
-            self._begin_ending(self._process, _Ending(self._bus.now(), again, [gone]), wanted)
+            if wanted:
+                self._process.counted_as = CountedAs.WANTED
+            self._begin_ending(self._process, _Ending(self._bus.now(), again, [gone]))
 
-    def _begin_ending(self, process: ComponentProcess, ending: _Ending, wanted: bool = False) -> None:
+    def _begin_ending(self, process: ComponentProcess, ending: _Ending) -> None:
         self._ending = ending
-        process.end_wanted = wanted
         if process.group.frozen():
             process.group.kill()  # it would have to go on, and might act, before it could end by itself
         else:
@@ -190,13 +191,11 @@ class ComponentProgram:
     def _count_lost(self, life: str) -> None:
         """Count the end of the process in which a task has lost a life, unless it has counted."""
         process = self._process or self._last
-        if not life or process is None or process.crash_counted or process.end_wanted:
-            return
-        if process.was_life(life):
+        if life and process is not None and process.counted_as is CountedAs.OPEN and process.was_life(life):
             self._count_crash(process)
 
     def _count_crash(self, process: ComponentProcess) -> None:
-        process.crash_counted = True
+        process.counted_as = CountedAs.CRASH
         self._limit.crashed(self._bus.now())
 
     def close(self) -> None:

@@ -7,8 +7,6 @@ can see it. The site asks rarely: the component's own watchdog notices a hung ca
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
@@ -40,14 +38,12 @@ class LifeWatch:
         self._unanswered_since: float | None = None
         self._closed = False
         self._unwatch = bus.watch(keys.lives(profile.component), self._life_changed)
-        self._unask: Callable[[], None] = lambda: None
-        self._ask_later(QUESTION_ACTIVE)
+        self._bus.later(QUESTION_ACTIVE, self._ask)
 
     def close(self) -> None:
         """Watch no more."""
         self._closed = True
         self._unwatch()
-        self._unask()
 
     @property
     def alive(self) -> bool:
@@ -99,13 +95,11 @@ class LifeWatch:
             self._lifeless_since = self._bus.now()
         self._unanswered_since = None
 
-    def _ask_later(self, seconds: float) -> None:
-        if not self._closed:
-            self._unask = self._bus.later(seconds, self._ask)
-
     def _ask(self) -> None:
+        if self._closed:
+            return
         if not self._lives:
-            self._ask_later(QUESTION_ACTIVE)
+            self._bus.later(QUESTION_ACTIVE, self._ask)
             return
         asked = self._bus.now()
 
@@ -113,10 +107,10 @@ class LifeWatch:
             own = [answer for answer in map(_answer, replies.samples) if answer and self.is_life(answer.life)]
             if own:
                 self._unanswered_since = None
-                self._ask_later(QUESTION_ACTIVE if any(answer.active for answer in own) else QUESTION_IDLE)
+                self._bus.later(QUESTION_ACTIVE if any(answer.active for answer in own) else QUESTION_IDLE, self._ask)
             else:
                 self._unanswered_since = asked if self._unanswered_since is None else self._unanswered_since
-                self._ask_later(max(0.0, asked + QUESTION_ACTIVE - self._bus.now()))
+                self._bus.later(max(0.0, asked + QUESTION_ACTIVE - self._bus.now()), self._ask)
 
         self._bus.ask(self._state, b"", QUESTION_ACTIVE, answered)
 

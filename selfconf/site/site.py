@@ -83,6 +83,8 @@ class Site:
         """Which life of the site this is: another site may have its name."""
         self.programs: dict[IRI, IRI] = {}
         """The components of this site, each with the one that stands for its process, which has the certificate."""
+        self._sharing: dict[Started, list[IRI]] = {}
+        """The components that share a command in a folder, by that."""
         self._unable: dict[IRI, str] = {}
         self._revision = 1
         self._changed = changed
@@ -128,7 +130,7 @@ class Site:
     def _read_shelf(self) -> list[_ServedAdvertisement]:
         """What is replied, made once for all questions and, where an advertisement has stayed, not even again."""
         self.programs = programs_of(one.profile for one in self.shelf.advertisements.values())
-        self._sharing: dict[Started, list[IRI]] = {}
+        self._sharing = {}
         for component, advertisement in self.shelf.advertisements.items():
             started = started_once(advertisement.profile)
             if started is not None:
