@@ -112,9 +112,14 @@ class TaskRunner:
     ) -> None:
         """`task` and `beginning` are those of a task that another configurator has begun; by default it is new."""
         self.bus, self.request, self.clock = bus, request, clock
-        self.ecology = EcologyView(bus, ecology, request.believed, selects=True)
-        self.ecology.suspended_sites = request.suspended_sites
-        self.ecology.aside = request.aside
+        self.ecology = EcologyView(
+            bus,
+            ecology,
+            request.believed,
+            selects=True,
+            aside=request.aside,
+            suspended_sites=request.suspended_sites,
+        )
         self.keys = self.ecology.keys
         self.name = name or f"c{secrets.token_hex(4)}"
         alone = not task

@@ -34,21 +34,29 @@ LifeChanged = Callable[[str, bool], None]
 class EcologyView:
     """One ecology as seen from a bus: it can be discovered, and its lives followed."""
 
-    def __init__(self, bus: Bus, name: str, believed: Beliefs | None = None, *, selects: bool = False) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        name: str,
+        believed: Beliefs | None = None,
+        *,
+        selects: bool = False,
+        aside: Callable[[Callable[[], None]], object] = lambda work: work(),
+        suspended_sites: Callable[[], Iterable[str]] = tuple,
+    ) -> None:
         """With keys, `believed` says whose a component is; without, it is that of the first site by name.
 
-        A view that `selects` knows in a large ecology only the lives of the components that were selected.
+        A view that `selects` knows in a large ecology only the lives of the components that were selected. `aside`
+        reads what the sites have answered, by default at once, where there is only one thread. `suspended_sites` are
+        known not to answer because their processes are suspended, however long ago.
         """
         self.bus, self.keys, self.believed, self._selects = bus, Keys(name), believed, selects
+        self.aside, self._suspended_sites = aside, suspended_sites
         self.lives: dict[str, tuple[str, ...]] = {}
         """The lives of each living component, sorted, by the component's chunk: more than one where processes clash."""
         self._selected: set[str] | None = None
         """The chunks of the components whose lives are known; None: of all."""
         self.discovery = Discovery()
-        self.aside: Callable[[Callable[[], None]], object] = lambda work: work()
-        """Reads what the sites have answered; by default at once, where there is only one thread."""
-        self.suspended_sites: Callable[[], Iterable[str]] = tuple
-        """The sites that are known not to answer because their processes are suspended, however long ago."""
         self.known: dict[SiteLife, KnownSite] = {}
         """What the sites that live have answered before."""
         self._followed = False
@@ -150,7 +158,7 @@ class EcologyView:
 
     def silent_sites(self, discovery: Discovery) -> tuple[str, ...]:
         """The sites of which a discovery may lack something, sorted; of those that seem gone, the suspended ones."""
-        return tuple(sorted({*discovery.missing, *(set(self.suspended_sites()) - set(discovery.sites))}))
+        return tuple(sorted({*discovery.missing, *(set(self._suspended_sites()) - set(discovery.sites))}))
 
     def discover(self, done: Callable[[Discovery], None]) -> None:
         """Ask all sites what they advertise; `done` is called once, when all have answered or time is up.

@@ -74,8 +74,8 @@ class LivingEcology(Ecology):
         self.name, self.endpoints = name, tuple(endpoints)
         self._membership = Membership(name, self.endpoints, credentials)
         self._bus = self._membership.connect()
-        self._view = EcologyView(self._bus, name, self._membership.beliefs(), selects=True)
-        self._view.suspended_sites = partial(this_machine.suspended_sites, name)
+        suspended = partial(this_machine.suspended_sites, name)
+        self._view = EcologyView(self._bus, name, self._membership.beliefs(), selects=True, suspended_sites=suspended)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
         self._synchronous = SynchronousBus(self._bus, lives=self._view.keys.any_site_life())

@@ -30,8 +30,9 @@ from __future__ import annotations
 import logging
 import os
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
 
 from selfconf import rendezvous, this_machine
 from selfconf.api.sites.announced_site import AnnouncedSite
@@ -83,8 +84,7 @@ class Joining:
         self.bus = self._opened(listen, hubs)
         self._reached_at = hubs[0] if hubs else ""
         self._file = AnnouncedSite(self._described)
-        self.log = ""
-        """The log of the site, for others on this machine."""
+        self._log = ""
         self.served: Sequence[str] = ()
         """The files and folders with what the site advertises, for others on this machine."""
         self._awaited = hubs
@@ -134,13 +134,17 @@ class Joining:
             self.endpoint,
             os.getpid(),
             relays=self.relays,
-            log=self.log,
+            log=self._log,
             from_here=self.bus.from_here,
             served=self.served,
         )
 
-    def announce(self) -> None:
-        """Write down for others on this machine where this site is reached. Raises NetworkError."""
+    def announce(self, log: Path, served: Iterable[Path]) -> None:
+        """Write down for others on this machine where this site is reached, its log, and what it serves.
+
+        Raises NetworkError.
+        """
+        self._log, self.served = str(log), [str(path.resolve()) for path in served]
         self._file.write()
 
     @contextmanager

@@ -142,8 +142,6 @@ class _SiteProgram:
         self._work = WorkQueue()
         self._ended = Termination(self._bus, told=self._work.abandon)
         log_path = _log_path(options.log, ecology, name).absolute()
-        self._joining.log = str(log_path)
-        self._joining.served = [str(path.resolve()) for path in options.paths]
         self._composites = _CompositesOnceThereAre(self._made_composites)
         self._site = Site(
             self._bus,
@@ -163,7 +161,7 @@ class _SiteProgram:
             secured.keep_door(self._site, self._joining, self._complain, self._distrusted)
         records = TaskFolder((options.state or this_machine.runtime_folder() / "tasks") / f"{ecology}@{name}")
         self._keeper = Keeper(self._bus, ecology, name, records, partial(_request_of, self._work, self._believed))
-        self._joining.announce()
+        self._joining.announce(log_path, options.paths)
         self._bus.watch(self._site.keys.site_life(name, "*"), partial(_met, self._complain, self._site))
 
     def _made_composites(self) -> Composites:

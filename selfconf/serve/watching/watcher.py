@@ -45,8 +45,7 @@ class EcologyWatcher:
         With keys, `believed` says whose a component is that several sites advertise.
         """
         self.bus, self._tell, self._clock = bus, tell, clock
-        self.view = EcologyView(bus, ecology, believed)
-        self.view.aside = aside
+        self.view = EcologyView(bus, ecology, believed, aside=aside)
         self.keys = self.view.keys
         self._components: dict[IRI, Body] = {}
         self._chunks: dict[str, IRI] = {}

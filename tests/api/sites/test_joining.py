@@ -34,7 +34,7 @@ class Machine:
         """Let a site join, and be seen."""
         with this_machine.turn():
             site = Joining("machine", name, listen, connect)
-            site.announce()
+            site.announce(Path("site.log"), ())
         site.bus.announce(Keys("machine").site_life(name, "1"))
         self.sites[name] = site
         return site
@@ -112,7 +112,7 @@ def test_a_place_is_taken_by_one_that_has_lost_its_hub_before_it_was_announced(
     machine.leave("a")
     assert not machine.until(lambda: site.relays, seconds=0.3)
     assert not site.bus.link
-    site.announce()
+    site.announce(Path("site.log"), ())
     assert machine.until(lambda: site.relays)
 
 
