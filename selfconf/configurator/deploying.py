@@ -79,6 +79,7 @@ def deploy(state: State) -> Reaction:
         epoch=epoch,
         held=held,
         pending=frozenset((*((one, Call.WAKE) for one in asleep), *((one, Call.RESERVE) for one in claimed))),
+        disagreeing=frozenset(),
         owed={component: since for component, since in state.owed.items() if component not in wires},
         watched=state.watched & held.keys() | wires.keys(),
     )
@@ -334,7 +335,8 @@ def may_agree(state: State, component: IRI, holder: Holder | None) -> bool:
 
 def await_agreement(state: State, component: IRI) -> Reaction:
     """Wait until a component that is shared may change; it tells, and is asked again if it does not."""
-    waiting = replace(state, pending=state.pending | {(component, Call.APPLY)})
+    asked = state.pending | {(component, Call.APPLY)}
+    waiting = replace(state, pending=asked, disagreeing=state.disagreeing | {component})
     return waiting, (AwaitRelease(component, state.epoch),)
 
 
@@ -348,6 +350,7 @@ def ask_again(state: State, component: IRI) -> Reaction:
     """Ask once more for a component that is waited for; none is that was adopted, and is being claimed."""
     if (component, Call.RESERVE) in state.pending and not state.held[component].is_adopted:
         return _reserve(state, component)
-    if (component, Call.APPLY) in state.pending and component in state.repeats:
-        return apply_to(replace(state, pending=state.pending - {(component, Call.APPLY)}), (component,))
+    if (component, Call.APPLY) in state.pending and component in state.disagreeing:
+        asked, disagreeing = state.pending - {(component, Call.APPLY)}, state.disagreeing - {component}
+        return apply_to(replace(state, pending=asked, disagreeing=disagreeing), (component,))
     return state, ()

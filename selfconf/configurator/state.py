@@ -164,6 +164,8 @@ class State:
     """What ran before a change for the better: if that does not come about, it is what is wanted again."""
     held: Mapping[IRI, Held] = field(default_factory=dict)
     pending: frozenset[tuple[IRI, Call]] = frozenset()
+    disagreeing: frozenset[IRI] = frozenset()
+    """The components that are applied to again once other tasks that share them want the same of them."""
     unreleased: tuple[tuple[IRI, ...], ...] = ()
     """The components that act on until those that they feed are at rest, wave by wave: all, while dismantling, and what
     is not needed any more, while running."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -73,6 +74,15 @@ def test_a_task_waits_for_the_others_to_want_the_same_in_place_of_what_all_have_
     history.answer(CONTROL, Call.APPLY)
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
+
+
+@pytest.mark.parametrize("told", [lambda epoch: WaitedLong(CONTROL, epoch), lambda epoch: Freed(CONTROL)])
+def test_a_component_that_has_not_answered_yet_is_not_asked_again(told: Callable[[int], Event]) -> None:
+    """It has been asked again already, and tells all that wait for it that it acts otherwise."""
+    history = repairing()
+    told_to_wait(history)
+    history.hear(WaitedLong(CONTROL, history.state.epoch))
+    assert history.hear(told(history.state.epoch)) == []
 
 
 @pytest.mark.parametrize(("holder", "most"), [(AHEAD, MOST_ASKED_BEHIND), (BEHIND, MOST_ASKED_AHEAD)])
