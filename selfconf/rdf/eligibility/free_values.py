@@ -19,7 +19,7 @@ from selfconf.model.partition import Mention
 from selfconf.model.template import Parameter
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.eligibility.role_tests import Count, PropertyTest, RoleTest, SelfTest
-from selfconf.rdf.shacl import ValueTest, exclude, passes_all
+from selfconf.rdf.shacl import ValueTest, component_parameters, exclude, passes_all
 from selfconf.rdf.tasks import shape_statements, suitable
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, SC, SH, TYPE
@@ -43,7 +43,7 @@ def seen(document: Document, role: IRI, shown: Iterable[Triple]) -> set[Term]:
         named.add(value)
     if SH["class"] in predicates:
         named.add(TYPE)
-    everything = bool(predicates & _QUERIES)
+    everything = _asks_queries(document, predicates)
     beginnings = everything or bool(predicates & _STAYING) or _about_themselves(document)
     found: set[Term] = set()
     for subject, predicate, value in shown:
@@ -63,9 +63,14 @@ def looked_at(document: Document, role: IRI) -> frozenset[IRI] | None:
         said.add(predicate)
         if isinstance(value, IRI):
             named.add(value)
-    if said & _QUERIES or SH.closed in said or document.instances(SH.ConstraintComponent):
+    if SH.closed in said or _asks_queries(document, said):
         return None
     return frozenset(named)
+
+
+def _asks_queries(document: Document, said: set[IRI]) -> bool:
+    """Whether a shape that says so much asks queries, its own or those of constraint components of the document."""
+    return bool(said & (_QUERIES | component_parameters(document)))
 
 
 def enumerated(document: Document, parameter: IRI) -> set[Term]:

@@ -81,6 +81,18 @@ def test_a_candidate_allows_the_values_with_which_it_is_eligible(
             assert {component for component, mask in allowed.items() if mask >> number & 1} == names
 
 
+def test_a_value_is_found_where_only_the_query_of_a_constraint_component_looks_for_it() -> None:
+    task = document(
+        f"{PARAMETER} . :r a sc:Role ; :standsIn :v ."
+        ":Standing a sh:ConstraintComponent ; sh:parameter [ sh:path :standsIn ] ;"
+        f" sh:validator [ a sh:SPARQLAskValidator ; sh:ask 'ASK {{ $value <{iri('place')}> $standsIn }}' ] ."
+    )
+    ads = read([f":{name} a sc:Component, :Lamp ; :place :{place} ." for name, place in (("a", "hall"), ("b", "bath"))])
+    partition = Partitioner(bindings.complete(task)).partition(ads)
+    assert partition.variables[0].domain == (iri("bath"), iri("hall"))
+    assert [candidate.admits for candidate in partition.candidates[0]] == [(2,), (1,)]
+
+
 @pytest.mark.parametrize("constraint", ["sh:nodeKind sh:IRI", "sh:in ( :x )", "sh:datatype xsd:anyURI"])
 def test_a_free_parameter_takes_no_value_that_it_could_not_be_bound_to(constraint: str) -> None:
     task = document(f"{PARAMETER} ; {constraint} . :r a sc:Role ; sh:property [ sh:path :p ; sh:in ( :v ) ] .")
