@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterator, Sequence, Set
 from contextlib import suppress
-from itertools import chain, count, filterfalse
+from itertools import chain, count
 
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.api.tasks.living_task import LivingTask, RunningTasks, SilentHolder
+from selfconf.api.tasks.meant_tasks import MeantTasks, raise_for, said_of_silent
 from selfconf.api.tasks.released_components import ReleasedComponents
 from selfconf.bus.own_answers import own_answers
 from selfconf.bus.port import Replies
@@ -15,7 +16,6 @@ from selfconf.discovery import namesakes
 from selfconf.errors import NetworkError, PeerError
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
-from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, owner_of, task_name
 from selfconf.protocol.messages import Status, TaskRecord
@@ -46,7 +46,7 @@ class LivingTasks:
         answered = {status.configurator for status in found}
         holding = self._holding_beside(answered) if by_components else ()
         holders = {one.configurator for one in holding}
-        rejected += map(_said_of_silent, sorted(living - answered - holders))
+        rejected += map(said_of_silent, sorted(living - answered - holders))
         rejected += map(str, holding)
         named = {status.name for status in found if status.outside is None}
         named.update(task_name(one.task) for one in holding)
@@ -73,7 +73,7 @@ class LivingTasks:
 
     def kept(self, name: str | None = None) -> list[TaskRecord]:
         """The tasks that live in the sites, each by its newest record."""
-        return [record for record in _of_name(self._records(), name) if not record.ended]
+        return [one for one in self._records() if name in (None, task_name(one.task)) and not one.ended]
 
     def _records(self) -> list[TaskRecord]:
         """The newest record of each task that lives in the sites, or has ended there."""
@@ -151,38 +151,26 @@ class LivingTasks:
         down first that answer. One that does not answer, suspended perhaps, is an error also where what it held has
         come to rest: it may go on, unless the sites keep its task, and so the end of that.
         """
-        found, records = self.running(by_components=True), self.kept()
-        kept = _of_name(records, name)
-        holding = [one for one in found.holding if one.is_named(name)]
-        suspended = [one for one in found.suspended if name in (None, one.name)]
-        running = _meant(name, found.statuses, [*kept, *holding, *suspended])
-        kept = _of_same_tasks(records, [*kept, *running, *holding])
-        unanswered = {record.task for record in kept}.difference(status.task for status in running)
-        silent = _silent_beside_holders(found, None if unanswered else name)
-        if name is not None and not kept:
-            _check_there(name, silent, [*running, *holding, *suspended])
-        _raise_for(
+        meant = MeantTasks.of(name, self.running(by_components=True), self.kept())
+        raise_for(
             [
-                *self._take_down(running, kept, found.sites),
-                *self._unheard(silent, holding, kept),
-                *(one.suspension() for one in suspended),
+                *self._take_down(meant.running, meant.kept, meant.found.sites),
+                *self._unheard(meant),
+                *(one.suspension() for one in meant.suspended),
             ]
         )
-        over = set(map(str, holding))  # without an error, what they held has come to rest for good
-        names = {status.name or status.configurator for status in running}
-        names.update(task_name(record.task) for record in kept)
-        return tuple(sorted(names)), replace(found, complaints=tuple(filterfalse(over.__contains__, found.complaints)))
+        return meant.names, meant.found_beside_holders
 
-    def _unheard(self, silent: set[str], holding: Iterable[SilentHolder], kept: Iterable[TaskRecord]) -> Iterator[str]:
+    def _unheard(self, meant: MeantTasks) -> Iterator[str]:
         """What is to be said of configurators that could not be asked to stop, once what they hold has come to rest.
 
         One that goes on learns from the sites that its task, if they have kept that, has ended.
         """
-        ended = {record.task for record in kept}
+        ended, silent, holding = {record.task for record in meant.kept}, meant.silent, meant.holding
         if silent:  # one that is suspended is no longer seen to live after a while
             living = {owner_of(key) for key in self._bus.living(self._keys.any_configurator_life())}
-            yield from map(_said_of_silent, sorted(living & silent))
-            holding = [*holding, *(one for one in self._holding_beside(living) if one.configurator in silent)]
+            yield from map(said_of_silent, sorted(living & silent))
+            holding += tuple(one for one in self._holding_beside(living) if one.configurator in silent)
             for gone in sorted(silent.difference(living, (one.configurator for one in holding))):
                 yield f"the configurator {gone!r} did not answer and is not seen any more; if suspended, it will go on"
         for one in holding:
@@ -246,27 +234,6 @@ def _statuses(replies: Replies, keys: Keys) -> tuple[list[Status], list[str]]:
     return own_answers(replies.samples, Status, lambda one: keys.configurator_call(one.configurator, "status"))
 
 
-def _silent_beside_holders(found: RunningTasks, name: str | None) -> set[str]:
-    """The silent configurators whose tasks are not known, of one name or all: each may run any kept task."""
-    silent = {one for one in found.silent if name in (None, one)}
-    return silent.difference(one.configurator for one in found.holding)
-
-
-def _meant(name: str | None, running: Sequence[Status], others: Sequence[object]) -> list[Status]:
-    """The tasks that a name means, or all: an inside of a composite only where neither tasks nor `others` have it.
-
-    Raises NetworkError for a name that several insides have.
-    """
-    found = [one for one in running if name in (None, one.configurator, one.name)]
-    own = [one for one in found if one.outside is None or name in (None, one.configurator)]
-    if own or others:
-        return own
-    if len(found) > 1:
-        named = listed(sorted(one.configurator for one in found))
-        raise NetworkError(f"several composites are called {name!r}; name the configurator of one inside: {named}")
-    return found
-
-
 def _newest(replies: Replies) -> list[TaskRecord]:
     """The newest record of each task that sites have kept."""
     newest: dict[str, TaskRecord] = {}
@@ -276,34 +243,3 @@ def _newest(replies: Replies) -> list[TaskRecord]:
             if record.supersedes(newest.get(record.task)):
                 newest[record.task] = record
     return list(newest.values())
-
-
-def _of_name(records: Iterable[TaskRecord], name: str | None) -> list[TaskRecord]:
-    """The records of the tasks that have a name; None means all."""
-    return [record for record in records if name in (None, task_name(record.task))]
-
-
-def _of_same_tasks(
-    records: Iterable[TaskRecord], known: Iterable[TaskRecord | Status | SilentHolder]
-) -> list[TaskRecord]:
-    """The records of known tasks: a site goes on with a task of which only the configurator has ended."""
-    tasks = {one.task for one in known}
-    return [record for record in records if record.task in tasks]
-
-
-def _said_of_silent(configurator: str) -> str:
-    return f"the configurator {configurator!r} lives, but does not answer"
-
-
-def _check_there(name: str, silent: Iterable[str], found: Sequence[object]) -> None:
-    """Raise NetworkError if configurators of a name are silent, or if nothing of that name was found."""
-    _raise_for(map(_said_of_silent, sorted(silent)))
-    if not found:
-        raise NetworkError(f"no task or configurator {name!r} answers; `selfconf tasks` shows those that do")
-
-
-def _raise_for(troubles: Iterable[str]) -> None:
-    """Raise NetworkError if there is trouble to report."""
-    said = "; ".join(troubles)
-    if said:
-        raise NetworkError(said)
