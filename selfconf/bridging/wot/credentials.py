@@ -64,8 +64,8 @@ def _origin(name: str, path: Path) -> str:
         found, parts = "", urlsplit("")
     if not found or parts.path.strip("/") or parts.query or parts.fragment or "@" in parts.netloc:
         # Without the text itself: of a URL with a password in it this line would show that.
-        shown = found or "a name in it"
-        raise AuthorError(f"{shown} is no origin; it is written like https://192.0.2.7:8443", file=str(path))
+        told = f"a name in it is no origin: more than {found} stands there" if found else "a name in it is no origin"
+        raise AuthorError(f"{told}; it is written like https://192.0.2.7:8443", file=str(path))
     return found
 
 
@@ -75,7 +75,9 @@ def _members(name: str, value: Any, path: Path) -> Mapping[str, str]:
         or not value
         or not all(isinstance(each, str) and each and each.isprintable() for each in value.values())
     ):
-        raise AuthorError(f"the credentials for {http_origin(name)} are an object with texts", file=str(path))
+        raise AuthorError(
+            f"the credentials for {http_origin(name)} are an object with texts, each on one line", file=str(path)
+        )
     unknown = sorted(value.keys() - TOLD_BY_NAME)
     if unknown:
         known = ", ".join(sorted(TOLD_BY_NAME))
