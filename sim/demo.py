@@ -8,22 +8,19 @@ from __future__ import annotations
 
 import json
 import os
-import secrets
 import shutil
 import signal
-import socket
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
-import selfconf
 from selfconf.termination import ending_signals
 from sim.account import Account
-from sim.crew import Crew, Line
+from sim.crew import Crew
+from sim.stage import STARTING, DemoError, Stage
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
@@ -37,13 +34,8 @@ RESULTS = (
     "tracker-view.png",
 )
 """What a run leaves in its folder."""
-STARTING = 60.0
-"""Seconds that a process may take to be there."""
-LINGERING = 86_400.0
-"""Seconds that the page stays at most."""
 PLAYING = 2.0
 """Seconds that the radio plays before a plug is pulled, and after another speaker has taken over."""
-PAGE, USUAL_PORT = "page", 8000
 
 
 @dataclass(frozen=True)
@@ -74,95 +66,6 @@ class DemoOptions:
         return "" if self.keys is None else f" --keys {self.keys}"
 
 
-class DemoError(Exception):
-    """The demo cannot go on; the text says why."""
-
-
-class Stage:
-    """An ecology of its own for one demo: its name, its processes, and the account of what they do."""
-
-    def __init__(self, crew: Crew, say: Callable[[str], None]) -> None:
-        self.crew, self._say = crew, say
-        self.ecology = f"demo-{secrets.token_hex(3)}"
-        self.account = Account(time.time())
-        self.endpoint = ""
-
-    def site(self, name: str, *advertisements: Path) -> None:
-        """Start a site, connected to the one before, and wait until it listens."""
-        connect = ["--connect", self.endpoint] if self.endpoint else []
-        paths = map(str, advertisements)
-        self.crew.start(name, "-m", "selfconf", "site", *paths, "--ecology", self.ecology, "--name", name, *connect)
-        deadline = time.monotonic() + STARTING
-        while time.monotonic() < deadline:
-            for site in selfconf.sites(self.ecology):
-                if site.site == name:
-                    self.endpoint = site.endpoint
-                    return
-            for line in self.crew.lines(0.05):
-                self.hear(line.process, line.text)
-                if line.process == name and line.text is None:
-                    raise DemoError(f"the site {name} has ended before it listened")
-        raise DemoError(f"the site {name} does not listen after {STARTING:.0f} s")
-
-    def configurator(self, template: Path, policy: str, *bound: str) -> None:
-        """Start the configurator with a task."""
-        binds = [part for pair in bound for part in ("--bind", pair)]
-        where = ["--ecology", self.ecology, "--connect", self.endpoint]
-        command = ["-m", "selfconf", "run", str(template), *binds, *where, "--format", "json", "--policy", policy]
-        self.crew.start("configurator", *command)
-
-    def serve(self) -> None:
-        """Show the ecology in a browser, and wait until the page is there."""
-        # Another program may take the usual port between the look at it and the server's own.
-        if not (self._served(_free(USUAL_PORT)) or self._served(0)):
-            raise DemoError("the page cannot be served")
-
-    def _served(self, port: int) -> bool:
-        """Start the server of the page and wait until it is there; False if it ends before."""
-        where = ["--ecology", self.ecology, "--connect", self.endpoint]
-        self.crew.start(PAGE, "-m", "selfconf", "serve", *where, "--port", str(port))
-        deadline = time.monotonic() + STARTING
-        while time.monotonic() < deadline:
-            for line in self.crew.lines(0.05):
-                self.hear(line.process, line.text)
-                if line.process == PAGE and line.text is None:
-                    return False
-                if line.process == PAGE and "http://" in (line.text or ""):
-                    return True
-        raise DemoError(f"the page is not there after {STARTING:.0f} s")
-
-    def linger(self) -> None:
-        """Leave the page there until Ctrl-C."""
-        self._say("the page shows what has happened; Ctrl-C ends it")
-        try:
-            self.listen(LINGERING)
-        except KeyboardInterrupt:
-            return
-
-    def listen(self, seconds: float) -> None:
-        """Take in and tell what is written within some seconds."""
-        for line in self.crew.lines(seconds):
-            self.hear(line.process, line.text)
-
-    def hear(self, process: str, text: str | None) -> None:
-        """Take a line in and tell it."""
-        sentence = self.account.take(Line(process, text))
-        if sentence is not None:
-            self._say(sentence)
-
-    def until(self, condition: Callable[[], bool], seconds: float, vital: tuple[str, ...], what: str) -> None:
-        """Listen until something holds. Raises DemoError if a vital process ends before, or time is up."""
-        if condition():
-            return
-        for line in self.crew.lines(seconds):
-            self.hear(line.process, line.text)
-            if condition():
-                return
-            if line.text is None and line.process in vital:
-                raise DemoError(f"{line.process} ended before {what}")
-        raise DemoError(f"{what} did not happen within {seconds:.0f} s")
-
-
 def run(given: DemoOptions) -> int:
     """Play the scene that the options name; 0 if it ends as it should."""
     for number in ending_signals():
@@ -173,15 +76,6 @@ def run(given: DemoOptions) -> int:
     except DemoError as error:
         print(f"selfconf demo: {error}", file=sys.stderr)
         return 1
-
-
-def _free(port: int) -> int:
-    """A port of this machine if nothing listens there, else 0 for any that is free."""
-    try:
-        socket.create_server(("127.0.0.1", port)).close()
-    except OSError:
-        return 0
-    return port
 
 
 def _interrupt(number: int, _: FrameType | None) -> None:
@@ -275,12 +169,12 @@ def _radio(given: DemoOptions) -> int:
             def playing() -> set[str]:
                 return {fact["speaker"] for fact in account.played if fact["event"] == "plays"}
 
-            stage.until(lambda: len(playing()) >= 2, STARTING, vital, "two speakers playing")
+            stage.until(lambda: len(playing()) >= 2, STARTING, vital, "two speakers played")
             stage.listen(PLAYING)
             plugged = next(fact for fact in account.played if fact["event"] == "plays")
             _tell(f"          pulling the plug of {plugged['speaker']}")
             os.kill(plugged["process"], signal.SIGUSR1)
-            stage.until(lambda: len(playing()) >= 3, STARTING, vital, "another speaker playing in its place")
+            stage.until(lambda: len(playing()) >= 3, STARTING, vital, "another speaker played in its place")
             stage.until(lambda: len(account.configurations) >= 2, STARTING, vital, "a second configuration")
             stage.listen(PLAYING)
             crew.end("configurator", signal.SIGINT)
