@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from selfconf.configurator import Phase
-from selfconf.deployment.components import Calls, Liveness, Reachability
+from selfconf.deployment.components import TaskComponents
 from selfconf.deployment.run_request import RunRequest
 from selfconf.deployment.task_context import TaskContext
 from selfconf.deployment.warm_up import warm_up_failure
@@ -15,11 +15,9 @@ APPEARED_TOGETHER = 0.3
 class Readiness:
     """Keeps one task ready for a failure."""
 
-    def __init__(
-        self, context: TaskContext, request: RunRequest, calls: Calls, liveness: Liveness, reachability: Reachability
-    ) -> None:
+    def __init__(self, context: TaskContext, request: RunRequest, components: TaskComponents) -> None:
         self._bus, self._state, self._request = context.ecology.bus, context.state, request
-        self._calls, self._liveness, self._reachability = calls, liveness, reachability
+        self._components = components
         self._is_due = False
         """Whether the time is set to be ready with what has appeared."""
 
@@ -34,10 +32,10 @@ class Readiness:
 
             def send() -> None:
                 now = self._state()
-                if now.epoch == state.epoch and now.phase is Phase.RUNNING and not self._reachability.unsure:
-                    self._calls.stand_by(configuration, standby)
+                if now.epoch == state.epoch and now.phase is Phase.RUNNING and not self._components.reachability.unsure:
+                    self._components.calls.stand_by(configuration, standby)
                     sources = {wire.component for some in standby.values() for wires in some.values() for wire in wires}
-                    self._liveness.select(sources, lambda: None)
+                    self._components.liveness.select(sources, lambda: None)
 
             self._bus.wake_up(send)
             warm_up_failure(state)

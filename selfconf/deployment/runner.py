@@ -12,19 +12,15 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from itertools import islice
 
-from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.port import Bus
 from selfconf.configurator import (
-    DEPLOYING,
     Accepted,
     Adopted,
     Answered,
     Appeared,
-    ApplyTo,
-    AwaitRelease,
     AwaitReturn,
     Compose,
     Composed,
-    Decline,
     Discover,
     Effect,
     Event,
@@ -33,39 +29,23 @@ from selfconf.configurator import (
     HandedOver,
     Loss,
     Phase,
-    QueueFor,
     Ranked,
     Reconnected,
-    ReleaseFrom,
-    ReserveOf,
     Rewired,
     Running,
     State,
     StayedAway,
     Stopped,
-    Unwatch,
-    WakeUp,
-    Watch,
     step,
 )
-from selfconf.deployment.components import (
-    Audits,
-    Calls,
-    ComponentMessages,
-    HeldLives,
-    Liveness,
-    LivingSites,
-    PortEnds,
-    Reachability,
-    Waking,
-)
+from selfconf.deployment.components import TaskComponents
 from selfconf.deployment.improvement import Improvement
 from selfconf.deployment.lasting_losses import LastingLosses
 from selfconf.deployment.notices import RunNotices
 from selfconf.deployment.readiness import Readiness
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import RetriesWhileRefused, RetriesWhileRunning
-from selfconf.deployment.run_reports import AT_LEISURE, RunReports
+from selfconf.deployment.run_reports import RunReports
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.deployment.task_discovery import TaskDiscovery
@@ -76,14 +56,13 @@ from selfconf.model.configuration import Configuration, Wants
 from selfconf.model.immutable import FrozenMapping, replace
 from selfconf.model.run_event import (
     ComponentLost,
-    FailWatched,
     TaskRefused,
     TaskRunning,
     TaskStopped,
     TaskWaiting,
 )
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import safe_name, site_of, task_identity
+from selfconf.protocol.keys import safe_name, task_identity
 from selfconf.protocol.messages import RecordedLoss, Status, Wire
 
 log = logging.getLogger(__name__)
@@ -137,23 +116,16 @@ class TaskRunner:
         self.since = clock()
         self.trouble: SelfconfError | None = None
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
-        self._lives = HeldLives(self.ecology)
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self.reports = RunReports(bus, request, self._notices, clock)
         context = TaskContext(self.ecology, lambda: self.state, self._step, self.reports.note)
-        self._waking = Waking(context, self._lives)
-        self._ends = PortEnds(self.ecology, request.outside)
-        self._calls = Calls(context, self.identity, self.supervisor, self._lives, self._waking, self._ends)
-        sites = LivingSites(context, self._waking)
-        self._reachability = Reachability(context, self._calls, sites)
-        self._liveness = Liveness(context, self._calls, self._waking, sites, self._reachability)
-        self._audits = Audits(context, self._calls, self._reachability)
-        self._readiness = Readiness(context, request, self._calls, self._liveness, self._reachability)
-        self._discovery = TaskDiscovery(context, self.name, self._liveness, request.without_configurator)
-        self._search = TaskSearch(context, request, self._liveness, self._give_up)
+        self._components = TaskComponents(context, self.identity, self.supervisor, request.outside)
+        self._readiness = Readiness(context, request, self._components)
+        self._discovery = TaskDiscovery(context, self.name, self._components.liveness, request.without_configurator)
+        self._search = TaskSearch(context, request, self._components.liveness, self._give_up)
         self._lasting_losses = LastingLosses(context)
-        self._retries_while_refused = RetriesWhileRefused(context, self._lives)
-        self._retries_while_running = RetriesWhileRunning(context, self._lives)
+        self._retries_while_refused = RetriesWhileRefused(context, self._components.lives)
+        self._retries_while_running = RetriesWhileRunning(context, self._components.lives)
         self._improvement = Improvement(context, request.upgrade)
         self._record = DeploymentRecord(
             bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
@@ -161,18 +133,11 @@ class TaskRunner:
         self._events: deque[Event] = deque()
         self._stepping = False
         self._leave = bus.announce(self.supervisor)
-        self._messages = ComponentMessages(context, task, self._lives, self._ends, self._reachability.heed)
-        self._subscriptions = [
-            bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({}))),
-            bus.subscribe(
-                self.keys.reopens(), lambda sample: self._reachability.reopens(site_of(sample.key)), Urgency.EVENT
-            ),
-        ]
+        self._unsubscribe = bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})))
 
     def start(self, lost: tuple[RecordedLoss, ...] = ()) -> None:
         """Begin with act 1, without what another configurator of the task had lost, as its `recorded_losses` said."""
-        self._audits.go_on()
-        self._reachability.pulse()
+        self._components.begin()
         self._step(Accepted(int(self.clock() * 1000), lost))
 
     def adopt(self, configuration: Configuration, epoch: int, lost: tuple[RecordedLoss, ...]) -> None:
@@ -180,8 +145,7 @@ class TaskRunner:
 
         That had lost some components, as `recorded_losses` of its runner said.
         """
-        self._audits.go_on()
-        self._reachability.pulse()
+        self._components.begin()
         self._step(Adopted(epoch, configuration, lost))
 
     def hand_over(self) -> None:
@@ -222,16 +186,16 @@ class TaskRunner:
         ranked = replace(self.identity, priority=priority, beginning=beginning)
         if ranked != self.identity:
             self.identity = ranked
-            self._calls.rank(ranked)
+            self._components.calls.rank(ranked)
             self._step(Ranked(priority))
 
     def issued_outside(self) -> dict[str, tuple[Wire, ...]]:
         """Which outputs stand behind those of the composite of which the task is the inside."""
-        return {} if self.state.target is None else self._ends.issued_outside(self.state.target)
+        return {} if self.state.target is None else self._components.ends.issued_outside(self.state.target)
 
     def calling_outside(self) -> dict[str, tuple[IRI, ...]]:
         """Which components call what the composite needs of which the task is the inside."""
-        return {} if self.state.target is None else self._ends.calling_outside(self.state.target)
+        return {} if self.state.target is None else self._components.ends.calling_outside(self.state.target)
 
     def _step(self, event: Event) -> None:
         """Feed the machine; an event that an effect brings about comes after the other effects."""
@@ -299,11 +263,6 @@ class TaskRunner:
             self._retries_while_refused.plan()
 
     @property
-    def _out_of_control(self) -> tuple[IRI, ...]:
-        """The components that have not obeyed their release and may still act, sorted."""
-        return self._lives.out_of_control(self.state.owed)
-
-    @property
     def losses(self) -> Mapping[IRI, str]:
         """Why each component was lost, for people, as of now; of very many those that were lost last."""
         return FrozenMapping({component: loss.why for component, loss in self._newest_losses()})
@@ -320,44 +279,23 @@ class TaskRunner:
         for component, loss in self.state.lost.items():
             before = known.get(component)
             if before is None or replace(before, startable=loss.startable) != loss:
-                self._waking.abandon(component)
+                self._components.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self.reports.note(ComponentLost(component, loss.cause.value, loss.detail))
                 self._lasting_losses.lost()
             elif before is not loss and loss.life:
-                self._lives.lost(component, loss.life)
+                self._components.lives.lost(component, loss.life)
 
     # Effects.
 
-    # complexity: one case for each effect
     def _do(self, effect: Effect) -> None:
         match effect:
             case Discover():
                 self._discovery.begin()
             case Compose():
                 self._search.begin(effect)
-            case Watch():
-                self.reports.note(FailWatched(effect.component))
-                self._messages.watch(effect.component)
-            case Unwatch():
-                self._messages.unwatch(effect.component)
-            case WakeUp():
-                self._waking.wake(effect)
-            case ReserveOf():
-                self._calls.reserve(effect)
-            case QueueFor():
-                self._calls.queue(effect)
-            case Decline():
-                self._calls.decline(effect)
-            case AwaitRelease():
-                self._calls.await_release(effect)
             case AwaitReturn():
                 self.bus.later(RETURN, partial(self._stayed_away, effect.attempt))
-            case ApplyTo():
-                self._apply(effect)
-            case ReleaseFrom():
-                leisure = AT_LEISURE if self.state.phase in (Phase.COMPOSING, *DEPLOYING) else 0.0
-                self.bus.later(leisure, partial(self._calls.release, effect))
             case Running():
                 self._record.deployed(effect.configuration, self.state.epoch, self.clock())
                 self.reports.note(TaskRunning(effect.configuration, self.state.epoch))
@@ -366,27 +304,23 @@ class TaskRunner:
                 self._improvement.settle()
             case Finish():
                 self._finish(effect)
-
-    def _apply(self, effect: ApplyTo) -> None:
-        """Apply to a component, unless what feeds it may act no more since a pause: all is applied to anew soon."""
-        if effect.rests or not self._reachability.unsure:
-            self._calls.apply(effect)
+            case _:
+                self._components.carry_out(effect)
 
     def _stayed_away(self, attempt: int) -> None:
         """End the wait of a search that has found nothing; if this node is cut off, it will be made anew."""
-        if not self._reachability.cut_off:
+        if not self._components.reachability.cut_off:
             self._step(StayedAway(attempt))
 
     def _finish(self, effect: Finish) -> None:
-        refusal, lost, owed = effect.refusal, self.losses, self._out_of_control
+        refusal, lost, owed = effect.refusal, self.losses, self._components.out_of_control()
         self.reports.note(TaskStopped(lost=lost, owed=owed) if refusal is None else TaskRefused(refusal, lost, owed))
         try:
             self.reports.tell()
         finally:  # the end of a task must not depend on what receives the reports
             self._leave()  # a component that could not be released turns itself off now
-            self._messages.close()
-            for undo in self._subscriptions:
-                undo()
+            self._components.close()
+            self._unsubscribe()
             self._record.close()
             self._notices.close()
             self.ecology.unfollow()
@@ -413,8 +347,8 @@ class TaskRunner:
             task=self.identity.task,
             priority=self.identity.priority,
             beginning=self.identity.beginning,
-            owed=self._out_of_control,
-            dropped={one: count for one, count in self._audits.dropped.items() if count and one in self.state.held},
+            owed=self._components.out_of_control(),
+            dropped=self._components.dropped(),
             outside=None if self.request.outside is None else self.request.outside.composite,
             wants={one: wants for one in self.state.held if (wants := self._wants(one)) != Wants()},
         )

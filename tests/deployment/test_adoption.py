@@ -412,7 +412,7 @@ def test_nothing_stops_when_the_first_site_is_back_while_the_next_one_takes_over
     keepers.begin(first)
     assert lab.until(lambda: between.state.ended, 1.0)
     calls: list[ApplyTo] = []
-    between._calls._apply = calls.append  # type: ignore[method-assign]
+    between._components.calls._apply = calls.append  # type: ignore[method-assign]
     lab.let_pass(10.0)
     assert {name: list(recorder.said) for name, recorder in lab.components.items()} == said
     assert (keepers.running(), calls) == ([first], [])

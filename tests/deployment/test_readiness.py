@@ -17,7 +17,7 @@ def test_however_many_components_come_back_at_once_it_is_found_out_once_what_may
     lab.running(agent)
     lab.let_pass(1.0)
     found_out: list[object] = []
-    monkeypatch.setattr(agent._calls, "stand_by", lambda configuration, standby: found_out.append(standby))
+    monkeypatch.setattr(agent._components.calls, "stand_by", lambda configuration, standby: found_out.append(standby))
     for _ in range(5):
         lab.crash("odometry")
         lab.let_pass(0.01)
@@ -34,13 +34,13 @@ def test_no_component_is_told_anew_what_may_come_next_where_that_has_stayed(
     lab.running(agent)
     lab.let_pass(1.0)
     asked: list[IRI] = []
-    ask = agent._calls._calling.ask
+    ask = agent._components.calls._calling.ask
 
     def noted(component: IRI, *more: Any) -> None:
         asked.append(component)
         ask(component, *more)
 
-    monkeypatch.setattr(agent._calls._calling, "ask", noted)
+    monkeypatch.setattr(agent._components.calls._calling, "ask", noted)
     lab.crash("odometry")
     lab.let_pass(0.1)
     lab.component("odometry")
@@ -52,7 +52,7 @@ def test_a_component_that_is_applied_to_anew_is_told_again_what_may_come_next(
     lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     agent = lab.agent()
-    calls, applied, asked = agent._calls, dict[IRI, Any](), list[IRI]()
+    calls, applied, asked = agent._components.calls, dict[IRI, Any](), list[IRI]()
     apply, ask = calls._apply, calls._calling.ask
 
     def noted(effect: Any) -> None:
@@ -81,7 +81,7 @@ def test_what_was_found_out_for_a_configuration_that_runs_no_more_is_told_to_non
     lab.running(agent)
     lab.let_pass(1.0)
     told: list[object] = []
-    monkeypatch.setattr(agent._calls, "stand_by", lambda configuration, standby: told.append(standby))
+    monkeypatch.setattr(agent._components.calls, "stand_by", lambda configuration, standby: told.append(standby))
     agent._readiness.prepare()
     agent.stop()
     lab.let_pass(1.0)

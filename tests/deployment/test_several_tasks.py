@@ -261,7 +261,7 @@ def test_a_configurator_that_does_not_yield_is_preempted(lab: Lab) -> None:
     """It lives, but hears nothing of what it is asked."""
     low = lab.agent()
     lab.running(low)
-    low._messages._watched.clear()
+    low._components._messages._watched.clear()
     high = lab.agent(priority=5)
     assert lab.until(lambda: high.state.phase is Phase.RUNNING, 20.0)
     for name in ("control", "drive"):

@@ -8,13 +8,13 @@ from tests.lab import Lab
 
 def test_every_part_sees_the_state_as_it_is_now_and_not_as_it_was_when_the_task_began(lab: Lab) -> None:
     agent = lab.agent()
-    assert agent._liveness._state().phase is not Phase.RUNNING
+    assert agent._components.liveness._state().phase is not Phase.RUNNING
     assert lab.running(agent)
     for part in (
-        agent._liveness,
-        agent._audits,
-        agent._reachability,
-        agent._calls,
+        agent._components.liveness,
+        agent._components.audits,
+        agent._components.reachability,
+        agent._components.calls,
         agent._search,
         agent._retries_while_refused,
         agent._retries_while_running,

@@ -215,7 +215,7 @@ def runs_without(history: History) -> Iterator[str]:
     It has said so then, and can be asked by nobody.
     """
     for agent in history.living():
-        claims = agent.state.phase is Phase.RUNNING and not agent._reachability.cut_off
+        claims = agent.state.phase is Phase.RUNNING and not agent._components.reachability.cut_off
         if claims and not node_of(agent).paused and agent.configuration is not None:
             for component in agent.configuration.components:
                 if not _acts_for(history, agent, component):

@@ -179,7 +179,7 @@ class UpgradeWatch:
 
     def _follow(self, agent: TaskRunner, state: State, going: Upgrade) -> None:
         history = self._history
-        if not history.lab.is_open(agent) or node_of(agent).paused or agent._reachability.cut_off:
+        if not history.lab.is_open(agent) or node_of(agent).paused or agent._components.reachability.cut_off:
             del self._going[agent]
             return
         acting = {life.runtime.life for life in self._acting(agent, going.before) if self._is_fed(life)}

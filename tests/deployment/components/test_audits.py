@@ -75,7 +75,7 @@ def test_only_audits_in_a_row_that_were_not_answered_count(lab: Lab) -> None:
     lab.running(agent)
     for _ in range(2):
         for _ in range(SILENT_AUDITS - 1):
-            agent._audits._judge(iri("person-tracker"), agent.state.epoch, None)
+            agent._components.audits._judge(iri("person-tracker"), agent.state.epoch, None)
         lab.let_pass(2 * AUDIT)
     assert lab.acts("lost") == []
 
@@ -85,7 +85,7 @@ def test_components_that_are_more_than_one_audit_asks_take_turns(lab: Lab, monke
     agent = lab.agent()
     lab.running(agent)
     asked = Counter[IRI]()
-    monkeypatch.setattr(agent._calls, "look", lambda component, *_: asked.update([component]))
+    monkeypatch.setattr(agent._components.calls, "look", lambda component, *_: asked.update([component]))
     lab.let_pass(5 * AUDIT)
     assert asked == dict.fromkeys(agent.state.held, 2)  # five components
 

@@ -179,7 +179,7 @@ def test_each_answer_to_a_call_is_read_once(lab: Lab, monkeypatch: pytest.Monkey
 
 
 def test_a_component_has_obeyed_a_release_once_this_configurator_holds_it_no_more(lab: Lab) -> None:
-    drive, calls = iri("astrid-drive"), lab.agent()._calls._calling
+    drive, calls = iri("astrid-drive"), lab.agent()._components.calls._calling
     message = Release(**calls.claim(drive, 1))
     call = calling._PendingCall(calls, drive, message, None)
     held = CallAnswer(Verdict.DONE, drive, message.life, 1, True, supervisor=message.supervisor, task=message.task)
@@ -193,7 +193,7 @@ def test_of_several_lives_that_answer_the_one_counts_that_was_meant(lab: Lab, li
     drive = iri("astrid-drive")
     said = (encode(CallAnswer(Verdict.DONE, drive, life, 1)) for life in lives)
     replies = Replies(tuple(Sample(lab.keys.call(drive, "apply"), payload) for payload in said))
-    answer = lab.agent()._calls._calling.answer_in(replies, "meant")
+    answer = lab.agent()._components.calls._calling.answer_in(replies, "meant")
     assert answer is not None
     assert answer.life == "meant"
 

@@ -105,7 +105,7 @@ def test_a_late_answer_of_a_life_that_has_ended_is_not_taken_for_the_life_that_i
     """Else the component would be asked to act in the life that has ended, for which the configurator waits no more."""
     agent, tracker = lab.agent(), iri("person-tracker")
     assert lab.running(agent)
-    lives = agent._lives
+    lives = agent._components.lives
     held = lives.life(tracker)
     lives.obeyed(tracker, "an earlier one", late=True)
     assert lives.life(tracker) == held

@@ -222,7 +222,7 @@ def test_lives_that_nobody_waits_for_are_fed_together_when_a_lost_link_is_back(
     agent = lab.agent()
     lab.running(agent)
     fed: list[Event] = []
-    monkeypatch.setattr(agent._liveness, "_step", fed.append)
+    monkeypatch.setattr(agent._components.liveness, "_step", fed.append)
     node = agent.bus
     assert isinstance(node, MemoryBus)
     lab.network.cut(lamps, node)
