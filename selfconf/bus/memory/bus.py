@@ -227,7 +227,9 @@ class MemoryBus:
         for token in other._tokens.values():
             for number, watch in list(self._watchers.items()):
                 if intersects(watch.key, token) and watch.tells(token, alive, alone=True):
-                    self.network.at(self.network.time, self, _life_notice(self, number, watch.changed, token, alive))
+                    notice = _life_notice(self, number, watch.changed, token, alive)
+                    # Not before what has arrived already, as a timer would be: that may say the opposite.
+                    self.network.at_time(self.network.time, _again(self, notice, timer=False))
 
     def _publish_life(self, token: str, alive: bool) -> None:
         for node in self.network.nodes:

@@ -151,6 +151,27 @@ def test_a_node_that_is_paused_for_longer_than_the_lease_is_gone_and_comes_back(
     assert here.heard == ["before the lease runs out", "again"]
 
 
+def test_a_paused_node_hears_that_a_link_is_lost_after_what_has_arrived_before_that() -> None:
+    network = Network()
+    one, other = network.node(), network.node()
+    lives: list[bool] = []
+    one.watch("lives/*", lambda key, alive: lives.append(alive))
+    network.pause(one)
+    other.announce("lives/other")
+    network.let_pass(0.1)
+    network.cut(one, other)
+    network.let_pass(0.1)
+    network.resume(one)
+    network.let_pass(0.1)
+    assert lives == [True, False]
+    network.pause(one)
+    network.reconnect(one, other)
+    network.cut(one, other)
+    network.resume(one)
+    network.let_pass(0.1)
+    assert lives == [True, False, True, False]
+
+
 def test_a_node_that_is_paused_again_before_it_is_connected_again_stays_gone() -> None:
     here = Watched()
     here.network.pause(here.one)
