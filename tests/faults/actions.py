@@ -147,7 +147,7 @@ class Actions:
             clock=self._history.script.clocks.get(action.who, 0.0),
         )
         self._history.tasks[action.who] = agent
-        self._history.agents.append(agent)
+        self._history.begun.append(agent)
         assert isinstance(agent.bus, MemoryBus)
         self._history.joined(action.who, agent.bus)
         return True

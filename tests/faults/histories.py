@@ -179,8 +179,8 @@ class History:
         """The lives of components that are processes, those that are over too."""
         self.sites: dict[str, Site] = {}
         self.tasks: dict[str, TaskRunner] = {}
-        self.agents: list[TaskRunner] = []
-        """Every configurator there has been, the dead ones too."""
+        self.begun: list[TaskRunner] = []
+        """Every configurator that was begun, the dead ones too."""
         self._nodes: dict[str, MemoryBus] = {}
         self.isolated: set[str] = set()
         """The components, sites and tasks that are cut off from all others."""
@@ -200,6 +200,11 @@ class History:
                 self.begin_life(name)
         self.watch = Watch(self)
         self.network.stepped = self.watch.look
+
+    @property
+    def agents(self) -> list[TaskRunner]:
+        """The configurators of tasks, which may have died."""
+        return self.begun
 
     @property
     def broken(self) -> list[str]:

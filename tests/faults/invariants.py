@@ -227,13 +227,17 @@ def _acts_for(history: History, agent: TaskRunner, component: IRI) -> bool:
 
 
 def runs_with_anothers(history: History) -> Iterator[str]:
-    """No two tasks run with one component that cannot be shared, as far as their configurators can know."""
+    """No two tasks run with one component that cannot be shared, as far as their configurators can know.
+
+    Two sites may for a moment believe that they run one task.
+    """
     running: dict[IRI, TaskRunner] = {}
     for agent in history.living():
         if agent.state.phase is Phase.RUNNING and not node_of(agent).paused and agent.configuration is not None:
             for component in {*agent.configuration.components}:
                 other = running.setdefault(component, agent)
-                if other is not agent and component in alone(history) and node_of(agent).link and node_of(other).link:
+                theirs = other.state.task != agent.state.task and component in alone(history)
+                if theirs and node_of(agent).link and node_of(other).link:
                     yield f"{agent.name} and {other.name} both run with {component.short}"
                 running[component] = agent
 

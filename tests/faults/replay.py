@@ -6,8 +6,9 @@
 
 `--ecology composed` plays it where there are operations and a composite, `--busy` with code that is busy while it acts,
 `--large` as if the ecology were so large that not all lives are followed, `--upgrades` with tasks that change to what
-they would rather have, `--harsh` the script of that number of `tests/faults/harsh.py`. A test that fails prints the
-command that plays its history again.
+they would rather have, `--harsh` the script of that number of `tests/faults/harsh.py`, `--kept` with tasks that the
+sites keep; `--ecology random-7` is one of `tests/faults/random_ecologies.py`. A test that fails prints the command that
+plays its history again.
 
 The exit code is 1 if an invariant was broken.
 """
@@ -23,8 +24,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from selfconf.bus.memory import Faults
-from tests.faults.ecologies import ECOLOGIES
+from tests.faults.ecologies import ECOLOGIES, FaultyEcology
 from tests.faults.histories import History
+from tests.faults.keeping import KeepingHistory
+from tests.faults.random_ecologies import PREFIX, random_ecology
 from tests.faults.script import Recipe, Script
 
 PROGRAM = "python -m tests.faults.replay"
@@ -32,7 +35,7 @@ PROGRAM = "python -m tests.faults.replay"
 
 def played(script: Script, folder: Path) -> History:
     """A history that was played to its end."""
-    history = History(script, folder)
+    history = KeepingHistory(script, folder) if script.kept else History(script, folder)
     history.run()
     return history
 
@@ -79,7 +82,7 @@ def told(recipe: Recipe, history: History) -> str:
 
 def command(recipe: Recipe) -> str:
     """The command that plays a history again, with what is not needed left out."""
-    options = [f"--{name}" for name in ("busy", "large", "upgrades", "harsh") if getattr(recipe, name)]
+    options = [f"--{name}" for name in ("busy", "large", "upgrades", "harsh", "kept") if getattr(recipe, name)]
     options += [f"--only {recipe.only}"] if recipe.only else []
     return " ".join([PROGRAM, str(recipe.seed), "--ecology", recipe.ecology.name, *options, "--shrink"])
 
@@ -94,15 +97,32 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--large", action="store_true", help="only selected lives are followed")
     parser.add_argument("--upgrades", action="store_true", help="tasks change to what they would rather have")
     parser.add_argument("--harsh", action="store_true", help="play a script of tests.faults.harsh")
+    parser.add_argument("--kept", action="store_true", help="the sites keep the tasks")
     parser.add_argument("--only", default="", metavar="KIND,...", help="of these kinds of harsh actions alone")
-    parser.add_argument("--ecology", choices=ECOLOGIES, default="paper", help="where it happens (default: %(default)s)")
+    parser.add_argument(
+        "--ecology",
+        type=ecology_of,
+        default="paper",
+        metavar="NAME",
+        help=f"where it happens: {', '.join(ECOLOGIES)} or {PREFIX}NUMBER (default: %(default)s)",
+    )
     return parser
+
+
+def ecology_of(name: str) -> FaultyEcology:
+    """The ecology of a name. Raises ArgumentTypeError if there is none."""
+    number = name.removeprefix(PREFIX)
+    if name in ECOLOGIES:
+        return ECOLOGIES[name]
+    if name.startswith(PREFIX) and number.isdecimal():
+        return random_ecology(int(number))
+    raise argparse.ArgumentTypeError(f"there is no ecology {name!r}")
 
 
 def recipe_of(given: argparse.Namespace) -> Recipe:
     """The recipe that the options of this program name."""
-    ecology = ECOLOGIES[given.ecology]
-    return Recipe(given.seed, ecology, given.busy, given.large, given.upgrades, given.harsh, given.only)
+    how = (given.busy, given.large, given.upgrades, given.harsh, given.kept)
+    return Recipe(given.seed, given.ecology, *how, only=given.only)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -69,6 +69,8 @@ class Script:
     """Whether the faults of the network come in storms, and not between these."""
     promised: bool = False
     """Whether outputs promise a rate, so that one that issues nothing counts as failed."""
+    kept: bool = False
+    """Whether the sites keep the tasks (`keeping.py`); else each has a program of its own."""
 
     def __str__(self) -> str:
         lines = [f"seed {self.seed} in the ecology {self.ecology.name}: {self.faults}"]
@@ -236,6 +238,8 @@ class Recipe:
     """Whether tasks change to what they would rather have."""
     harsh: bool = False
     """Whether the script is one of `tests.faults.harsh`."""
+    kept: bool = False
+    """Whether the sites keep the tasks."""
     only: str = ""
     """The kinds of harsh actions that it is made of, apart by commas, if not any of them."""
 
@@ -247,7 +251,14 @@ class Recipe:
             written = replace(written, faults=replace(written.faults, loss=0.0))
         crowded = with_crowd(written) if self.ecology.crowd else written
         upgrading = with_upgrades(crowded) if self.upgrades else crowded
-        return replace(with_busy_code(upgrading) if self.busy else upgrading, large=self.large)
+        busy = with_busy_code(upgrading) if self.busy else upgrading
+        return replace(self._kept_by_sites(busy) if self.kept else busy, large=self.large)
+
+    @staticmethod
+    def _kept_by_sites(script: Script) -> Script:
+        from tests.faults.keeping import with_site_faults
+
+        return with_site_faults(script)
 
     @property
     def _written(self) -> Script:
