@@ -71,6 +71,9 @@ BROKEN_ONCE = {
         ),
         period=script.PERIOD,
     ),
+    "what a task waits for is ended by its site, as it has not obeyed an earlier release of that task": Recipe(
+        1003000080, harsh=True
+    ).script,
     "a FAIL comes after what its source has issued since it acts again": Script(
         830001140,
         LATCHED,

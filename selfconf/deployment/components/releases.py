@@ -147,6 +147,7 @@ class Releases:
             detail = "its site has ended its process"
             self._report(ComponentReleased(component, detail))
             self._step(Answered(component, Call.RELEASE, message.epoch, Verdict.OTHER_LIFE, detail=detail))
+            self._waking.process_ended(component)
 
         self._lives.lost(component, message.life)
         self._ending.add(component)

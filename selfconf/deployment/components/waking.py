@@ -85,6 +85,15 @@ class Waking:
         if waiting is not None:
             waiting.end()
 
+    def process_ended(self, component: IRI) -> None:
+        """Its site has ended the process of a component, for a release: it is asked again for one that is waited for.
+
+        It was asked before, while the process ran, which only this task did not see.
+        """
+        waiting, found = self._waiting.get(component), self._ecology.discovery.found.get(component)
+        if waiting is not None and found is not None:
+            self._start_by_site(waiting.effect, found)
+
     def site_began(self, site: str) -> None:
         """A site lives a new life: what it was starting in another one it is asked to start again."""
         for waiting in list(self._waiting.values()):
