@@ -7,35 +7,35 @@ value. That both ways give one partition is a property test.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
-from itertools import chain
+from collections.abc import Container, Mapping
 
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.eligibility.compiler import SHAPES_OF_A_LIST, SILENT, TARGETS, ShapeCompiler
+from selfconf.rdf.eligibility.compiler import SILENT, TARGETS, ShapeCompiler
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest
-from selfconf.rdf.shacl import component_parameters
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES
+from selfconf.rdf.shacl import component_parameters, shapes_behind
 from selfconf.rdf.tasks import ROLE_STRUCTURE, mentions, substituted
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
 _SUPPLIERS = "urn:selfconf:suppliers:"
 """What the names of the shapes of suppliers begin with that have none in the template."""
-_SHAPES = frozenset((SH["not"], SH.node, SH.property))
-_OWN_STATEMENTS = frozenset((SH["class"], SH.closed, SH.ignoredProperties))
-"""What looks at the statements about the node it is asked about."""
-_OWN_VALUES = frozenset(
+_OF_A_VALUE = LISTS_OF_SHAPES | SILENT | frozenset(
     SH[name]
     for name in (
+        "not", "node", "property",
         "in", "hasValue", "nodeKind", "datatype", "pattern", "flags", "minLength", "maxLength", "languageIn",
         "uniqueLang", "minCount", "maxCount", "minInclusive", "maxInclusive", "minExclusive", "maxExclusive",
     )
 )  # fmt: skip
-"""What looks at values alone."""
-_OWN_PAIRS = frozenset((SH.equals, SH.disjoint, SH.lessThan, SH.lessThanOrEquals))
-"""What compares values with those of another property of the node that the shape is asked about."""
+"""What a shape that is asked about a value may say if it looks at the value alone."""
+_OF_A_PROPERTY = _OF_A_VALUE | {SH.equals, SH.disjoint, SH.lessThan, SH.lessThanOrEquals}
+"""What a shape of the values of one property may say if it looks at these, and at those of other properties."""
+_OF_THE_COMPONENT = _OF_A_PROPERTY | {SH["class"], SH.closed, SH.ignoredProperties}
+"""What a shape without a path may say if it looks at the statements about the component alone."""
 
 
 def compile_role(
@@ -120,15 +120,6 @@ def bound_shape(document: Document, values: Mapping[IRI, Term]) -> list[Triple]:
     return triples
 
 
-_INNER = _SHAPES | SHAPES_OF_A_LIST
-
-
-def _constraining(document: Document, predicates: Iterable[IRI]) -> set[IRI]:
-    """The predicates, among some, that constrain: SHACL's, and those of the document's own constraint components."""
-    own = component_parameters(document)
-    return {predicate for predicate in predicates if predicate in SH or predicate in own}
-
-
 def local(document: Document, shape: Term, at_value: bool = False, above: frozenset[Term] = frozenset()) -> bool:
     """Whether a shape looks at nothing but statements about the component; `at_value` if it is asked about a value."""
     if shape in above:
@@ -136,18 +127,16 @@ def local(document: Document, shape: Term, at_value: bool = False, above: frozen
     paths = document.values(shape, SH.path)
     if paths and (at_value or not all(isinstance(path, IRI) for path in paths)):
         return False
-    known = _INNER | SILENT | _OWN_VALUES | (frozenset() if at_value else _OWN_PAIRS)
-    at_value = at_value or bool(paths)
-    known |= frozenset() if at_value else _OWN_STATEMENTS
-    said = document.about(shape)
-    inner = chain.from_iterable(
-        document.items(value) if predicate in SHAPES_OF_A_LIST else [value]
-        for predicate, value in said
-        if predicate in _INNER
-    )
-    return _constraining(document, (predicate for predicate, _ in said)) <= known and all(
-        local(document, one, at_value, above | {shape}) for one in inner
-    )
+    if _says_more(document, shape, _OF_A_PROPERTY if paths else _OF_A_VALUE if at_value else _OF_THE_COMPONENT):
+        return False
+    inner = (one for predicate, value in document.about(shape) for one in shapes_behind(document, predicate, value))
+    return all(local(document, one, at_value or bool(paths), above | {shape}) for one in inner)
+
+
+def _says_more(document: Document, shape: Term, known: Container[IRI]) -> bool:
+    """Whether a shape constrains by other predicates than those that are known: SHACL's, or its document's own."""
+    own = component_parameters(document)
+    return any(said not in known and (said in SH or said in own) for said, _ in document.about(shape))
 
 
 def with_named_suppliers(document: Document) -> Document:

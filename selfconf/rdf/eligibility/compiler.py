@@ -25,8 +25,9 @@ from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.model.wording import in_english
 from selfconf.rdf.eligibility.role_tests import ClassTest, Count, PropertyTest, QualifiedCount, RoleTest, SelfTest
-from selfconf.rdf.permitted_fields import SHAPE_ANNOTATIONS, STRUCTURE
-from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_ANNOTATIONS, STRUCTURE
+from selfconf.rdf.shacl import PAIRS, PairTest, compiled, component_parameters, shapes_behind
+from selfconf.rdf.tasks import mentions
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC, SH, TYPE
 
@@ -34,9 +35,7 @@ TARGETS = frozenset((SH.targetClass, SH.targetNode, SH.targetSubjectsOf, SH.targ
 """What says to which nodes a shape applies; a role says itself to which."""
 SILENT = SHAPE_ANNOTATIONS | TARGETS | {SH.severity, SH.deactivated, TYPE, SH.path}
 """What is said of a shape and is no constraint."""
-SHAPES_OF_A_LIST = frozenset((SH["and"], SH["or"], SH.xone))
-"""The constraints whose value is a list of shapes."""
-_LOGIC = SHAPES_OF_A_LIST | {SH["not"], SH.node}
+_LOGIC = LISTS_OF_SHAPES | {SH["not"], SH.node}
 _QUALIFIED = frozenset(SH[f"qualified{name}"] for name in ("ValueShape", "MinCount", "MaxCount", "ValueShapesDisjoint"))
 """How many values conform to a shape."""
 
@@ -115,7 +114,7 @@ class ShapeCompiler:
 
     def _logic(self, predicate: IRI, raw: Term) -> Iterator[RoleTest]:
         """A constraint over other shapes: how many of them the component conforms to."""
-        shapes = self.document.items(raw) if predicate in SHAPES_OF_A_LIST else [raw]
+        shapes = shapes_behind(self.document, predicate, raw)
         wrong = predicate == SH.node and self.document.value(raw, SH.path) is not None
         if not shapes or wrong or any(map(self._mentions, shapes)):
             self.rest = True
@@ -243,14 +242,6 @@ class ShapeCompiler:
         value = self.document.value(subject, predicate)
         return isinstance(value, Literal) and value.lexical in ("true", "1")
 
-    def _mentions(self, start: Term) -> bool:
-        """Whether a free parameter stands in a term or anywhere below it."""
-        waiting, seen = [start], set[Term]()
-        while waiting:
-            value = waiting.pop()
-            if value in self.free:
-                return True
-            if value not in seen:
-                seen.add(value)
-                waiting.extend(o for _, o in self.document.about(value))
-        return False
+    def _mentions(self, term: Term) -> bool:
+        """Whether a term is a free parameter, or one stands anywhere below it."""
+        return term in self.free or bool(mentions(self.document, term, self.free))

@@ -157,7 +157,7 @@ class OutputShape:
         ends, types, iri = looks
         pairs = [(name, value) for name, values in zip(self._names.values(), ends, strict=True) for value in values]
         # The tests look at the profile of a component, so that is what an output has to look like.
-        return next(self._tests.obstacles(Profile(iri, types, tuple(pairs)), self._hierarchy), None)
+        return next(iter(self._tests.obstacles(Profile(iri, types, tuple(pairs)), self._hierarchy)), None)
 
     def _by_pyshacl(
         self, outputs: Sequence[Port], seen: SeenOutputs, not_judged: dict[Port, NotJudged] | None = None

@@ -199,7 +199,7 @@ class Partitioner:
     def against_supplying(self, number: int, one: Advertisement, ecology: AdvertisementIndex) -> Sequence[Obstacle]:
         """What keeps a component of an ecology from supplying the players of a role that recruits, by its number."""
         tests = self.suppliers[number]
-        found = tuple(tests.obstacles(one.profile, self.hierarchy))
+        found = tests.obstacles(one.profile, self.hierarchy)
         if found or tests.complete:
             return found
         return self.violations(tests, [one], ecology, {}).get(one.component, ())
@@ -217,7 +217,7 @@ class Partitioner:
         for kind in type_sets:
             for alike in ecology.alike(kind, signature):
                 profile = alike[0].profile
-                obstacles = tuple(role.obstacles(profile, self.hierarchy))
+                obstacles = role.obstacles(profile, self.hierarchy)
                 yield kind, alike, TestOutcome(obstacles, {} if obstacles else role.allows(profile, self.hierarchy))
 
     def eligible(self, ecology: AdvertisementIndex) -> list[list[EligibleComponent]]:

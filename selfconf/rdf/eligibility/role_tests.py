@@ -203,13 +203,13 @@ def _first(tests: Iterable[RoleTest], profile: Profile, hierarchy: Hierarchy) ->
     return next((reason for test in tests if (reason := test.obstacle(profile, hierarchy)) is not None), None)
 
 
-def obstacles(tests: Iterable[RoleTest], profile: Profile, hierarchy: Hierarchy) -> list[Obstacle]:
+def obstacles(tests: Iterable[RoleTest], profile: Profile, hierarchy: Hierarchy) -> tuple[Obstacle, ...]:
     """Everything by which some tests keep a component out, in their order; only that, where it cannot be judged."""
     try:
         found = [test.obstacle(profile, hierarchy) for test in tests]
     except MatchTooCostly as error:
-        return [NotJudged(str(error))]
-    return [reason for reason in found if reason is not None]
+        return (NotJudged(str(error)),)
+    return tuple([reason for reason in found if reason is not None])
 
 
 @immutable
@@ -235,9 +235,9 @@ class CompiledRole:
         choices = [test.groups for test in self.tests if isinstance(test, Count) and test.minimum]
         return [[_classes(way) for way in some] for some in ((self.tests,), *choices)]
 
-    def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> Iterator[Obstacle]:
+    def obstacles(self, profile: Profile, hierarchy: Hierarchy) -> tuple[Obstacle, ...]:
         """Everything that keeps a component out, in the order of the shape; only that, where it cannot be judged."""
-        yield from obstacles(self.tests, profile, hierarchy)
+        return obstacles(self.tests, profile, hierarchy)
 
     def allows(self, profile: Profile, hierarchy: Hierarchy) -> dict[IRI, frozenset[Term]]:
         """For each free parameter that the component constrains, the values it allows (perhaps none)."""

@@ -15,11 +15,14 @@ from selfconf.model.immutable import replace
 from selfconf.model.port_likeness import Types, WantedPorts
 from selfconf.model.term import IRI, BlankNode, Term
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_ANNOTATIONS, SHAPE_VALUED
+from selfconf.rdf.shacl import shapes_behind
 from selfconf.rdf.turtle import Document, Node
 from selfconf.rdf.vocabulary import RDF, RDFS, SC, SH
 
 _PORTS = frozenset((SC.hasInput, SC.hasOutput))
 _SAYS_NOTHING = SHAPE_ANNOTATIONS | {RDF.type, SH.severity}
+_ASKING = SHAPE_VALUED - {SH["not"]}
+"""What leads to shapes that say what there has to be."""
 
 
 class _Want(NamedTuple):
@@ -73,11 +76,12 @@ def without_port_shapes(document: Document, role: IRI) -> Document:
 
 def _statements_about_ports(document: Document, role: IRI) -> Iterator[tuple[IRI, Term]]:
     """The statements about a role that speak of ports alone."""
-    for predicate, value in document.about(role):
-        if predicate in SHAPE_VALUED and predicate != SH["not"]:
-            shapes = document.items(value) if predicate in LISTS_OF_SHAPES else [value]
-            if all(_about_ports(document, shape) for shape in shapes):
-                yield predicate, value
+    return (
+        (predicate, value)
+        for predicate, value in document.about(role)
+        if predicate in _ASKING
+        and all(_about_ports(document, shape) for shape in shapes_behind(document, predicate, value))
+    )
 
 
 def _about_ports(document: Document, shape: Term, depth: int = 0) -> bool:
@@ -89,10 +93,7 @@ def _about_ports(document: Document, shape: Term, depth: int = 0) -> bool:
     return bool(said) and all(
         predicate in SHAPE_VALUED
         and depth <= DEEPEST_SHAPE
-        and all(
-            _about_ports(document, inner, depth + 1)
-            for inner in (document.items(value) if predicate in LISTS_OF_SHAPES else [value])
-        )
+        and all(_about_ports(document, inner, depth + 1) for inner in shapes_behind(document, predicate, value))
         for predicate, value in said
     )
 
@@ -117,7 +118,7 @@ def _said(document: Document, predicate: IRI, value: Term, path: tuple[Term, ...
     if predicate in LISTS_OF_SHAPES:
         found = [want for one in document.items(value) for want in _wants(document, one, path, depth + 1)]
         yield from iter(found) if predicate == SH["and"] else _any_of(found)
-    elif predicate in SHAPE_VALUED and predicate != SH["not"]:
+    elif predicate in _ASKING:
         yield from _wants(document, value, path, depth + 1)
     elif predicate in (SH.hasValue, SH["in"]) and SC.signalType in path and isinstance(path[0], IRI):
         named = [value] if predicate == SH.hasValue else document.items(value)

@@ -5,9 +5,10 @@ makes tests of the constraints that can be; two `exclude` each other if no value
 `passed_by_none` at all. `passes_all` asks for a value that passes several. `misfit`, `unfit`, `of_values`,
 `said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
 `ILL_FORMED` say what may stand as a value of SHACL's own properties. `component_parameters` are the predicates by which
-a document constrains by components of its own. `pattern` is a regular expression that a text cannot make expensive
-(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL, and
-`pattern_fault` why a text is none. Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
+a document constrains by components of its own, and `shapes_behind` are the shapes to which a statement leads. `pattern`
+is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is `MatchTooCostly`.
+`shacl_pattern` is one with the flags of SHACL, and `pattern_fault` why a text is none. Judging by pySHACL is
+`selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, pattern_fault, shacl_pattern
@@ -25,6 +26,7 @@ from selfconf.rdf.shacl.shape_syntax import (
     of_values,
     said_alone,
     said_twice,
+    shapes_behind,
     unfit,
 )
 from selfconf.rdf.shacl.value_tests import PAIRS, PairTest, ValueTest, compiled, exclude, passed_by_none, passes_all
@@ -55,5 +57,6 @@ __all__ = [
     "said_alone",
     "said_twice",
     "shacl_pattern",
+    "shapes_behind",
     "unfit",
 ]

@@ -9,11 +9,11 @@ Constraint components that a document brings along (section 6) are predicates of
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
-from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES
+from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.shacl.patterns import pattern_fault
 from selfconf.rdf.sparql import why_not_asked
 from selfconf.rdf.turtle import Document, Node, Triple
@@ -176,6 +176,13 @@ def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:
     if predicate == SH.node:
         return not document.values(value, SH.path)
     return predicate != SH.path or is_path(document, value)
+
+
+def shapes_behind(document: Document, predicate: IRI, value: Term) -> Sequence[Term]:
+    """The shapes to which a statement of a shape leads: those of a list, or its value, or none."""
+    if predicate in LISTS_OF_SHAPES:
+        return document.items(value)
+    return (value,) if predicate in SHAPE_VALUED else ()
 
 
 def is_path(document: Document, path: Term, depth: int = 0) -> bool:

@@ -160,7 +160,7 @@ def test_of_several_groups_as_many_are_passed_as_are_asked_for(test: Count, obst
 
 def test_every_obstacle_is_told_in_the_order_of_the_shape() -> None:
     role = CompiledRole(iri("r"), (*FAILED, *PASSED, PropertyTest(P, minimum=1)), complete=True)
-    assert list(role.obstacles(LAMP, NOTHING_ABOVE)) == [NO_BELL, PropertyUnmet(P, (Missing(),))]
+    assert role.obstacles(LAMP, NOTHING_ABOVE) == (NO_BELL, PropertyUnmet(P, (Missing(),)))
     assert role.classes == (*FAILED, *PASSED)
 
 

@@ -7,7 +7,7 @@ import rdflib
 from rdflib import SH as SHACL
 
 from selfconf.model.term import IRI
-from selfconf.rdf.shacl import component_parameters
+from selfconf.rdf.shacl import component_parameters, shapes_behind
 from selfconf.rdf.shacl.shape_syntax import PATH_FORMS, STATED_ONCE, misfit, unfit
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle import parse
@@ -135,3 +135,9 @@ def test_the_paths_of_the_parameters_of_all_components_are_found() -> None:
         :other sh:parameter [ sh:path :nothing ] .
     """
     assert component_parameters(turtle.parse(PREFIXES + text, "shapes.ttl")) == {iri("low"), iri("high")}
+
+
+def test_a_statement_leads_to_its_value_or_to_the_members_of_a_list_of_shapes() -> None:
+    document = turtle.parse(PREFIXES + ":r sh:or ( :a :b ) ; sh:xone () ; sh:node :c ; sh:class :d .", "shapes.ttl")
+    found = {predicate: [*shapes_behind(document, predicate, value)] for predicate, value in document.about(iri("r"))}
+    assert found == {SH["or"]: [iri("a"), iri("b")], SH.xone: [], SH.node: [iri("c")], SH["class"]: []}
