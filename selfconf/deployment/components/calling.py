@@ -124,7 +124,7 @@ class Calling:
         if answer.verdict is Verdict.DONE and isinstance(message, Release):
             self.lives.released(component)
         if answer.verdict is Verdict.DONE and not isinstance(message, Release):
-            self.lives.obeyed(component, answer.life, message.epoch != self.state().epoch)
+            self.lives.obeyed(component, answer.life, message.epoch, late=message.epoch != self.state().epoch)
         if answer.verdict is Verdict.DONE and isinstance(message, Apply):
             self._acts(component, answer)
         holder = None

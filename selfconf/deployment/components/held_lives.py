@@ -19,6 +19,8 @@ class _ComponentLives:
 
     held: str | None = None
     """The life that has obeyed a call of this task, and not yet a release."""
+    obeyed: tuple[str, int] = ("", 0)
+    """The life that has obeyed a call of this task last, and the newest epoch of such a call."""
     left_behind: tuple[str, ...] = ()
     """The lives that have obeyed a call of this task, and ended, or seemed to, before they obeyed a release."""
     lost: str = ""
@@ -84,7 +86,7 @@ class HeldLives:
         """Note that what may be left of a component acts for no task any more."""
         self._of[component].gone = True
 
-    def obeyed(self, component: IRI, life: str, late: bool) -> None:
+    def obeyed(self, component: IRI, life: str, epoch: int, late: bool) -> None:
         """Note that a life of a component has obeyed a call of this task.
 
         One that is heard of `late`, as the call was of an older epoch, is not held if it has ended since, nor in the
@@ -92,9 +94,16 @@ class HeldLives:
         """
         if late and not self._ecology.lives_on(component, life):
             return
-        if not (late and self._of[component].held is not None and self.lives_on(component)):
-            self._of[component].held = life
+        known = self._of[component]
+        if not (late and known.held is not None and self.lives_on(component)):
+            known.held = life
+        known.obeyed = life, max(epoch, known.obeyed[1] if known.obeyed[0] == life else 0)
         self.caught_up(component, life)
+
+    def has_obeyed_since(self, component: IRI, life: str, epoch: int) -> bool:
+        """Whether a life of a component has obeyed a call of this task that is newer than an epoch."""
+        known = self._of[component]
+        return known.obeyed[0] == life and known.obeyed[1] > epoch
 
     def has_obeyed(self, component: IRI, life: str) -> bool:
         """Whether a life of a component has obeyed a call of this task, and not yet a release."""

@@ -122,8 +122,11 @@ class Releases:
     def _end(self, component: IRI, message: Release, otherwise: Callable[[], None]) -> None:
         """Have the site end a life of a component that does not obey its release: it may act on without a task.
 
-        `otherwise` is called if the site cannot do so, or has not within `SITE_ENDS` seconds; it may do so later.
+        `otherwise` is called if the site cannot do so, or has not within `SITE_ENDS` seconds; it may do so later. But a
+        life that has obeyed a newer call is held again, or was released by a newer release.
         """
+        if self._lives.has_obeyed_since(component, message.life, message.epoch):
+            return
         found = self._ecology.discovery.found.get(component)
         if found is None or not found.startable or not message.life:
             otherwise()

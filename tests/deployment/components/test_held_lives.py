@@ -107,10 +107,23 @@ def test_a_late_answer_of_a_life_that_has_ended_is_not_taken_for_the_life_that_i
     assert lab.running(agent)
     lives = agent._components.lives
     held = lives.life(tracker)
-    lives.obeyed(tracker, "an earlier one", late=True)
+    lives.obeyed(tracker, "an earlier one", 1, late=True)
     assert lives.life(tracker) == held
     lab.crash("tracker")
     assert lab.until(lambda: not lives.lives_on(tracker), 1.0)
     lives.leave_behind_if_ended(tracker)
-    lives.obeyed(tracker, "an earlier one", late=True)
+    lives.obeyed(tracker, "an earlier one", 1, late=True)
     assert lives.life(tracker) is None
+
+
+def test_a_life_has_obeyed_since_an_epoch_if_it_itself_has_obeyed_a_newer_call(lab: Lab) -> None:
+    agent, tracker = lab.agent(), iri("person-tracker")
+    lives, life = agent._components.lives, lab.runtimes["tracker"].life
+    assert not lives.has_obeyed_since(tracker, life, 0)
+    lives.obeyed(tracker, life, 5, late=False)
+    lives.obeyed(tracker, life, 3, late=True)  # it was answered late
+    assert lives.has_obeyed_since(tracker, life, 4)
+    assert not lives.has_obeyed_since(tracker, life, 5)
+    lives.obeyed(tracker, "another", 6, late=False)
+    assert not lives.has_obeyed_since(tracker, life, 4)
+    assert lives.has_obeyed_since(tracker, "another", 5)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from selfconf.bus.port import Request
+from selfconf.bus.port import Replies, Request
+from selfconf.configurator import Failed
 from selfconf.configurator.state import Phase
-from selfconf.deployment.components.calling import CALL, STARTING
+from selfconf.deployment.components.calling import CALL, STARTING, CallMessage
 from selfconf.deployment.components.releases import SITE_ENDS
+from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import End, Page, Wake
+from selfconf.protocol.messages import Cause, End, Page, Release, Wake
 from selfconf.site.component_program import TERMINATION
 from tests.deployment.simulated import living_room
 from tests.deployment.tasks import TASK
@@ -126,3 +129,36 @@ def test_a_component_that_hangs_is_started_again_each_time_that_its_site_does_so
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 4 * (STARTING + 2 * CALL))
     assert lab.active() == TASK | {"tracker"}
     assert [wake.after for wake in woken] == lives[:2]  # so that the site counts them
+
+
+def test_a_component_that_has_obeyed_since_is_not_ended_for_a_release_that_was_lost(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its life seemed to end for a moment, and is held again."""
+    lab, tracker, ended = Lab(tmp_path), iri("person-tracker"), list[Request]()
+    lab.site("astrid", *TASK)
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    living_room(lab, "1", lambda node: None).serve(lab.keys.end("living-room"), ended.append)
+    agent = lab.agent()
+    assert lab.running(agent)
+    calling = agent._components.calls._calling
+    ask, lost = calling.ask, list[CallMessage]()
+
+    def lose_first_release(
+        component: IRI, message: CallMessage, answered: Callable[[Replies], None] = lambda replies: None
+    ) -> None:
+        if isinstance(message, Release) and not lost:
+            lost.append(message)
+            agent.bus.later(CALL, lambda: answered(Replies(complete=False)))
+        else:
+            ask(component, message, answered)
+
+    monkeypatch.setattr(calling, "ask", lose_first_release)
+    life = lab.runtimes["tracker"].life
+    agent._components.reachability.heed(Failed(tracker, life, Cause.CRASH, "its life has ended"))
+    assert lab.until(lambda: bool(lost))
+    assert lab.running(agent)
+    lab.let_pass(2 * CALL)
+    assert ended == []
+    assert (agent.state.phase, agent.state.held[tracker].life) == (Phase.RUNNING, life)
