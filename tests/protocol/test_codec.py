@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from typing import Any, get_args
 
 import pytest
@@ -130,3 +132,22 @@ def test_a_question_for_the_state_says_of_which_task_it_is() -> None:
     assert decode(b'{"kind": "state", "task": "tidy~1"}', StateOf) == StateOf("tidy~1")
     with pytest.raises(PeerError, match="task"):
         decode(b'{"kind": "state"}', StateOf)
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("module", ["protocol.codec", "protocol.json_values", "protocol.stamps", "sdk.payloads"])
+def test_orjson_imports_nothing_where_a_signal_would_end_it_by_a_crash(module: str) -> None:
+    script = f"""
+import sys
+asked = []
+class Noting:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        asked.append(name)
+sys.meta_path.insert(0, Noting)
+import selfconf.{module}
+print(*asked[asked.index("orjson.orjson") + 1:][:1])
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    assert done.stdout.startswith("selfconf.")
