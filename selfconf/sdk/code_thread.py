@@ -7,7 +7,9 @@ intervals waits as a signal does. A queue of signals is bounded, so a slow compo
 supervision.
 
 `CodeThread.overdue` is for the bus's thread: it names the code that has not returned within its deadline, without any
-help of that code. On a bus in simulated time all of this happens at once, in the one thread there is.
+help of that code. While a component is to come to rest, no code may take longer than a site would wait for that,
+whatever its deadline: it may turn a motor for a task that is gone. On a bus in simulated time all of this happens at
+once, in the one thread there is.
 """
 
 from __future__ import annotations
@@ -27,6 +29,8 @@ RUSH = 0.0002
 Else it would be woken for each signal of many, and in turns with the thread that these arrive on take most of its time
 for that: interrupt coalescing. What comes less often is run at once.
 """
+TO_REST = 2.0
+"""Seconds that code may take while a component is to come to rest: as long as one may take to obey a release."""
 
 
 class RunningCode(NamedTuple):
@@ -36,6 +40,14 @@ class RunningCode(NamedTuple):
     what: str
     began: float
     limit: float
+    delays_rest: bool = False
+    """Whether the time is that which it may take while a component is to come to rest."""
+
+    @property
+    def why_overdue(self) -> str:
+        """What is said of it when it has not returned in that time."""
+        when = ", as it was turned off" if self.delays_rest else ""
+        return f"`{self.what}` has not returned within {self.limit:g} s{when}"
 
 
 class CodeThread:
@@ -45,6 +57,8 @@ class CodeThread:
         """`inline`: everything is run at once by the thread that hands it over; there is no other."""
         self.inline = inline
         self.running: RunningCode | None = None
+        self._rests: deque[float] = deque()
+        """Since when each component that is to come to rest is to do so, by the monotonic clock."""
         self._calls: deque[Action] = deque()
         self._signals: deque[Action] = deque()
         self._in_rush = False
@@ -57,6 +71,18 @@ class CodeThread:
     def call(self, action: Action) -> None:
         """Run what a call or the end of a supervision asks for; before any signal that waits."""
         self._put(self._calls, action)
+
+    def rest(self, action: Action) -> None:
+        """Run what brings a component to rest, as a call; nothing may take long until that is done."""
+
+        def rest() -> None:
+            try:
+                action()
+            finally:
+                self._rests.popleft()  # the first: calls run in their order
+
+        self._rests.append(time.monotonic())
+        self.call(rest)
 
     def signal(self, action: Action) -> None:
         """Run what a signal or a timer asks for. May be called from any thread."""
@@ -89,9 +115,22 @@ class CodeThread:
         For another thread, which that code does not hold up.
         """
         running = self.running
-        if running is None or time.monotonic() - max(running.began, since) <= running.limit:
+        if running is None:
             return None
-        return running
+        now, began = time.monotonic(), max(running.began, since)
+        if now - began > running.limit:
+            return running
+        if now - max(began, self._rests_since) > TO_REST:
+            return running._replace(limit=TO_REST, delays_rest=True)
+        return None
+
+    @property
+    def _rests_since(self) -> float:
+        """Since when some component is to come to rest."""
+        try:
+            return self._rests[0]
+        except IndexError:  # the other thread may have taken out the last one by now
+            return math.inf
 
     def poll(self, seconds: float = 0.0) -> None:
         """Run all that waits; if nothing does, wait up to that long for the first.

@@ -110,6 +110,8 @@ class Component:
     def stopped(self) -> None:
         """The component has been turned off; what actuates must be at rest when this returns.
 
+        It may take 2 seconds, whatever `sc:deadline` says, and so may what else still runs then.
+
         An actuator, a component without outputs, whatever operations it offers, that raises an exception here counts as
         not at rest: its site ends its process, and one that no site has started is out of control until it is gone.
         """

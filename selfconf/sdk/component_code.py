@@ -149,7 +149,7 @@ class ComponentCode:
                 if rests:
                     self.run_on_bus(at_rest)
 
-        self._thread.call(stop)
+        self._thread.rest(stop)
 
     def unfed(self, port: str) -> None:
         """Tell the component that an input has lost its last source; an actuator rests if that lasts.

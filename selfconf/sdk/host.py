@@ -229,13 +229,13 @@ class Host:
             self._went_on = now
         self._looked, self._used = now, used
         overdue = self.code.overdue(self._went_on)
-        if overdue is None or overdue is self._overdue:
+        if overdue is None or overdue == self._overdue:
             return
         self._overdue = overdue
         for runtime in (*self.runtimes, *self._leaving):
             if runtime.code is overdue.owner:
-                runtime.hung(overdue.what, overdue.limit)
-                self._hung(f"{runtime.profile.component}: `{overdue.what}` has not returned within {overdue.limit:g} s")
+                runtime.hung(overdue.why_overdue)
+                self._hung(f"{runtime.profile.component}: {overdue.why_overdue}")
 
 
 def signal_fields_of(path: Path, profile: Profile, ontologies: Sequence[Path]) -> Mapping[IRI, SignalFields]:

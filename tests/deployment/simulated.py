@@ -65,7 +65,7 @@ def slow_code(lab: Lab, name: str) -> SimulatedCodeThread:
     """Have a component begin again, with code on a thread of its own; what hangs there is told, and goes on."""
     lab.crash(name)
     node, recorder = lab.network.node(), Recorder()
-    thread = SimulatedCodeThread(node, lambda what, limit: runtime.hung(what, limit))
+    thread = SimulatedCodeThread(node, lambda why: runtime.hung(why))
     runtime = ComponentRuntime(node, lab.keys, lab.profile(name), recorder, f"{name}-slow", thread)
     SimulatedComponentCode.simulate(runtime.code, node, thread)
     recorder.spend = thread.spend

@@ -406,8 +406,8 @@ class History:
         node = self.network.node()
         recorder = Speaker(self.script.period, self.script.ecology.latched)
 
-        def hung(what: str, limit: float) -> None:
-            runtime.hung(what, limit)
+        def hung(why: str) -> None:
+            runtime.hung(why)
             if self.script.hangs_on and name not in self.script.startable:
                 return
             for share in (0.25, 0.75):  # so that it is looked what has become of it

@@ -12,14 +12,14 @@ from collections.abc import Callable
 from typing import Any
 
 from selfconf.bus.memory import MemoryBus
-from selfconf.sdk.code_thread import Action, CodeThread
+from selfconf.sdk.code_thread import Action, CodeThread, RunningCode
 from selfconf.sdk.component_code import ComponentCode
 
 
 class SimulatedCodeThread(CodeThread):
-    """Runs the code of one component on its node; `hung` hears what has not returned within its deadline, and that."""
+    """Runs the code of one component on its node; `hung` hears what has not returned within its deadline."""
 
-    def __init__(self, node: MemoryBus, hung: Callable[[str, float], None]) -> None:
+    def __init__(self, node: MemoryBus, hung: Callable[[str], None]) -> None:
         super().__init__(inline=False)
         self._node, self._network, self._hung = node, node.network, hung
         self._due = False
@@ -74,7 +74,8 @@ class SimulatedCodeThread(CodeThread):
         self.limit_until = math.inf
         if self.busy_until - began > limit:
             self.limit_until = began + limit
-            self._network.at(self.limit_until, self._node, lambda: self._hung(what, limit))
+            why = RunningCode(owner, what, began, limit).why_overdue
+            self._network.at(self.limit_until, self._node, lambda: self._hung(why))
 
 
 class SimulatedComponentCode(ComponentCode):

@@ -5,7 +5,9 @@ from __future__ import annotations
 import threading
 import time
 
-from selfconf.sdk.code_thread import RUSH, CodeThread
+import pytest
+
+from selfconf.sdk.code_thread import RUSH, CodeThread, RunningCode
 
 
 def test_without_a_thread_of_its_own_everything_runs_at_once() -> None:
@@ -128,6 +130,26 @@ def test_code_that_has_not_returned_in_its_time_is_seen_by_another_thread_and_on
     end.set()
     thread.join(5.0)
     assert code.overdue() is None
+
+
+def test_code_may_not_take_long_while_something_is_to_come_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("selfconf.sdk.code_thread.TO_REST", 0.0)
+    code, seen = CodeThread(inline=False), list[object]()
+
+    def look() -> None:
+        time.sleep(0.01)  # what is measured: the code takes longer than it may
+        seen.append(code.overdue())
+
+    code.call(lambda: code.limited("me", "received", 60.0, look))
+    code.rest(lambda: code.limited("you", "stopped", 60.0, look))
+    code.call(lambda: code.limited("me", "started", 60.0, look))
+    code.poll()
+    first, second, third = seen
+    assert isinstance(first, RunningCode)
+    assert (first.owner, first.why_overdue) == ("me", "`received` has not returned within 0 s, as it was turned off")
+    assert isinstance(second, RunningCode)
+    assert (second.owner, second.what) == ("you", "stopped")
+    assert third is None
 
 
 def test_code_within_its_time_is_not_overdue_and_what_breaks_in_it_breaks_out() -> None:

@@ -42,6 +42,9 @@ class Hanging(Component):
     def received(self, port: str, signal: Signal) -> None:
         self.hang("received")
 
+    def stopped(self) -> None:
+        self.hang("stopped")
+
 
 LAMP = """:lamp a sc:Component, :Lamp ; sc:deadline [ sc:value 0.3 ; sc:unit unit:SEC ] ;
     sc:hasInput [ sc:name "level" ; sc:signalType :Level ] ; sc:hasOutput [ sc:name "light" ; sc:signalType :Light ] ;
@@ -50,7 +53,7 @@ SOURCE = IRI("urn:c:source")
 
 
 def hanging(living: LivingStage, where: str, advertised: str = LAMP) -> Hanging:
-    """A lamp that hangs as soon as it is activated, or gets a signal."""
+    """A lamp that hangs as soon as it is activated, or gets a signal, or else once it is turned off."""
     lamp = living.component(living.advertised(Hanging, advertised)(living, where))
     inputs = {"level": (Wire(SOURCE, "level"),)}
     living.apply("urn:c:lamp", inputs=inputs, values={"goal": Literal("x")})
@@ -58,7 +61,7 @@ def hanging(living: LivingStage, where: str, advertised: str = LAMP) -> Hanging:
         assert until(lambda: lamp.active)
         source = living.caller.publisher(living.keys.output(SOURCE, "level"), Urgency.SIGNAL)
         until(lambda: source.put(b"1", encode(Stamp(SOURCE, "l", 1, 0.0))) or lamp.begun.is_set())
-    assert lamp.begun.wait(PATIENCE)
+    assert where == "stopped" or lamp.begun.wait(PATIENCE)
     return lamp
 
 
@@ -95,6 +98,21 @@ def test_a_failure_that_another_thread_raises_while_a_parameter_is_set_is_heard_
     assert (answers[0].verdict, answers[0].detail) == (Verdict.REFUSED, "it has failed")
     assert [(fail.cause, fail.detail) for _, fail in living.fails] == [(Cause.FAIL, "the bulb is broken")]
     assert not lamp.on
+
+
+@pytest.mark.parametrize("where", ["received", "started", "stopped"])
+def test_code_goes_on_no_longer_than_a_release_may_take_where_its_configurator_is_gone(
+    living: LivingStage, monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    """Whatever its deadline: an actuator would act for nothing until then."""
+    monkeypatch.setattr("selfconf.sdk.code_thread.TO_REST", 0.3)
+    lamp = hanging(living, where, LAMP.replace("0.3", "60.0"))
+    assert until(lambda: lamp.active)
+    if where != "stopped":
+        assert not until(lambda: living.hangs, 0.6), "it may take so long while it acts"
+    living.leave()
+    assert until(lambda: living.hangs)
+    assert living.hangs == [f"urn:c:lamp: `{where}` has not returned within 0.3 s, as it was turned off"]
 
 
 def test_starting_may_take_longer_where_no_deadline_is_stated(

@@ -175,9 +175,9 @@ class ComponentRuntime:
             self._put_fail(cause, reason)
             self.bus.wake_up(self._failed)
 
-    def hung(self, what: str, limit: float) -> None:
+    def hung(self, why: str) -> None:
         """Raise FAIL for code that has not returned."""
-        self.fail(f"`{what}` has not returned within {limit:g} s", Cause.HUNG)
+        self.fail(why, Cause.HUNG)
 
     def _woken(self, port: str) -> None:
         """Have the code that has been started again hear what is connected, and the last signals."""
