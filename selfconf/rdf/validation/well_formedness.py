@@ -37,6 +37,7 @@ from selfconf.rdf.shacl import (
     ILL_FORMED,
     LISTS,
     ONLY_WITH_A_PATH,
+    PATH_FORMS,
     STATED_ONCE,
     MatchTooCostly,
     of_values,
@@ -58,8 +59,14 @@ _SAMPLES: dict[Node, Literal] = {
     XSD.date: Literal("2000-01-01", datatype=XSD.date),
     XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
 }
-_INSTEAD_OF_CATEGORIES = r" pySHACL knows no categories of Unicode; a letter of any language is [^\W\d_]."
 _STAND_IN = URIRef("urn:-")  # short, so that no pattern takes long
+_OF_PROPERTIES: dict[Node, Node] = {
+    **dict.fromkeys((SH.minCount, SH.maxCount), Literal(1)),
+    **dict.fromkeys((SH.lessThan, SH.lessThanOrEquals), _STAND_IN),
+    SH.uniqueLang: Literal(True),
+}
+"""Samples for what a shape without a path may not say, with whatever value."""
+_INSTEAD_OF_CATEGORIES = r" pySHACL knows no categories of Unicode; a letter of any language is [^\W\d_]."
 
 
 def endless_lists(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
@@ -121,6 +128,10 @@ def _with_samples(graph: Graph) -> Graph:
             sample is None and (predicate == RDF.first or predicate == SH.hasValue)
         ):
             sample = value  # no parameter will do for a list or a constraint, and any term as a member
+        if sample is None and str(predicate) in PATH_FORMS | {str(SH.path)}:
+            sample = _STAND_IN
+        if sample is None and (subject, SH.path, None) not in graph:
+            sample = _OF_PROPERTIES.get(predicate)
         if sample is not None:
             shapes.add((subject, predicate, sample))
     for prefix, namespace in graph.namespaces():
@@ -157,14 +168,14 @@ def _faults(shapes: Graph, graph: Graph, positions: Positions) -> Iterator[Diagn
         offsets = positions.triples.get((focus, path, value)) if path is not None and value is not None else None
         if offsets is not None and isinstance(path, URIRef):
             yield at(positions, offsets.object, "SC-T13", unfit(IRI.unchecked(path)))
-        elif (parameter := _sampled(graph, focus, path)) is not None and isinstance(path, URIRef):
+        elif value is not None and (parameter := _sampled(graph, focus, path)) and isinstance(path, URIRef):
             message = f"{unfit(IRI.unchecked(path)).rstrip('.')}, and this parameter stands for another value."
             place = positions.triples[focus, path, parameter].object
             yield at(
                 positions, place, "SC-T13", message, hint="See the sh:datatype and the sh:nodeKind of the parameter."
             )
         else:
-            offset, message = _malformed(shapes, positions, focus)
+            offset, message = _malformed(shapes, graph, positions, focus)
             yield at(positions, offset, "SC-T13", message)
 
 
@@ -191,7 +202,7 @@ def _with_own_path(shapes: Graph, graph: Graph, positions: Positions) -> Iterato
             yield at(positions, offsets.object if offsets else positions.offset(shape), "SC-T13", message)
 
 
-def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, str]:
+def _malformed(shapes: Graph, graph: Graph, positions: Positions, focus: Node) -> tuple[int, str]:
     """What is wrong with a shape as a whole, and where."""
     offset = positions.offset(focus)
     if (None, SH.property, focus) in shapes and len(set(shapes.objects(focus, SH.path))) != 1:
@@ -202,7 +213,7 @@ def _malformed(shapes: Graph, positions: Positions, focus: Node) -> tuple[int, s
             return max((one.object for one in stated if one), default=offset), f"{said_twice(once)}."
     if (focus, SH.path, None) in shapes:
         return _malformed_with_path(shapes, positions, focus)
-    for predicate, value in shapes.predicate_objects(focus):
+    for predicate, value in graph.predicate_objects(focus):
         statement = positions.triples.get((focus, predicate, value))
         if statement and isinstance(predicate, URIRef) and IRI.unchecked(predicate) in ONLY_WITH_A_PATH:
             word = predicate.removeprefix(str(SH))

@@ -161,6 +161,32 @@ def test_no_parameter_stands_for_a_part_of_a_shape(predicate: str, kind: str) ->
         read_task(parse(PREFIXES + text, "a.ttl"), iri("t"))
 
 
+@pytest.mark.parametrize("kind", ["sh:datatype xsd:integer", "rdfs:comment 'of any kind'"])
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        ("sh:minCount :robot", "how many play a role is sc:minCount"),
+        ("sh:lessThan :robot", "sh:lessThan is asked of the values of a property"),
+        ("sh:uniqueLang :robot", "sh:uniqueLang is asked of the values of a property"),
+        ("sh:property [ sh:path :p ; sh:path :robot ]", "exactly one sh:path"),
+    ],
+)
+def test_a_parameter_whatever_it_stands_for_is_a_mistake_where_no_value_may_be(
+    said: str, words: str, kind: str
+) -> None:
+    text = f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :robot . :r a sc:Role ; {said} .\n"
+    text += PARAMETER.format(kind)
+    assert any(words in one.message for one in malformed(text))
+    with pytest.raises(TemplateError):
+        read_task(parse(PREFIXES + text, "a.ttl"), iri("t"))
+
+
+def test_a_parameter_of_any_kind_may_be_a_property_of_a_path() -> None:
+    for path in (":robot", "[ sh:inversePath :robot ]", "( :p [ sh:zeroOrMorePath :robot ] )"):
+        text = f":r a sc:Role ; sh:property [ sh:path {path} ; sh:minCount 1 ] .\n"
+        assert malformed(text + PARAMETER.format("rdfs:comment 'of any kind'")) == []
+
+
 @pytest.mark.parametrize("recruited", ["[ sh:path 'x' ]", "[ sh:path :p ; sh:class 5 ]"])
 def test_a_shape_of_what_is_recruited_is_looked_at(recruited: str) -> None:
     text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sc:recruits {recruited} ."
