@@ -21,7 +21,6 @@ from selfconf.cli.options import (
 )
 from selfconf.cli.progress import progress
 from selfconf.cli.terminal import complain, display, display_json
-from selfconf.model.wording import one_line
 
 if TYPE_CHECKING:
     from selfconf.api.answer import Answer
@@ -56,6 +55,7 @@ def run(given: argparse.Namespace) -> int:
     from selfconf.model.refusal import Undecided
     from selfconf.render import undecided_text
 
+    what_if = _shows_what_if(given)
     task = task_of(given)
     method = method_of(given, task)
     with closing(given_ecology(given)) as ecology:
@@ -67,12 +67,12 @@ def run(given: argparse.Namespace) -> int:
             complain_of(ecology)
         absent = _absent(ecology, inquiry.ecology) if given.ads is None and given.endpoint is None else frozenset()
     with progress("searching for a configuration"):
-        answer = inquiry.answer(given.what_if)
+        answer = inquiry.answer(what_if)
     if isinstance(answer, Answer):
         _tell_absent(answer, absent)
         _tell_unconnected(answer)
-    if isinstance(answer, Answer) and given.what_if and answer.what_if is None:
-        complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")
+        if what_if and answer.what_if is None:
+            complain(f"no time is left to tell what would replace what; allow more than {given.seconds:g} s")
     if given.format == "json":
         display_json(_body(inquiry, answer))
     elif isinstance(answer, Undecided):
@@ -82,6 +82,14 @@ def run(given: argparse.Namespace) -> int:
         if isinstance(answer, Answer) and given.format == "text" and given.ads is not None:
             _tell_insides(inquiry, answer)
     return 0 if answer else 2 if isinstance(answer, Undecided) else 1
+
+
+def _shows_what_if(given: argparse.Namespace) -> bool:
+    """Whether to find out what would replace what: it is asked for, and the format has a place for it."""
+    shows = given.format in ("text", "json")
+    if given.what_if and not shows:
+        complain(f"--what-if is shown as text and as JSON, not by --format {given.format}")
+    return bool(given.what_if and shows)
 
 
 def _absent(ecology: Ecology, components: Iterable[IRI]) -> frozenset[IRI]:
@@ -100,11 +108,11 @@ def _tell_absent(answer: Answer, absent: frozenset[IRI]) -> None:
 
 
 def _tell_unconnected(answer: Answer) -> None:
-    """Tell which interactions of the template connect nothing: an author may have expected otherwise."""
-    for one in answer.unconnected(answer.task.template.interactions):
-        ports = [f" {one_line(port)!r}" if port else "" for port in (one.output, one.input)]
-        source, sink = (answer.names(role) + port for role, port in zip((one.source, one.sink), ports, strict=True))
-        complain(f"{source} feeds {sink}, which connects nothing: no output of the one matches an input of the other")
+    """Tell which interactions of the template connect nothing."""
+    from selfconf.render import unconnected_text
+
+    for line in unconnected_text(answer, answer.task.template.interactions, answer.names):
+        complain(line)
 
 
 def _tell_insides(inquiry: Inquiry, answer: Answer) -> None:

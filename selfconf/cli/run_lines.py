@@ -31,6 +31,9 @@ class TextLines:
     def __init__(self, task: TaskSpecification, log_options: str = "") -> None:
         """`log_options` are those by which `selfconf log` finds what the components of the task have printed."""
         self._names, self._log_options = task.names, log_options
+        self._interactions = task.document.template.interactions
+        self._unconnected: set[str] = set()
+        """What was said of interactions that connect nothing."""
         self._began: float | None = None
         self.told: set[IRI] = set()
         """The components that were reported as lost, and why."""
@@ -81,14 +84,17 @@ class TextLines:
             print(line, file=sys.stderr, flush=True)
 
     def _lines(self, event: RunEvent) -> Iterator[str]:
+        from selfconf.model.configuration import Configuration
         from selfconf.model.run_event import (
             CallDeclined,
             ComponentLost,
             ComponentUnreachable,
+            SearchEnded,
             TaskRefused,
             TaskStopped,
             TaskWaiting,
         )
+        from selfconf.render import unconnected_text
         from selfconf.render.run_events import details, log_hint, owed_sentences, sentence
 
         assert self._began is not None
@@ -108,6 +114,11 @@ class TextLines:
             yield f"{event.time - self._began:9.3f} s  {said}"
         if hint:
             yield f"{'':11}  {hint}"
+        if isinstance(event, SearchEnded) and isinstance(event.outcome, Configuration):
+            for line in unconnected_text(event.outcome, self._interactions, self._names):
+                if line not in self._unconnected:
+                    self._unconnected.add(line)
+                    yield f"{'':11}         {line}"
 
 
 class LinePrinter:

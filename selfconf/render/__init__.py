@@ -1,6 +1,7 @@
 """Values for their readers: as text, as JSON, as HTML and as Mermaid. Nothing here decides anything.
 
 Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`, `count`;
+`unconnected_text` names interactions that connect nothing;
 `disobedience_text` names components that are out of control, and `disobedience` says that of one; `Names` shortens IRIs
 by prefixes, `short` without, `ecology_names` makes them for an ecology, and a `Name` is either; `alternative_text` says
 what speaks for a candidate, `holder_text` who holds a component; `duration` is how long something has lasted,
@@ -36,6 +37,7 @@ from selfconf.render.text import (
     disobedience_text,
     holder_text,
     refusal_text,
+    unconnected_text,
     undecided_text,
 )
 
@@ -68,6 +70,7 @@ __all__ = [
     "refusal_text",
     "short",
     "table",
+    "unconnected_text",
     "undecided_body",
     "undecided_text",
     "value_body",

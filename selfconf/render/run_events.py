@@ -45,7 +45,7 @@ SENTENCES: Mapping[str, str] = {
     "waiting": "       waiting for the ecology to change",
     "refused": "",
     "stopped": "       taken down",
-    "detached": "       the sites run {task}; `selfconf tasks` shows it, `selfconf stop {task}` ends it",
+    "detached": "       the sites keep {task}; `selfconf tasks` shows whether it runs, `selfconf stop {task}` ends it",
     "cut off": "       cut off from the ecology; waiting to be connected again",
     "connected": "       connected again; looking at what has become of it",
     "complaint": "       {detail}",

@@ -16,6 +16,7 @@ from selfconf.model.optimum import Optimum
 from selfconf.model.partition import NearMiss
 from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
+from selfconf.model.template import Interaction
 from selfconf.model.term import IRI, Term
 from selfconf.model.wording import one_line
 from selfconf.render.bodies import double
@@ -35,6 +36,14 @@ def disobedience(component: str, why: str) -> str:
 def disobedience_text(disobedient: Mapping[IRI, str], name: Name) -> list[str]:
     """A line for each component that was turned off and does not come to rest, with how it is where that is known."""
     return [f"out of control: {disobedience(name(one), why)}" for one, why in disobedient.items()]
+
+
+def unconnected_text(configuration: Configuration, interactions: Iterable[Interaction], name: Name) -> Iterator[str]:
+    """Yield a line for each interaction that connects nothing: an author may have expected otherwise."""
+    for one in configuration.unconnected(interactions):
+        ports = [f" {one_line(port)!r}" if port else "" for port in (one.output, one.input)]
+        source, sink = (name(role) + port for role, port in zip((one.source, one.sink), ports, strict=True))
+        yield f"{source} feeds {sink}, which connects nothing: no output of the one matches an input of the other"
 
 
 def configuration_text(configuration: Configuration, name: Name) -> str:

@@ -71,6 +71,16 @@ def test_a_task_that_runs_after_it_has_waited_tells_everything_since_it_looked(
     assert sum("LOST" in line for line in lines) == 1
 
 
+def test_an_interaction_that_connects_nothing_is_named_once(capsys: pytest.CaptureFixture[str]) -> None:
+    roles = [role.iri for role in sc.template(CLOCK).roles]
+    both = Configuration(TEMPLATE, tuple(Assignment(role, (SCREEN,)) for role in roles))
+    lines = told(capsys, [SearchEnded(both, 0.001), ComponentLost(SCREEN, "crash", ""), SearchEnded(both, 0.001)])
+    named = [line.strip() for line in lines if "connects nothing" in line]
+    assert named == [
+        ":source feeds :screen, which connects nothing: no output of the one matches an input of the other"
+    ]
+
+
 def test_of_what_has_crashed_it_is_told_once_where_its_last_words_are(capsys: pytest.CaptureFixture[str]) -> None:
     report = TextLines(sc.template(CLOCK), "--ecology mine")
     for cause in ("fail", "crash", "crash"):
