@@ -4,11 +4,11 @@
 makes tests of the constraints that can be; two `exclude` each other if no value passes both, and one may be
 `passed_by_none` at all. `passes_all` asks for a value that passes several. `misfit`, `unfit`, `of_values`,
 `said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
-`ILL_FORMED` say what may stand as a value of SHACL's own properties, `PATH_FORMS` are those of paths. `component_parameters` are the predicates by which
-a document constrains by components of its own, and `shapes_behind` are the shapes to which a statement leads. `pattern`
-is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is `MatchTooCostly`.
-`shacl_pattern` is one with the flags of SHACL, and `pattern_fault` why a text is none. Judging by pySHACL is
-`selfconf.rdf.conformance`, which loads it.
+`ILL_FORMED` say what may stand as a value of SHACL's own properties, `PATH_FORMS` are those of paths.
+`component_parameters` are the predicates by which a document constrains by components of its own, and `shapes_behind`
+are the shapes to which a statement leads. `pattern` is a regular expression that a text cannot make expensive
+(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL, and
+`pattern_fault` why a text is none. Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, pattern_fault, shacl_pattern
