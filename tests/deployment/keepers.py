@@ -8,6 +8,7 @@ from pathlib import Path
 from selfconf.bus.port import Bus
 from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, RunRequest, TaskFolder
+from selfconf.deployment.keeper import keeper_of
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from tests.lab import Lab, request_for
@@ -59,3 +60,9 @@ class Keepers:
         self.lab.let_pass(1.0)
         (keeper,) = self.running()
         return keeper
+
+
+def keepers_in_turn(task: str, *sites: str) -> tuple[str, str]:
+    """Which site is to run a task, and which one after its end."""
+    first = keeper_of(task, sites)
+    return first, keeper_of(task, {*sites} - {first})

@@ -5,7 +5,7 @@ that loses, delays and doubles messages:
 components fail, crash, come back, are started twice, are slow; nodes are paused, cut off, or cut off from one other;
 sites and configurators die and come back; several tasks compete. At every step of the network the invariants of
 `tests/faults/invariants.py` are looked at. Then the faults cease, every node reaches every other, and after a while the
-ecology must be in order.
+ecology must be in order (`final_invariants`).
 
 A history that breaks an invariant fails its test, and the message shows what happened, in order, and the command that
 plays it again and drops every action that is not needed (`tests.faults.replay`).

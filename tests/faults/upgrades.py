@@ -20,8 +20,9 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.sdk.inputs.followed_output import JUST_COME
 from selfconf.sdk.inputs.handover import HANDOVER
 from selfconf.sdk.inputs.inputs import Inputs
+from tests.faults.final_invariants import disagreeing
 from tests.faults.histories import History, Life
-from tests.faults.invariants import Invariant, acting, awake, disagreeing, feeds, node_of
+from tests.faults.invariants import Invariant, acting, awake, feeds, node_of
 
 STAYS, GOES_ON = "a failed upgrade leaves what ran", "what runs on does not stop"
 DELIVERS = "what is new delivers first"

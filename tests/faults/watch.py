@@ -18,14 +18,15 @@ from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.runtime import ComponentRuntime
-from tests.faults import invariants, upgrades
+from tests.faults import final_invariants, invariants, upgrades
+from tests.faults.final_invariants import undecided
 from tests.faults.histories import History, Life
-from tests.faults.invariants import MOST_WAITING, undecided
+from tests.faults.invariants import MOST_WAITING
 from tests.faults.simulated_code import SimulatedCodeThread
 
 STEPS = (*invariants.STEPS, *upgrades.STEPS)
 """What must hold at every step."""
-ENDS = (*invariants.ENDS, *upgrades.ENDS)
+ENDS = (*final_invariants.ENDS, *upgrades.ENDS)
 """What must hold in the end."""
 ROUNDING = 1e-6
 """By how many seconds a sum of times may be wrong."""
