@@ -1,9 +1,9 @@
 """Ecologies of random shape: what histories show in the few that are written by hand may hold in these alone.
 
-Sources feed what converts their signals, and that feeds actuators; roles are of one component or of several, inputs may
-be optional, components may be shared, tolerate blindness, have a parameter, offer an operation or need one, and a
-composite may stand for a source. The number of an ecology decides all of it; `tests.faults.replay` plays a history in
-it by `--ecology random-NUMBER`.
+Sources feed what converts their signals, in a circle at times, and that feeds actuators. Roles are of one component or
+of several, inputs may be optional, components may be shared, tolerate blindness, have a parameter, offer an operation
+or need one, and a composite may stand for a source. The number of an ecology decides all of it; `tests.faults.replay`
+plays a history in it by `--ecology random-NUMBER`.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Kind:
 def random_ecology(number: int) -> FaultyEcology:
     """The ecology of a number."""
     chance = random.Random(f"ecology {number}")
-    kinds = _with_operation(chance, _kinds(chance))
+    kinds = _with_operation(chance, _with_circle(chance, _kinds(chance)))
     whole = _needed(kinds, [kind for kind in kinds if not kind.outputs])
     part = _needed(kinds, [chance.choice([kind for kind in whole if kind.inputs])])
     advertisements = {name: text for kind in kinds for name, text in _advertisements(chance, kind)}
@@ -127,6 +127,16 @@ def _outputs(chance: random.Random, issued: Sequence[str], signals: Iterator[str
     return {chance.choice(issued) if issued and chance.random() < 0.15 else next(signals) for _ in range(number)}
 
 
+def _with_circle(chance: random.Random, kinds: list[Kind]) -> list[Kind]:
+    """The same classes; in some ecologies the first that converts signals needs those of the last as well."""
+    converters = [number for number, kind in enumerate(kinds) if kind.inputs and kind.outputs]
+    if len(converters) > 1 and chance.random() < 0.5:
+        first, last = kinds[converters[0]], kinds[converters[-1]]
+        back = Wanted("back", last.outputs[0], optional=chance.random() < 0.3)
+        kinds[converters[0]] = replace(first, inputs=(*first.inputs, back))
+    return kinds
+
+
 def _with_operation(chance: random.Random, kinds: list[Kind]) -> list[Kind]:
     """The same classes; in some ecologies one offers an operation that one after it needs."""
     offering, needing = chance.randrange(len(kinds)), chance.randrange(len(kinds))
@@ -137,10 +147,10 @@ def _with_operation(chance: random.Random, kinds: list[Kind]) -> list[Kind]:
 
 
 def _feeding(kinds: Sequence[Kind], kind: Kind) -> Iterator[Kind]:
-    """The classes that one is fed by, or calls: of those before it, or signals would go in a circle."""
+    """The classes that one is fed by, or calls; signals may go in a circle."""
     signals = {wanted.signal for wanted in kind.inputs}
-    for other in kinds[: kinds.index(kind)]:
-        if signals & {*other.outputs} or (kind.needs and other.offers):
+    for other in kinds:
+        if other is not kind and (signals & {*other.outputs} or (kind.needs and other.offers)):
             yield other
 
 
