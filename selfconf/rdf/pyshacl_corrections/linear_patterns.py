@@ -1,7 +1,8 @@
 """Regular expressions inside pySHACL and rdflib, at a cost that the texts of strangers cannot choose.
 
 pySHACL (`sh:pattern`) and rdflib (REGEX and REPLACE of SPARQL) ask `re`, which can take years. Within `linear_patterns`
-their modules see another `re`, which answers the same by `selfconf.rdf.shacl.pattern`.
+their modules see another `re`, which answers the same by `selfconf.rdf.shacl.pattern`, but for what an expression of
+SPARQL means otherwise (`sparql_expression`).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from pyshacl.constraints.core.string_based_constraints import PatternConstraintC
 from rdflib.plugins.sparql import operators
 
 from selfconf.rdf.pyshacl_corrections.library_patches import replaced
-from selfconf.rdf.shacl import Pattern, pattern, shacl_pattern
+from selfconf.rdf.shacl import Pattern, pattern, shacl_pattern, sparql_expression
 
 
 class _Expression:
@@ -41,9 +42,10 @@ class _LinearRe(ModuleType):
         """Nothing: `_with_all_flags` compiles what pySHACL would, with flags by which it may be no expression to it."""
 
     def search(self, expression: str, text: str, flags: int = 0) -> bool:
-        return pattern(expression, int(flags)).finds(text)
+        return pattern(sparql_expression(expression, int(flags)), int(flags)).finds(text)
 
     def sub(self, expression: str, replacement: str, text: str, count: int = 0, flags: int = 0) -> str:
+        expression = sparql_expression(expression, int(flags))
         if not pattern(expression, int(flags)).finds(text):
             return text
         return re.sub(expression, replacement, text, count=count, flags=flags)

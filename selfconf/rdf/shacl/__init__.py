@@ -7,11 +7,19 @@ makes tests of the constraints that can be; two `exclude` each other if no value
 `ILL_FORMED` say what may stand as a value of SHACL's own properties, `PATH_FORMS` are those of paths.
 `component_parameters` are the predicates by which a document constrains by components of its own, and `shapes_behind`
 are the shapes to which a statement leads. `pattern` is a regular expression that a text cannot make expensive
-(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL, and
-`pattern_fault` why a text is none. Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
+(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL,
+`sparql_expression` what an expression of SPARQL is to `re`, and `pattern_fault` why a text is none. Judging by pySHACL
+is `selfconf.rdf.conformance`, which loads it.
 """
 
-from selfconf.rdf.shacl.patterns import MatchTooCostly, Pattern, pattern, pattern_fault, shacl_pattern
+from selfconf.rdf.shacl.patterns import (
+    MatchTooCostly,
+    Pattern,
+    pattern,
+    pattern_fault,
+    shacl_pattern,
+    sparql_expression,
+)
 from selfconf.rdf.shacl.shape_syntax import (
     BESIDES,
     COUNTS,
@@ -60,5 +68,6 @@ __all__ = [
     "said_twice",
     "shacl_pattern",
     "shapes_behind",
+    "sparql_expression",
     "unfit",
 ]

@@ -109,6 +109,23 @@ def pattern(expression: str, flags: int = 0) -> Pattern:
 
 _HOLDS_SPACE = re.compile(r"(\\.|\[(?:\\.|[^\]\\])*\])|[ \t\r\n]+", re.DOTALL)
 """White space in an expression, or what holds white space that counts: an escaped character, a class of characters."""
+_HOLDS_DOLLAR = re.compile(r"(\\.|\[\^?\]?(?:\\.|[^\]\\])*\])|\$", re.DOTALL)
+"""`$` in an expression, or what holds one that stands for itself."""
+
+
+def sparql_expression(expression: str, flags: int) -> str:
+    """An expression of REGEX in SPARQL for `re`, where `$` would also stand before a line feed that ends the text.
+
+    Raises re.error for one that subtracts a class of characters, as `[a-z-[aeiou]]`, which `re` reads otherwise.
+    """
+
+    def rewritten(found: re.Match[str]) -> str:
+        if found[1] and found[1].startswith("[") and "-[" in re.sub(r"\\.", "", found[1]):
+            raise re.error("it subtracts a class of characters from another, which pySHACL cannot")
+        return found[1] or "\\Z"
+
+    text = _HOLDS_DOLLAR.sub(rewritten, expression)
+    return expression if flags & re.MULTILINE else text
 
 
 def shacl_pattern(expression: str, flags: str) -> Pattern:
@@ -125,7 +142,7 @@ def shacl_pattern(expression: str, flags: str) -> Pattern:
         expression = re.escape(expression)
     elif "x" in asked:
         expression = _HOLDS_SPACE.sub(lambda found: found[1] or "", expression)
-    return pattern(expression, int(options))
+    return pattern(sparql_expression(expression, options), int(options))
 
 
 def pattern_fault(expression: str, flags: str) -> re.error | None:

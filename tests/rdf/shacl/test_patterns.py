@@ -92,3 +92,15 @@ def test_what_re_warns_of_is_an_expression_without_a_word() -> None:
         warnings.simplefilter("always")
         assert pattern_fault("[[:alpha:]]", "") is None
     assert told == []
+
+
+@pytest.mark.parametrize("expression", ["[a-z-[aeiou]]", r"^[\w-[\d]]+$"])
+def test_subtracting_a_class_of_characters_is_no_pattern_of_re(expression: str) -> None:
+    """XPath has it; `re` would read the second bracket as a character of the class."""
+    assert "subtracts a class of characters" in str(pattern_fault(expression, ""))
+    assert "subtracts a class of characters" in str(pattern_fault(expression, "m"))
+
+
+@pytest.mark.parametrize("expression", [r"[a\-[]", "[[a-z]", r"\[a-[b]"])
+def test_a_bracket_in_a_class_of_characters_is_one_of_them(expression: str) -> None:
+    assert pattern_fault(expression, "") is None

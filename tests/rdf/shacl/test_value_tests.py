@@ -68,6 +68,11 @@ def test_a_pattern_that_is_none_and_two_datatypes_are_not_compiled() -> None:
         (r"a\ b", "x", "a b", "ab"),
         ("a.b", "q", "a.b", "axb"),
         ("^b", "m", "a\nb", "ab"),
+        ("^a$", "", "a", "a\n"),
+        ("^a$", "m", "a\nb", "ab"),
+        (r"\$[$]$", "", "$$", "$$\n"),
+        ("[]$]$", "", "]", "]\n"),
+        ("a$", "q", "a$", "a"),
     ],
 )
 def test_flags_are_those_of_sparql_in_the_tests_and_in_pyshacl(
