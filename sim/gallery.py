@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +18,15 @@ from sim.peis_home import standing_point
 from sim.pictures import CameraImage, Failure, Link, Part, RunRecord, Sample, Supply, Wiring, draw
 
 SPOKEN = {"tracker": "the person tracker", "odometry": "odometry"}
+COMPOSITE = "the position service"
+"""What a tracker is called that is in a composite."""
 
 
 def draw_run(account: Account, record: Path, out: Path, quality: str, progress: Callable[[str], None]) -> list[Path]:
     """Draw every picture of the run; the paths written."""
     apartment = read_apartment()
     with np.load(record) as logbook:
-        run = _run_record(account, apartment, dict(logbook))
+        run = run_record(account, apartment, dict(logbook))
     last = ""
 
     def tell(*step: Any) -> None:
@@ -37,15 +39,17 @@ def draw_run(account: Account, record: Path, out: Path, quality: str, progress: 
     return draw(run, apartment, out, quality=quality, progress=tell)
 
 
-def _run_record(account: Account, apartment: Apartment, logbook: dict[str, NDArray[Any]]) -> RunRecord:
+def run_record(account: Account, apartment: Apartment, logbook: dict[str, NDArray[Any]]) -> RunRecord:
+    """What pictures are drawn from: the lines of the processes of a demo, and what its world has recorded."""
     times, poses = logbook["times"], logbook["poses"]
     samples = tuple(Sample(float(t), float(x), float(y), float(a)) for t, (x, y, a) in zip(times, poses, strict=True))
-    supplies = tuple(_supplies(times, logbook["sources"]))
+    spoken = {**SPOKEN, "tracker": COMPOSITE} if account.eyes else SPOKEN
+    supplies = tuple(_supplies(times, logbook["sources"], spoken))
     failures: tuple[Failure, ...] = ()
-    tracked = [supply for supply in supplies if supply.component == SPOKEN["tracker"]]
+    tracked = [supply for supply in supplies if supply.component == spoken["tracker"]]
     if account.loss and tracked:
         at = samples[int(np.searchsorted(times, tracked[-1].end))]
-        failures = (Failure(at.time, at.x, at.y, SPOKEN["tracker"], account.loss["detail"]),)
+        failures = (Failure(at.time, at.x, at.y, spoken["tracker"], account.loss["detail"]),)
     stand = standing_point(apartment, GOAL)
     return RunRecord(
         samples,
@@ -59,12 +63,12 @@ def _run_record(account: Account, apartment: Apartment, logbook: dict[str, NDArr
     )
 
 
-def _supplies(times: NDArray[np.float64], sources: NDArray[np.str_]) -> Iterator[Supply]:
+def _supplies(times: NDArray[np.float64], sources: NDArray[np.str_], spoken: Mapping[str, str]) -> Iterator[Supply]:
     start = 0
     for index in range(1, len(times) + 1):
         if index == len(times) or sources[index] != sources[start]:
             if sources[start]:
-                yield Supply(SPOKEN[str(sources[start])], float(times[start]), float(times[min(index, len(times) - 1)]))
+                yield Supply(spoken[str(sources[start])], float(times[start]), float(times[min(index, len(times) - 1)]))
             start = index
 
 

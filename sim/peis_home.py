@@ -161,9 +161,16 @@ def main() -> int:
     parser.add_argument("--gui", action="store_true")
     parser.add_argument("--eyes", action="store_true", help="two cameras in place of the person tracker")
     given = parser.parse_args()
+    apartment = read_apartment()
+    if given.seed < 0 or not given.speed > 0:
+        parser.error("--seed is a whole number from zero on, and --speed is more than zero")
+    try:
+        standing_point(apartment, given.place)
+    except ApartmentError as error:
+        parser.error(f"--place: {error}")
     seeing = (StereoEye, SpareEye) if given.eyes else (PersonTracker,)
     host = open_host(given.ecology, given.connect, given.keys, [*ON_ASTRID, *seeing])
-    home = PeisHome(host, read_apartment(), given.seed, given.speed, given.place, given.gui, given.eyes)
+    home = PeisHome(host, apartment, given.seed, given.speed, given.place, given.gui, given.eyes)
     say("ready", time=home.world.time)
     try:
         outcome = home.run(given.seconds)

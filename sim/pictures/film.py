@@ -118,6 +118,16 @@ def _feather(shape: tuple[int, int]) -> Array:
     return np.clip(np.minimum(rows[:, None], columns[None, :]), 0.0, 1.0).astype(np.float32)[..., None]
 
 
+def words(run: RunRecord, time: float) -> str:
+    """What supplies the pose at a time, or what is done while nothing does."""
+    source = run.source(time)
+    if source:
+        return f"pose from {source}"
+    if any(failure.time <= time for failure in run.failures):
+        return "reconfiguring"
+    return "configuring" if any(supply.start > time for supply in run.supplies) else "on the way"
+
+
 def _captioned(scene: Image.Image, view: Viewpoint, run: RunRecord, moment: Moment) -> Image.Image:
     """Return the frame with a caption below: what supplies the pose, or what failed, and the time."""
     frame = Image.new("RGB", (scene.width, scene.height + CAPTION), PAPER)
@@ -137,9 +147,7 @@ def _captioned(scene: Image.Image, view: Viewpoint, run: RunRecord, moment: Mome
         badge(root, 16, base, shortened(f"FAIL: {moment.failure.reason}".rstrip(": "), loud, room), FAIL, loud)
     else:
         source = run.source(moment.time)
-        failed = any(failure.time <= moment.time for failure in run.failures)
-        words = f"pose from {source}" if source else "reconfiguring" if failed else "on the way"
         swatch(root, 18, base - 5, Entry("line", run.colours()[source] if source else GREY, ""))
-        write(root, 62, base, shortened(words, ENTRY, room), ENTRY)
+        write(root, 62, base, shortened(words(run, moment.time), ENTRY, room), ENTRY)
     write(root, frame.width - 18, base, f"{moment.time - run.start:.1f} s", Style(15), "end")
     return over(frame, root)

@@ -127,6 +127,28 @@ def test_images_are_kept_with_what_was_found_in_them_and_without_that_not_at_all
     assert [pose is not None for _, _, pose in home.logbook.sights] == ([] if eyes else [True])
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--seed", "-3"), "--seed is a whole number from zero on"),
+        (("--speed", "0"), "--speed is more than zero"),
+        (("--speed", "nan"), "--speed is more than zero"),
+        (("--place", "nowhere"), "--place: home:nowhere"),
+    ],
+)
+def test_what_the_world_cannot_be_is_one_sentence(
+    options: tuple[str, str], words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("pybullet", reason="PyBullet is not installed: install the extra sim on Python 3.10 or 3.11")
+    monkeypatch.setattr("sys.argv", ["peis_home", *options])
+    from sim.peis_home import main
+
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    assert words in capsys.readouterr().err
+
+
 @pytest.mark.sim
 @pytest.mark.usefixtures("handlers")
 def test_a_record_that_cannot_be_written_is_one_sentence(

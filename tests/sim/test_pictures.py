@@ -225,6 +225,18 @@ def test_between_samples_a_pose_lies_on_the_way_and_turns_the_short_way_round() 
     assert record.at(9.0) == record.samples[1]
 
 
+def test_the_film_says_what_supplies_the_pose_or_what_is_done_while_nothing_does(run: RunRecord) -> None:
+    tracker, odometry = run.supplies
+    late = replace(run, supplies=(replace(tracker, start=1.0), replace(odometry, start=6.0)))
+    assert [film.words(late, time) for time in (0.5, 2.0, 5.5, 7.0)] == [
+        "configuring",
+        "pose from the person tracker",
+        "reconfiguring",
+        "pose from absolute odometry",
+    ]
+    assert film.words(replace(run, supplies=(), failures=()), 2.0) == "on the way"
+
+
 def test_the_film_shows_a_failure_for_some_frames_at_its_time(run: RunRecord) -> None:
     moments = film.moments(run, 10)
     flashes = [moment for moment in moments if moment.failure is not None]
