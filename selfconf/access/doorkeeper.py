@@ -28,6 +28,7 @@ from selfconf.access.refusal_reports import RefusalReports
 from selfconf.access.rules import AccessRules, rules_of
 from selfconf.access.shown_certificates import Process, ShownCertificates, holders
 from selfconf.bus.answering import answering
+from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request
 from selfconf.bus.zenoh import RefusalLog
@@ -131,8 +132,7 @@ class Doorkeeper:
         self._reports = RefusalReports(bus, hub.refusals, complain, lambda one: self.rules.allow(one))
         self._faults: dict[str, float] = {}
         """What was said to be wrong with the keys or the hub, and when."""
-        self._renews_soon = False
-        """Whether the rules are about to be made anew."""
+        self._renew_rules_soon = Coalesced(bus, 0.0, self._renew_rules)  # once what is done now is done
         self._renews_components = False
         """Whether the certificates of components are being renewed."""
         self._shown, self._stamps = stamp(self._credentials.certificate), dict[Path, FileStamp]()
@@ -185,12 +185,6 @@ class Doorkeeper:
         """
         is_beside = holder.kind is PrincipalKind.SITE and holder.name in self._beside()
         return is_beside or holder.kind is PrincipalKind.COMPONENT
-
-    def _renew_rules_soon(self) -> None:
-        """Have the rules made anew once what is done now is done, however many show their certificates meanwhile."""
-        if not self._renews_soon:
-            self._renews_soon = True
-            self._bus.later(0.0, self._renew_rules)
 
     def _introduce(self) -> None:
         """Show the certificate of this site to all others, and learn theirs."""
@@ -276,7 +270,6 @@ class Doorkeeper:
 
     def _renew_rules(self) -> None:
         """Have the hub opened anew if who may do what has changed."""
-        self._renews_soon = False
         try:
             rules = self._made()
         except SelfconfError as error:

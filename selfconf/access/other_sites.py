@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from itertools import islice
 from typing import TypeGuard
 
+from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Replies, Undo
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
@@ -39,7 +40,8 @@ class OtherSites:
         self._lives: dict[str, set[str]] = {}
         self._away: dict[str, float] = {}
         """Since when no life of a site is there, of those of which one was."""
-        self._asks_soon = False
+        self.ask_soon = Coalesced(bus, SOON, self._ask)
+        """Asks them what they advertise: something has changed."""
         self._undo_asking_again: Undo = lambda: None
 
     def advertised(self) -> dict[str, frozenset[IRI]]:
@@ -62,14 +64,7 @@ class OtherSites:
             self._away[site] = self._bus.now()
         self.ask_soon()
 
-    def ask_soon(self) -> None:
-        """Ask them what they advertise: something has changed."""
-        if not self._asks_soon:
-            self._asks_soon = True
-            self._bus.later(SOON, self._ask)
-
     def _ask(self) -> None:
-        self._asks_soon = False
         known = encode(Known(dict(self._revisions)))
         self._bus.ask(self._keys.advertisements(), known, SITES_ANSWER, self._answered)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from selfconf.bus.coalesced import Coalesced
 from selfconf.configurator import Phase
 from selfconf.deployment.components import TaskComponents
 from selfconf.deployment.run_request import RunRequest
@@ -18,8 +19,8 @@ class Readiness:
     def __init__(self, context: TaskContext, request: RunRequest, components: TaskComponents) -> None:
         self._bus, self._state, self._request = context.ecology.bus, context.state, request
         self._components = components
-        self._is_due = False
-        """Whether the time is set to be ready with what has appeared."""
+        self.prepare_soon = Coalesced(context.ecology.bus, APPEARED_TOGETHER, self.prepare)
+        """Makes it ready with all that has appeared for a while, as a process may hold many components."""
 
     def prepare(self) -> None:
         """Have the inputs of what runs listen to what may feed them next, and go through a failure."""
@@ -41,13 +42,3 @@ class Readiness:
             warm_up_failure(state)
 
         self._request.aside(work)
-
-    def prepare_soon(self) -> None:
-        """Be ready with all that has appeared for a while, as a process may hold many components."""
-        if not self._is_due:
-            self._is_due = True
-            self._bus.later(APPEARED_TOGETHER, self._prepare_anew)
-
-    def _prepare_anew(self) -> None:
-        self._is_due = False
-        self.prepare()

@@ -14,6 +14,7 @@ from functools import partial
 
 from selfconf.api.living.echo import heard_signal
 from selfconf.api.living.output_sources import follow_output
+from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Replies, Sample, Undo
 from selfconf.discovery import FoundAdvertisement
 from selfconf.errors import PeerError
@@ -72,7 +73,8 @@ class Onlooker:
         self._outputs = [port.name for port in self._profile.signal_outputs][:MOST_OUTPUTS]
         self._glances = {output: _Glance() for output in self._outputs}
         self._fresh: dict[str, Body] = {}
-        self._ended = self._telling = False
+        self._tell_soon = Coalesced(bus, TOLD_AFTER, self._tell_signals)
+        self._ended = False
 
     def begin(self) -> None:
         """Begin to look."""
@@ -120,13 +122,7 @@ class Onlooker:
             glance.undo = None
             self._bus.later(max(GLANCE_PAUSE, glance.size / BYTES_A_SECOND), lambda: self._look(output))
 
-    def _tell_soon(self) -> None:
-        if not self._telling:
-            self._telling = True
-            self._bus.later(TOLD_AFTER, self._tell_signals)
-
     def _tell_signals(self) -> None:
-        self._telling = False
         fresh, self._fresh = self._fresh, {}
         if not self._ended:
             self._tell("signals", fresh)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping
 
+from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Undo
 from selfconf.discovery import Beliefs, Discovery, EcologyView, FoundAdvertisement
 from selfconf.model.term import IRI
@@ -50,6 +51,7 @@ class EcologyWatcher:
         self._components: dict[IRI, Body] = {}
         self._chunks: dict[str, IRI] = {}
         self._sites: dict[str, Body] = {}
+        self._flush_soon = Coalesced(bus, TOGETHER, self._flush)
         self._tasks = TaskWatcher(bus, self.keys, self._happened, self._flush_soon)
         self._shown: dict[str, Body] = {}
         """The tasks as they were sent last, by identity."""
@@ -58,7 +60,7 @@ class EcologyWatcher:
         self._link = ""
         """The link over which was last found what is advertised."""
         self._ask_again: Undo = lambda: None
-        self._flushing = self._discovering = self._discover_again = self._following = False
+        self._discovering = self._discover_again = self._following = False
 
     def begin(self) -> None:
         """Look at what there is, and follow it from then on."""
@@ -169,13 +171,7 @@ class EcologyWatcher:
         self._events.append({"time": self._clock(), **event})
         self._flush_soon()
 
-    def _flush_soon(self) -> None:
-        if not self._flushing:
-            self._flushing = True
-            self.bus.later(TOGETHER, self._flush)
-
     def _flush(self) -> None:
-        self._flushing = False
         components: dict[str, Body | None] = {}
         for component in self._touched & self._components.keys():
             body = {**self._components[component], "state": self._state(component)}

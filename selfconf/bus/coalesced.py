@@ -1,0 +1,24 @@
+"""An action that is done once for all that ask for it within a while."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from selfconf.bus.port import Bus
+
+
+class Coalesced:
+    """Does something on the thread of a bus some seconds after it is called, however often that is meanwhile."""
+
+    def __init__(self, bus: Bus, seconds: float, action: Callable[[], None]) -> None:
+        self._bus, self._seconds, self._action = bus, seconds, action
+        self._is_due = False
+
+    def __call__(self) -> None:
+        if not self._is_due:
+            self._is_due = True
+            self._bus.later(self._seconds, self._do)
+
+    def _do(self) -> None:
+        self._is_due = False
+        self._action()
