@@ -32,6 +32,21 @@ def test_syntactic_sees_nothing_and_subclass_sees_the_users_own(tmp_path: Path) 
         assert ROB.Sensor in hierarchy_of(Reasoning.SUBCLASS, ontology_texts(ontologies)).superclasses(lamp)
 
 
+@pytest.mark.parametrize("mode", ["syntactic", "subclass", "owl-rl"])
+def test_what_an_ontology_says_of_an_individual_is_shown_to_no_shape(tmp_path: Path, mode: str) -> None:
+    (tmp_path / "own.ttl").write_text(PREFIXES + ":desk :in :room .\n")
+    task = template(
+        PREFIXES
+        + ":watch a sc:Template ; sc:roles ( :eye ) .\n"
+        + ":eye a sc:Role ; sh:property [ sh:path ( :at :in ) ; sh:hasValue :room ] .\n"
+    )
+    home = read(
+        PREFIXES + ":a a sc:Component, :Camera ; :at :shelf . :shelf :in :room .\n",
+        PREFIXES + ":b a sc:Component, :Camera ; :at :desk .\n",
+    )
+    assert partition(task, home, reasoning=mode, ontologies=[tmp_path])["eye"].eligible == (iri("a"),)
+
+
 def test_an_ontology_that_is_not_there_is_named() -> None:
     with pytest.raises(AuthorError, match="no file or folder nowhere"):
         ontology_texts([Path("nowhere.ttl")])
