@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-np = pytest.importorskip("numpy", reason="pictures need numpy: install the extra sim")
-pytest.importorskip("mitsuba", reason="pictures need Mitsuba: install the extra sim")
-
 from sim.account import Account
-from sim.gallery import run_record
 from sim.home.apartment import Apartment
 
 
@@ -20,6 +16,10 @@ from sim.home.apartment import Apartment
 def test_the_first_source_is_called_by_what_it_is_in_the_scene(
     eyes: list[str], source: str, apartment: Apartment
 ) -> None:
+    np = pytest.importorskip("numpy", reason="pictures need numpy: install the extra sim")
+    pytest.importorskip("mitsuba", reason="pictures need Mitsuba: install the extra sim")
+    from sim.gallery import run_record
+
     logbook = {
         "times": np.array([0.0, 1.0, 2.0]),
         "poses": np.zeros((3, 3)),
