@@ -83,7 +83,7 @@ class BoundedConnection(H11Protocol):
     def pause_writing(self) -> None:
         """Begin to wait for the client to take what is there for it."""
         super().pause_writing()
-        self._unread = self.loop.call_later(UNREAD_SECONDS, self._give_up)
+        self._unread = self.loop.call_later(UNREAD_SECONDS, self.hang_up)
 
     def resume_writing(self) -> None:
         """Go on with an answer, as the client takes it."""
@@ -96,9 +96,14 @@ class BoundedConnection(H11Protocol):
         self._taken()
         super().connection_lost(exc)
 
+    def hang_up(self) -> None:
+        """End the connection: what serves it receives `http.disconnect`."""
+        if not self.transport.is_closing():
+            self.transport.abort()  # not `close`, which waits until what is to be sent has been taken
+
     def _wait(self) -> None:
         if self._late is None:
-            self._late = self.loop.call_later(REQUEST_SECONDS, self._give_up)
+            self._late = self.loop.call_later(REQUEST_SECONDS, self.hang_up)
 
     def _wait_no_more(self) -> None:
         if self._late is not None:
@@ -109,7 +114,3 @@ class BoundedConnection(H11Protocol):
         if self._unread is not None:
             self._unread.cancel()
             self._unread = None
-
-    def _give_up(self) -> None:
-        if not self.transport.is_closing():
-            self.transport.abort()  # not `close`, which waits until what is to be sent has been taken

@@ -25,7 +25,7 @@ from selfconf.model.setting_names import setting
 from selfconf.query import StandingDataset
 from selfconf.serve.application import LOOPBACK, application
 from selfconf.serve.board import Board
-from selfconf.serve.connections import LoopFaults, config_of
+from selfconf.serve.connections import BoundedConnection, LoopFaults, config_of
 from selfconf.serve.explained_refusals import ExplainedRefusals
 from selfconf.serve.fits import Fits
 from selfconf.serve.look_endpoint import Onlookers
@@ -42,6 +42,8 @@ SETTLED = 15.0
 """Seconds after which every configurator that lives has said what it has deployed."""
 LAST_ANSWERS = 2
 """Seconds that answers which are under way may take when the server is ended."""
+AFTER_THEM = 2
+"""Seconds for what served a connection to end with it, before uvicorn cancels it and logs where it was."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +167,7 @@ async def _serve(
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))
     config = config_of(app)
     server = _Server(config, board, onlookers)
-    config.timeout_graceful_shutdown = LAST_ANSWERS
+    config.timeout_graceful_shutdown = LAST_ANSWERS + AFTER_THEM
     listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
     await server.serve(sockets=[place])
 
@@ -192,7 +194,13 @@ class _Server(uvicorn.Server):
         if ending:
             self._board.stream.close()
             self._onlookers.close()
+            asyncio.get_running_loop().call_later(LAST_ANSWERS, self._hang_up)
         return ending
+
+    def _hang_up(self) -> None:
+        for connection in list(self.server_state.connections):
+            if isinstance(connection, BoundedConnection):
+                connection.hang_up()
 
 
 def bound(host: str, port: int) -> socket.socket:

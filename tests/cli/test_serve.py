@@ -8,6 +8,7 @@ import json
 import re
 import signal
 import socket
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, cast
 from urllib.parse import quote
@@ -129,6 +130,23 @@ def test_another_sparql_server_asks_it_and_ctrl_c_ends_it_with_streams_open(ecol
     stream.close()
     look.close()
     assert "Traceback" not in server.complaints
+
+
+def test_ctrl_c_ends_it_with_a_query_and_half_a_request_under_way(ecology: Home) -> None:
+    server, browser = serve(ecology)
+    assert ecology.until(lambda: browser.get("/healthz")[0] == 200)
+    endless = "ASK { GRAPH ?g { ?a ?b ?c . ?d ?e ?f . ?i ?j ?k . ?l ?m ?n . ?o ?p ?q FILTER(?a = 1) } }"
+    host = b"Host: 127.0.0.1\r\n"
+    half = (
+        b"POST /sparql HTTP/1.1\r\nContent-Type: application/sparql-query\r\nContent-Length: 9\r\n" + host + b"\r\nASK"
+    )
+    with ExitStack() as stack:
+        for sent in (f"GET /sparql?query={quote(endless)} HTTP/1.1\r\n".encode() + host + b"\r\n", half):
+            line = stack.enter_context(socket.create_connection(("127.0.0.1", browser.port)))
+            line.sendall(sent)
+        assert browser.get("/healthz")[0] == 200  # what came before has been read
+        assert server.end(signal.SIGINT) == 0
+    assert server.complaints == ""
 
 
 def test_a_port_that_is_taken_is_a_sentence(home: Home) -> None:
