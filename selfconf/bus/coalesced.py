@@ -14,10 +14,11 @@ class Coalesced:
         self._bus, self._seconds, self._action = bus, seconds, action
         self._is_due = False
 
-    def __call__(self) -> None:
+    def __call__(self, seconds: float | None = None) -> None:
+        """Do it after so many seconds, by default those that are usual, unless the time is set already."""
         if not self._is_due:
             self._is_due = True
-            self._bus.later(self._seconds, self._do)
+            self._bus.later(self._seconds if seconds is None else seconds, self._do)
 
     def _do(self) -> None:
         self._is_due = False

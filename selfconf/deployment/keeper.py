@@ -20,6 +20,7 @@ import time
 from collections.abc import Callable, Collection, Iterable, Set
 from typing import TYPE_CHECKING
 
+from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.configurator import Phase
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
@@ -93,8 +94,8 @@ class Keeper:
         self._view = StableView(bus.now, lambda: bus.link)
         self._unlook: Undo | None = None
         """Takes back that it will look again; None where it will not."""
-        self._is_to_assign = False
-        """Whether it waits for what it sees of the other sites to be believed, to run a task."""
+        self._assign_later = Coalesced(bus, LINKED_AGAIN, self._assign)
+        """Looks again once what it sees of the other sites is to be believed, to run a task."""
         self._exchange = RecordExchange(bus, keys, site, folder, self)
         bus.watch(keys.any_site_life(), self._site_changed)
         bus.subscribe(keys.reopens(), lambda _: self._view.reopens(), Urgency.EVENT)
@@ -189,15 +190,6 @@ class Keeper:
                     self._assign_later(wait)
                 else:
                     self._run(record, request)
-
-    def _assign_later(self, seconds: float) -> None:
-        def assign() -> None:
-            self._is_to_assign = False
-            self._assign()
-
-        if not self._is_to_assign:
-            self._is_to_assign = True
-            self.bus.later(seconds, assign)
 
     def _leave_what_is_anothers(self, runner: TaskRunner, record: TaskRecord, keeper: str) -> None:
         """Let go of a task that another site has gone on with, or that the one that is to run it has begun to run.

@@ -13,6 +13,7 @@ from functools import partial
 from typing import Protocol
 
 from selfconf.bus.answering import answering
+from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
 from selfconf.deployment.task_folder import TaskFolder
 from selfconf.errors import PeerError, reason
@@ -66,7 +67,7 @@ class RecordExchange:
         self._complaints: set[str] = set()
         self._to_ask: dict[str, None] = {}
         """The sites that have come and were not asked once more since."""
-        self._asks_again = False
+        self._ask_soon = Coalesced(bus, ASK_ONCE_MORE, self._ask_again)
         bus.serve(keys.keep(site), self._keep)
         bus.serve(keys.kept_tasks(site), self._answer)
         bus.subscribe(keys.task(), self._take, Urgency.EVENT)
@@ -99,12 +100,10 @@ class RecordExchange:
     def ask_later(self, sites: Collection[str]) -> None:
         """Ask some sites in a moment, and again as long as one lives and does not answer."""
         self._to_ask |= dict.fromkeys(sites)
-        if self._to_ask and not self._asks_again:
-            self._asks_again = True
-            self._bus.later(ASK_ONCE_MORE, self._ask_again)
+        if self._to_ask:
+            self._ask_soon()
 
     def _ask_again(self) -> None:
-        self._asks_again = False
         for site in list(self._to_ask)[:ASKED_AT_ONCE]:
             del self._to_ask[site]
             self._bus.ask(self._keys.kept_tasks(site), b"", OTHERS, partial(self._asked_again, site))

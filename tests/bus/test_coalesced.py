@@ -25,6 +25,7 @@ def test_an_action_is_done_once_for_all_that_ask_for_it_within_a_while() -> None
     assert done == [began + 1.0]
     network.let_pass(5.0)
     assert done == [began + 1.0, began + 2.0]
+    coalesced(0.2)
     coalesced()
-    network.let_pass(2.0)
+    network.let_pass(0.5)
     assert len(done) == 3
