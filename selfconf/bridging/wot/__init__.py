@@ -7,7 +7,9 @@ needs aiohttp, the extra `wot`.
 """
 
 from selfconf.bridging.wot.credentials import ThingCredentials, read_credentials
-from selfconf.bridging.wot.thing_world import ThingSettings, ThingWorld, host_of, is_url, unreadable_file
+from selfconf.bridging.wot.thing_sources import host_of, is_url, unreadable_file
+from selfconf.bridging.wot.thing_watch import ThingSettings
+from selfconf.bridging.wot.thing_world import ThingWorld
 
 __all__ = [
     "ThingCredentials",

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from selfconf.bridging.bridge import Bridge
 from selfconf.bridging.wot.thing_client import ThingLimits
-from selfconf.bridging.wot.thing_world import ThingSettings, ThingWorld
+from selfconf.bridging.wot.thing_watch import ThingSettings
+from selfconf.bridging.wot.thing_world import ThingWorld
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Reserve, Wire
 from selfconf.sdk import Component
