@@ -61,9 +61,12 @@ class Waking:
             self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
         elif found is not None and found.startable:
             waiting = self._waiting.get(effect.component)
-            if waiting is not None and waiting.site == found.site and waiting.effect.epoch < effect.epoch:
+            is_asked = waiting is not None and waiting.site == found.site
+            if waiting is not None and is_asked and waiting.effect.epoch < effect.epoch:
                 waiting.effect = effect  # one of the same epoch is to be asked for again
             else:
+                if not is_asked:
+                    self._report(ComponentWoken(effect.component, found.site))
                 self._start_by_site(effect, found)
         else:
             self._lives.awaited(effect.component)
@@ -88,7 +91,7 @@ class Waking:
     def process_ended(self, component: IRI) -> None:
         """Its site has ended the process of a component, for a release: it is asked again for one that is waited for.
 
-        It was asked before, while the process ran, which only this task did not see.
+        It was asked before, and that was reported, while the process ran, which only this task did not see.
         """
         waiting, found = self._waiting.get(component), self._ecology.discovery.found.get(component)
         if waiting is not None and found is not None:
@@ -99,6 +102,7 @@ class Waking:
         for waiting in list(self._waiting.values()):
             found = self._ecology.discovery.found.get(waiting.effect.component)
             if found is not None and found.site == site:
+                self._report(ComponentWoken(waiting.effect.component, site))
                 self._start_by_site(waiting.effect, found)
 
     def site_ended(self, site: str) -> None:
@@ -110,7 +114,6 @@ class Waking:
 
     def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
         """Have the site start the process; that is done when the component lives."""
-        self._report(ComponentWoken(effect.component, found.site))
         self.abandon(effect.component)
         self._lives.awaited(effect.component)
         too_late = f"it was started, but does not live after {WAKING:.0f} s"

@@ -95,6 +95,29 @@ def test_a_site_is_asked_once_for_what_it_starts_however_often_the_deployment_be
     assert lab.active() == TASK | {"tracker"}
 
 
+def test_a_start_that_is_asked_for_again_is_reported_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So it is where the end of a life is seen twice, as by the network and by its site."""
+    lab, asked, wake = Lab(tmp_path), list[float](), Waking.wake
+    lab.site("astrid", *TASK)
+    for name in TASK:
+        lab.component(name)
+
+    def twice(self: Waking, effect: WakeUp) -> None:
+        wake(self, effect)
+        wake(self, effect)
+
+    def begin(node: MemoryBus) -> None:
+        asked.append(lab.network.time)
+        if len(asked) == 1:
+            node.later(1.0, lambda: lab.component("tracker"))
+
+    monkeypatch.setattr(Waking, "wake", twice)
+    living_room(lab, "1", begin)
+    assert lab.running(lab.agent())
+    assert len(asked) == 2
+    assert len(lab.acts("waking")) == 1
+
+
 @pytest.mark.parametrize("unheard", range(WAKE_ATTEMPTS + 1))
 def test_a_site_is_asked_again_where_it_has_not_answered(tmp_path: Path, unheard: int) -> None:
     lab = home(tmp_path, "odometry")
