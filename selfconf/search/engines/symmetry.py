@@ -15,38 +15,50 @@ least solution the first one has the option that comes first; an earlier one for
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Hashable, Iterator
+from collections import Counter, defaultdict
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import pairwise
 
-from selfconf.search.reduction import ReducedProblem
+from selfconf.search.reduction import Needs, Option, ReducedProblem
 
 
 def interchangeable(reduced: ReducedProblem) -> Iterator[tuple[int, int]]:
     """Yield pairs of interchangeable roles, each role of several with the next one."""
-    asked = Counter(reduced.slots)
-    alike: dict[Hashable, list[int]] = {}
-    for role, number in asked.items():
-        if number == 1:
-            alike.setdefault(tuple(option.component for option in reduced.options[role]), []).append(role)
-    for roles in alike.values():
-        same: dict[Hashable, list[int]] = {}
-        for role in roles if len(roles) > 1 else ():
-            same.setdefault(_use(reduced, role), []).append(role)
-        for some in same.values():
-            if not any(_feeds_one_of(reduced, role, set(some)) for role in some if len(some) > 1):
-                yield from pairwise(some)
+    alike = [[role for role, asked in Counter(reduced.slots).items() if asked == 1]]
+    # What is compared quickly comes first: mostly no roles are left that are alike in it.
+    for aspect in (_components, _supports, _wants):
+        alike = [same for roles in alike for same in _equal_in(aspect, reduced, roles) if len(same) > 1]
+    for roles in alike:
+        if not any(_feeds_one_of(reduced, role, set(roles)) for role in roles):
+            yield from pairwise(roles)
 
 
-def _use(reduced: ReducedProblem, role: int) -> Hashable:
-    """Return all that matters of a role, but for its identity."""
+def _equal_in(
+    aspect: Callable[[Sequence[Option], Needs], Hashable], reduced: ReducedProblem, roles: Sequence[int]
+) -> Iterable[list[int]]:
+    """Return sets of some roles that are equal in an aspect."""
+    same: defaultdict[Hashable, list[int]] = defaultdict(list)
+    for role in roles:
+        same[aspect(reduced.options[role], reduced.needs)].append(role)
+    return same.values()
+
+
+def _components(options: Sequence[Option], _: Needs) -> Hashable:
+    return tuple([option.component for option in options])
+
+
+def _supports(options: Sequence[Option], _: Needs) -> Hashable:
+    return tuple([option.kind.supports for option in options])
+
+
+def _wants(options: Sequence[Option], needs: Needs) -> Hashable:
+    """Return the values that options admit, and what they need."""
     return tuple(
         (
             option.kind.admits,
-            option.kind.supports,
-            frozenset((reduced.needs[need].wanted, reduced.needs[need].sources) for need in option.kind.needs),
+            frozenset((needs[need].wanted, needs[need].sources) for need in option.kind.needs),
         )
-        for option in reduced.options[role]
+        for option in options
     )
 
 
