@@ -27,6 +27,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 
+from selfconf.model.partition import ANY_VALUE
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines import (
@@ -251,7 +252,7 @@ def _two_may_fail(given: ReducedProblem) -> bool:
         if any(len(kinds) - having < slots for having in unmet.values()):
             return True
         for variable, common in enumerate(given.values):
-            if slots > 1 or not any(kind.admits[variable] & common for kind in kinds):
+            if slots > 1 or not any(kind.admits.get(variable, ANY_VALUE) & common for kind in kinds):
                 return True
     return False
 

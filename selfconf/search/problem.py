@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import chain
+from operator import and_
 from typing import NamedTuple
 
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting, ordered_connections
@@ -209,7 +210,7 @@ class Problem:
 
     def narrowed(self, values: tuple[int, ...], candidate: Candidate) -> tuple[int, ...] | None:
         """Return the values left to the variables once a candidate plays too; None if some variable has none left."""
-        narrowed = tuple([value & allowed for value, allowed in zip(values, candidate.admits, strict=True)])
+        narrowed = tuple(map(and_, values, candidate.admits))
         return None if 0 in narrowed else narrowed
 
     def values_of(self, playing: Playing) -> tuple[int, ...]:

@@ -87,7 +87,7 @@ def _may_be_scarce(given: ReducedProblem, variables: list[int]) -> bool:
         admits = [option.kind.admits for option in given.options[role]]
         left = float(len(admits))
         for variable, each in values:
-            masks = [masks[variable] for masks in admits]
+            masks = [masks.get(variable, ANY_VALUE) for masks in admits]
             if masks.count(ANY_VALUE) < len(masks):
                 left *= min(sum([mask & value > 0 for mask in masks]) for value in each) / len(masks)
         if left < slots * most:
@@ -117,7 +117,7 @@ def _values(given: ReducedProblem, variable: int) -> list[int]:
     common, stated = given.values[variable], 0
     every: dict[int, None] = {}
     for role in dict.fromkeys(given.slots):
-        masks = {option.kind.admits[variable] for option in given.options[role]}
+        masks = {option.kind.admits.get(variable, ANY_VALUE) for option in given.options[role]}
         every |= dict.fromkeys(masks)
         stated = max(stated, *((mask if mask >= 0 else ~mask).bit_length() for mask in masks), 0)
         if ANY_VALUE not in masks:
@@ -140,6 +140,8 @@ def _undominated(values: list[int], masks: list[int]) -> list[int]:
 
 
 def _with_value(given: ReducedProblem, variable: int, value: int) -> ReducedProblem:
-    options = tuple(tuple(one for one in some if one.kind.admits[variable] & value) for some in given.options)
+    options = tuple(
+        tuple(one for one in some if one.kind.admits.get(variable, ANY_VALUE) & value) for some in given.options
+    )
     values = (*given.values[:variable], value, *given.values[variable + 1 :])
     return replace(given, options=options, values=values)

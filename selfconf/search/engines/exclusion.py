@@ -85,8 +85,11 @@ def _groups_of_values(reduced: ReducedProblem) -> dict[int, list[int]]:
 
 def _often_apart(reduced: ReducedProblem) -> bool:
     """Return whether the first options of the roles that constrain a variable mostly admit other values of it each."""
-    firsts = zip(*[options[0].kind.admits for options in reduced.options if options], strict=True)
-    apart = [_disjoint(masks) for masks in firsts if masks.count(ANY_VALUE) + 1 < len(masks)]
+    firsts: defaultdict[int, list[int]] = defaultdict(list)
+    for options in reduced.options if reduced.values else ():
+        for variable, mask in options[0].kind.admits.items() if options else ():
+            firsts[variable].append(mask)
+    apart = [_disjoint(masks) for masks in firsts.values() if len(masks) > 1]
     return bool(apart) and SHARE_APART * sum(apart) >= len(apart)
 
 

@@ -9,7 +9,7 @@ fewer slots left for some of them than these are. There is no recursion: ten tho
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI
@@ -53,7 +53,12 @@ class ReducedSearch:
         slots = reduced.slots
         self.chosen: list[Option] = []
         self.taken: set[str] = set()
-        self.values: list[tuple[int, ...]] = [reduced.values]
+        self._options = ((),) * len(reduced.options) if 0 in reduced.values else reduced.options
+        """The options of each role that may play: none where a variable has no value."""
+        self.values = list(reduced.values)
+        """The values that the variables may still have."""
+        self.narrowed: list[list[tuple[int, int]]] = []
+        """For each option chosen the variables that have lost values to it, with those that they had before."""
         self.supports = [0] * len(reduced.needs)
         """How many options chosen support each need."""
         self.needed = [0] * len(reduced.needs)
@@ -72,7 +77,7 @@ class ReducedSearch:
 
     def solutions(self, budget: Budget, pace: float | None = None) -> Iterator[list[Option] | Undecided]:
         """Yield solutions in lexicographic order; Undecided, and then no more, when the steps are used up."""
-        slots, options = self.reduced.slots, self.reduced.options
+        slots, options = self.reduced.slots, self._options
         reach = OPTION_HEADROOM
         furthest = 0
         cursor = [0] * (len(slots) + 1)
@@ -121,19 +126,18 @@ class ReducedSearch:
         kind = option.kind
         if option.component in self.taken:
             return False
-        values = self.values[-1]
         if self.matching is not None and not self.matching.give(place, option.component):
             return False
-        if values:
-            values = tuple([value & allowed for value, allowed in zip(values, kind.admits, strict=True)])
-            if 0 in values:
-                return False
+        narrowed: list[tuple[int, int]] = []
+        if kind.admits and not self._narrow(kind.admits, narrowed):
+            self._restore(narrowed)
+            return False
         needed, supports = self.needed, self.supports
         for need in kind.needs:
             needed[need] += 1
         for need in kind.supports:
             supports[need] += 1
-        self.values.append(values)
+        self.narrowed.append(narrowed)
         if self.distinct and option.component:
             self.taken.add(option.component)
         self.chosen.append(option)
@@ -141,6 +145,24 @@ class ReducedSearch:
             self.pop()
             return False
         return True
+
+    def _narrow(self, admits: Mapping[int, int], narrowed: list[tuple[int, int]]) -> bool:
+        """Leave the variables the values that are admitted, note which lose some; False if one has none left."""
+        values = self.values
+        for variable, mask in admits.items():
+            before = values[variable]
+            left = before & mask
+            if not left:
+                return False
+            if left != before:
+                values[variable] = left
+                narrowed.append((variable, before))
+        return True
+
+    def _restore(self, narrowed: list[tuple[int, int]]) -> None:
+        """Give variables the values back that they had before."""
+        for variable, before in narrowed:
+            self.values[variable] = before
 
     def _unsupportable(self, place: int, needs: tuple[int, ...]) -> bool:
         """Return whether a need has no support among the options chosen, nor in any slot left."""
@@ -157,7 +179,7 @@ class ReducedSearch:
         """Take the last option out again."""
         option = self.chosen.pop()
         self.taken.discard(option.component)
-        self.values.pop()
+        self._restore(self.narrowed.pop())
         for need in option.kind.needs:
             self.needed[need] -= 1
         for need in option.kind.supports:

@@ -55,7 +55,7 @@ def _wants(options: Sequence[Option], needs: Needs) -> Hashable:
     """Return the values that options admit, and what they need."""
     return tuple(
         (
-            option.kind.admits,
+            tuple(option.kind.admits.items()),
             frozenset((needs[need].wanted, needs[need].sources) for need in option.kind.needs),
         )
         for option in options

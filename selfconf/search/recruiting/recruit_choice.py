@@ -315,7 +315,7 @@ class RecruitChoice:
                     0,
                     tuple(number[suppliers] for suppliers in self.needs[one]),
                     tuple(sorted({number[suppliers] for suppliers in self._fed_by(one)})),
-                    (),
+                    {},
                     one,
                 ),
             )

@@ -8,8 +8,9 @@ number of needs and supports of all classes.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence, Set
-from functools import reduce
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Sequence, Set
+from functools import cached_property, reduce
 from operator import or_
 
 from selfconf.model.partition import ANY_VALUE
@@ -23,8 +24,6 @@ def consistent(
 
     `required` are the roles that must be played; only they constrain the variables.
     """
-    if not values and len(set[int]().union(*[kind.supports for kind in kinds])) == needs:
-        return set(), []  # each need has a support, of which none is removed: nothing has to be counted
     return ArcConsistency(kinds, needs, values, required).without(())
 
 
@@ -37,62 +36,66 @@ class ArcConsistency:
     def __init__(
         self, kinds: Sequence[InterchangeabilityClass], needs: int, values: Sequence[int], required: Collection[int]
     ) -> None:
-        self._kinds, self._values, self._required = kinds, values, required
-        self._supports, self._needing = _counted(kinds, needs)
-        self._unsupported = [need for need, number in enumerate(self._supports) if not number]
+        self._kinds, self._needs, self._values, self._required = kinds, needs, values, required
+        supported = set[int]().union(*[kind.supports for kind in kinds])
+        self._unsupported = [need for need in range(needs) if need not in supported] if len(supported) < needs else []
+
+    # Where nothing is removed, as mostly, nothing has to be counted.
+    @cached_property
+    def _supports(self) -> list[int]:
+        """For each need the number of classes that support it."""
+        supports = [0] * self._needs
+        for kind in self._kinds:
+            for need in kind.supports:
+                supports[need] += 1
+        return supports
+
+    @cached_property
+    def _needing(self) -> list[list[InterchangeabilityClass]]:
+        """For each need the classes that have it."""
+        needing: list[list[InterchangeabilityClass]] = [[] for _ in range(self._needs)]
+        for kind in self._kinds:
+            for need in kind.needs:
+                needing[need].append(kind)
+        return needing
 
     def without(self, taken: Iterable[InterchangeabilityClass]) -> tuple[set[int], list[Removal]]:
         """Return the classes that are in no solution without some others; by identity, with these, and why."""
-        supports, needing = self._supports.copy(), self._needing
+        supports: list[int] = []
         unsupported = self._unsupported.copy()
         removed: set[int] = set()
         removals: list[Removal] = []
-        for kind in taken:
+
+        def remove(kind: InterchangeabilityClass) -> None:
+            nonlocal supports
+            supports = supports or self._supports.copy()
             removed.add(id(kind))
-            unsupported += _without_support_of(kind, supports)
+            for need in kind.supports:
+                supports[need] -= 1
+                if not supports[need]:
+                    unsupported.append(need)
+
+        for kind in taken:
+            remove(kind)
         admitted = _Admitted(self._kinds, self._values, self._required) if self._values else None
         roles: set[int] = set(self._required)
         while True:
             while unsupported:
                 need = unsupported.pop()
-                for kind in needing[need]:
+                for kind in self._needing[need]:
                     if id(kind) not in removed:
-                        removed.add(id(kind))
                         removals.append(Removal(kind, need=need))
                         roles.add(kind.role)
-                        unsupported += _without_support_of(kind, supports)
+                        remove(kind)
             # Values come after needs: a pass over all classes for each variable costs more than following the counters.
             by_value = admitted.valueless(removed, roles) if admitted else {}
             if not by_value:
                 return removed, removals
             roles.clear()
             for removal in by_value.values():
-                removed.add(id(removal.kind))
                 removals.append(removal)
                 roles.add(removal.kind.role)
-                unsupported += _without_support_of(removal.kind, supports)
-
-
-def _counted(
-    kinds: Sequence[InterchangeabilityClass], needs: int
-) -> tuple[list[int], list[list[InterchangeabilityClass]]]:
-    """Return for each need the number of classes that support it, and the classes that have it."""
-    supports = [0] * needs
-    needing: list[list[InterchangeabilityClass]] = [[] for _ in range(needs)]
-    for kind in kinds:
-        for need in kind.supports:
-            supports[need] += 1
-        for need in kind.needs:
-            needing[need].append(kind)
-    return supports, needing
-
-
-def _without_support_of(kind: InterchangeabilityClass, supports: list[int]) -> Iterator[int]:
-    """Count one support less for what a class supports, and yield the needs that have none left."""
-    for need in kind.supports:
-        supports[need] -= 1
-        if not supports[need]:
-            yield need
+                remove(removal.kind)
 
 
 class _Admitted:
@@ -127,7 +130,7 @@ class _Admitted:
             common = self.values[number]
             concerned = self._constrained[number] if common else self._of_role
             for some in (*map(self._of_role.__getitem__, concerned), self._optional):
-                for kind in [kind for kind in some if not kind.admits[number] & common]:
+                for kind in [kind for kind in some if not kind.admits.get(number, ANY_VALUE) & common]:
                     # A class may fail on two variables; the first is its cause.
                     found.setdefault(id(kind), Removal(kind, variable=number))
         self._narrowed.clear()
@@ -137,13 +140,15 @@ class _Admitted:
         """Take from the variables the values that the classes left of some roles do not admit."""
         for role in sorted(self._of_role.keys() & roles):
             left = self._of_role[role] = [kind for kind in self._of_role[role] if id(kind) not in removed]
-            for number, masks in enumerate(zip(*[kind.admits for kind in left], strict=True)):
-                # No step of Python for each class: nearly none constrains all variables.
-                unbound = masks.count(ANY_VALUE)
-                if unbound == len(masks):
-                    continue
+            admitted: defaultdict[int, list[int]] = defaultdict(list)
+            for kind in left:
+                for number, mask in kind.admits.items():
+                    admitted[number].append(mask)
+            for number, masks in admitted.items():
                 self._constrained[number][role] = None
-                common = self.values[number] if unbound else self.values[number] & reduce(or_, masks)
+                if len(masks) < len(left):
+                    continue  # some class admits any value
+                common = self.values[number] & reduce(or_, masks)
                 if common != self.values[number]:
                     self.values[number] = common
                     self._narrowed.add(number)

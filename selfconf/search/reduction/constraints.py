@@ -10,10 +10,9 @@ from collections import Counter
 from collections.abc import Set
 
 from selfconf.model.immutable import immutable
-from selfconf.model.partition import ANY_VALUE
 from selfconf.model.term import IRI
 from selfconf.search.reduction.arc_consistency import consistent
-from selfconf.search.reduction.dominance import without_dominated
+from selfconf.search.reduction.dominance import ANY_VALUES, without_dominated
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem
 
 
@@ -52,11 +51,7 @@ NO_COMPONENT = IRI.unchecked("")
 def all_of(given: ReducedProblem) -> tuple[Constraint, ...]:
     """Return every constraint of a problem, in the order of roles and needs."""
     used = sorted({need for options in given.options for option in options for need in option.kind.needs})
-    constrained = [
-        variable
-        for variable in range(len(given.values))
-        if any(o.kind.admits[variable] != ANY_VALUE for options in given.options for o in options)
-    ]
+    constrained = sorted(set[int]().union(*[option.kind.admits for options in given.options for option in options]))
     return (
         *(Played(role) for role in dict.fromkeys(given.slots)),
         *map(Fed, used),
@@ -89,7 +84,7 @@ def subproblem(given: ReducedProblem, constraints: Set[Constraint]) -> ReducedPr
     # With fewer constraints more candidates are interchangeable, so that dominance leaves fewer of them.
     kept = without_dominated(left, minima)
     for role in kept.keys() - required:
-        kept[role] += _empty(role, minima[role], len(given.values))
+        kept[role] += _empty(role, minima[role])
     return ReducedProblem(
         slots,
         tuple(tuple(kept.get(role, ())) for role in range(len(given.options))),
@@ -99,9 +94,9 @@ def subproblem(given: ReducedProblem, constraints: Set[Constraint]) -> ReducedPr
     )
 
 
-def _empty(role: int, slots: int, variables: int) -> list[Option]:
+def _empty(role: int, slots: int) -> list[Option]:
     """Return the options that leave the slots of a role empty: nothing needed, nothing supported, any value."""
-    kind = InterchangeabilityClass(role, (), (), (ANY_VALUE,) * variables)
+    kind = InterchangeabilityClass(role, (), (), ANY_VALUES)
     return [Option(-1, NO_COMPONENT, kind) for _ in range(slots)]
 
 
@@ -129,15 +124,13 @@ def _weakened(
     for kind in given.kinds():
         if kind.role not in scope:
             continue
-        key = (
-            kind.role,
-            tuple(need for need in kind.needs if need in needs),
-            tuple(need for need in kind.supports if need in needs),
-            tuple(mask if v in variables else ANY_VALUE for v, mask in enumerate(kind.admits)),
-        )
+        needed = tuple(need for need in kind.needs if need in needs)
+        supported = tuple(need for need in kind.supports if need in needs)
+        admits = {variable: mask for variable, mask in kind.admits.items() if variable in variables}
+        key = (kind.role, needed, supported, *admits.items())
         found = known.get(key)
         if found is None:
-            found = known[key] = InterchangeabilityClass(*key, number=kind.number)
+            found = known[key] = InterchangeabilityClass(kind.role, needed, supported, admits, number=kind.number)
         found.number = min(found.number, kind.number)
         found.signatures += kind.signatures
         weaker[id(kind)] = found

@@ -30,12 +30,16 @@ from functools import cached_property
 from itertools import compress
 from operator import not_
 
-from selfconf.model.partition import Candidate
+from selfconf.model.partition import ANY_VALUE, Candidate
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 from selfconf.search.reduction.needs import Wiring
 from selfconf.search.reduction.reduced_problem import InterchangeabilityClass, Option, ReducedProblem
 
+ANY_VALUES: Mapping[int, int] = {}
+"""What a class admits that constrains no variable."""
+FEW_VARIABLES = 8
+"""With more variables those are looked for that a role constrains, before the values that its classes admit are."""
 MANY_PORTS = 8
 """From how many ports of a candidate on it is quicker to compare the first ones before all of them."""
 
@@ -75,9 +79,12 @@ def reduced(
     most = dict.fromkeys(minima, len(slots)) if shared else minima
     left: dict[int, list[Option]] = {}
     kinds: dict[int, list[InterchangeabilityClass]] = {}
+    admitted = _AdmittedValues() if 0 < len(problem.variables) <= FEW_VARIABLES else None
     # The inputs of all roles are numbered before the first output is looked at: only then are all needs known.
     for role, some in numbers.items():
-        left[role], kinds[role] = _classified(role, problem.candidates[role], some, most[role], distinguished)
+        left[role], kinds[role] = _classified(role, problem.candidates[role], some, most[role], distinguished, admitted)
+        if problem.variables and admitted is None:
+            _note_values(kinds[role])
         needs = wiring.needed(role, [kind.signatures[0][0].inputs for kind in kinds[role]])
         for kind, one in zip(kinds[role], needs, strict=True):
             kind.needs = one
@@ -145,6 +152,7 @@ def _classified(
     numbers: Sequence[int],
     most: int,
     distinguished: Collection[IRI],
+    admitted: _AdmittedValues | None,
 ) -> tuple[list[Option], list[InterchangeabilityClass]]:
     """Return the first candidates of each class, as many as asked for, as options; and the classes."""
     many = len(numbers) > most
@@ -161,7 +169,8 @@ def _classified(
         key: Hashable = number if apart else (signed, component) if component in distinguished else signed
         place = place_of.setdefault(key, len(kinds))  # once, as to hash all ports takes as long as the rest
         if place == len(kinds):
-            kinds.append(InterchangeabilityClass(role, (), (), signed[1], number, (signed,)))
+            admits = ANY_VALUES if admitted is None else admitted[signed[1]]
+            kinds.append(InterchangeabilityClass(role, (), (), admits, number, (signed,)))
         kind = kinds[place]
         if many:
             seen = met[kind] = met.get(kind, 0) + 1
@@ -169,6 +178,24 @@ def _classified(
                 continue
         found.append(Option(number, component, kind))
     return found, kinds
+
+
+def _note_values(kinds: Sequence[InterchangeabilityClass]) -> None:
+    """Note for the classes of a role the values that they admit of the variables that they constrain."""
+    every = [kind.signatures[0][1] for kind in kinds]
+    any_value = (ANY_VALUE,) * len(kinds)
+    # Of many variables most roles constrain few, so that the others are passed over for all classes at once.
+    variables = [variable for variable, masks in enumerate(zip(*every, strict=True)) if masks != any_value]
+    for kind, masks in zip(kinds, every, strict=True) if variables else ():
+        kind.admits = {variable: mask for variable in variables if (mask := masks[variable]) != ANY_VALUE}
+
+
+class _AdmittedValues(dict[tuple[int, ...], Mapping[int, int]]):
+    """The values that classes admit of the variables that they constrain, by those of all: many admit the same."""
+
+    def __missing__(self, masks: tuple[int, ...]) -> Mapping[int, int]:
+        found = self[masks] = {variable: mask for variable, mask in enumerate(masks) if mask != ANY_VALUE}
+        return found
 
 
 def _differ_at_once(candidates: Sequence[Candidate], numbers: Sequence[int]) -> bool:

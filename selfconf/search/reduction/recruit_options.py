@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
-from selfconf.model.partition import ANY_VALUE, Recruit
+from selfconf.model.partition import Recruit
 from selfconf.model.profile import Input, Output, Profile, WantedSignal
 from selfconf.model.term import IRI
 from selfconf.search.problem import Feeder, Problem
@@ -152,9 +152,7 @@ class _Joined:
                 mine = [one for one in of_players if self.needs[one].role in recruit.roles]
                 helped.update(mine)
                 known[key] = (*mine, *self._met(recruit.profile.outputs, self._wanting))
-            kind = InterchangeabilityClass(
-                self.role, self._needs_of[number], known[key], (ANY_VALUE,) * len(self.part.values), number
-            )
+            kind = InterchangeabilityClass(self.role, self._needs_of[number], known[key], {}, number)
             options.append(Option(number, NO_COMPONENT, kind))
         for number in helped:
             need = self.needs[number]

@@ -14,12 +14,12 @@ domain of the variable, and a need is a constraint between the slots of a role a
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from operator import attrgetter
 from typing import NamedTuple
 
 from selfconf.model.immutable import immutable, replace
-from selfconf.model.partition import ANY_VALUE, Candidate
+from selfconf.model.partition import Candidate
 from selfconf.model.profile import Ports
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
@@ -32,7 +32,10 @@ signature: Callable[[Candidate], Signature] = attrgetter("profile.ports", "admit
 
 
 class InterchangeabilityClass:
-    """Candidates of one role that the search need not tell apart: numbers of needs, and masks of values."""
+    """Candidates of one role that the search need not tell apart: numbers of needs, and masks of values.
+
+    It admits any value of a variable for which there is no mask: of many variables most classes constrain few.
+    """
 
     __slots__ = ("admits", "needs", "number", "role", "signatures", "supports")
 
@@ -41,7 +44,7 @@ class InterchangeabilityClass:
         role: int,
         needs: tuple[int, ...],
         supports: tuple[int, ...],
-        admits: tuple[int, ...],
+        admits: Mapping[int, int],
         number: int = -1,
         signatures: tuple[Signature, ...] = (),
     ) -> None:
@@ -103,15 +106,11 @@ class ReducedProblem:
         Options are numbered through all roles.
         """
         found: list[list[tuple[int, int, int]]] = [[] for _ in self.values]
-        start = 0
-        for role, options in enumerate(self.options):
-            # Variable by variable: of many, most roles constrain few.
-            for variable, masks in enumerate(zip(*[option.kind.admits for option in options], strict=True)):
-                if masks.count(ANY_VALUE) < len(masks):
-                    common = self.values[variable]
-                    found[variable] += [
-                        (role, number, mask & common) for number, mask in enumerate(masks, start) if mask != ANY_VALUE
-                    ]
+        start, values = 0, self.values
+        for role, options in enumerate(self.options if values else ()):
+            for number, option in enumerate(options, start):
+                for variable, mask in option.kind.admits.items():
+                    found[variable].append((role, number, mask & values[variable]))
             start += len(options)
         return found
 

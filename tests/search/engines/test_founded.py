@@ -86,7 +86,7 @@ def test_all_options_but_those_of_a_landmark_are_not_enough_and_each_of_these_wo
     every = []
     for number in range(10):
         needs, supports = (tuple(sorted(rng.sample(range(8), rng.randint(least, 2 + least)))) for least in (0, 1))
-        every.append((number + 1, Option(number, 0, InterchangeabilityClass(0, needs, supports, (), number))))
+        every.append((number + 1, Option(number, 0, InterchangeabilityClass(0, needs, supports, {}, number))))
     needing = {need: [literal for literal, option in every[1:] if need in option.kind.needs] for need in range(8)}
     reach = Reach(every, needing, players=1)
     chosen = rng.sample(range(1, 11), rng.randint(0, 4))

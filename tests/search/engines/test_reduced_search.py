@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from hypothesis import given
 
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.model.refusal import Undecided
+from selfconf.model.template import Role, Task, Template
 from selfconf.search.budget import Budget
 from selfconf.search.engines.matching import MaintainedMatching
 from selfconf.search.engines.reduced_search import first_solution
@@ -12,7 +14,7 @@ from selfconf.search.problem import Problem
 from selfconf.search.reduction.constraints import pruned
 from selfconf.search.reduction.dominance import reduced
 from tests.search.comparison import least_numbers, numbers
-from tests.search.worlds import agreement, problems
+from tests.search.worlds import agreement, component, iri, problems
 
 
 @given(problems())
@@ -21,6 +23,13 @@ def test_the_least_solution_is_found_before_and_after_arc_consistency(problem: P
     expected = least_numbers(problem)
     assert numbers(first_solution(pruned(reduced(problem)), Budget())) == expected
     assert numbers(first_solution(reduced(problem), Budget())) == expected
+
+
+def test_nothing_plays_where_a_variable_has_no_value() -> None:
+    template = Template(iri("template"), (Role(iri("eye")),))
+    free = Variable(iri("room"), (), listed=True)
+    given_ = reduced(Problem(Task(template), Partition(((Candidate(component("left"), (ANY_VALUE,)),),), (free,))))
+    assert first_solution(given_, Budget()) is None
 
 
 @given(problems())

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import pytest
+from hypothesis import given
+
+from selfconf.model.partition import ANY_VALUE
+from selfconf.search.problem import Problem
+from selfconf.search.reduction import dominance
 from selfconf.search.reduction.dominance import reduced
 from selfconf.search.reduction.reduced_problem import assigned
-from tests.search.worlds import component, problem
+from tests.search.worlds import agreement, component, problem, problems
 
 EYES = [component(name, outputs="o:Image") for name in ("left", "right")]
 PAIR = problem(
@@ -15,6 +21,20 @@ PAIR = problem(
 def test_candidates_with_equal_ports_are_of_one_interchangeability_class() -> None:
     kinds = reduced(PAIR).kinds()
     assert [(kind.role, kind.needs, kind.supports) for kind in kinds] == [(0, (), (0,)), (0, (), ()), (1, (0,), ())]
+
+
+@pytest.mark.parametrize("few", [0, 100])
+@given(drawn=problems())
+@agreement(0.2)
+def test_classes_admit_what_their_candidates_do(few: int, drawn: Problem) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(dominance, "FEW_VARIABLES", few)
+        given_ = reduced(drawn)
+    for candidates, options in zip(drawn.candidates, given_.options, strict=True):
+        for option in options:
+            masks = candidates[option.number].admits
+            assert [option.kind.admits.get(number, ANY_VALUE) for number in range(len(masks))] == list(masks)
+            assert ANY_VALUE not in option.kind.admits.values()
 
 
 def test_a_role_with_fewer_options_than_slots_is_wiped_out() -> None:
