@@ -221,6 +221,9 @@ def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, 
         path = next(iter(said.get(_SH.resultPath, ())), None)
         messages = said.get(_SH.resultMessage, ())  # pySHACL hands them on in no order
         message = in_english((getattr(one, "language", None) or "", str(one)) for one in messages) or "does not conform"
+        message = message.removesuffix(
+            " See details for more information."
+        )  # pySHACL's report has them, an obstacle not
         one = ShapeViolated(message, IRI.unchecked(str(path)) if isinstance(path, rdflib.URIRef) else None)
         constraint = (*said.get(_SH.sourceConstraintComponent, ()), message) if path is None else ()
         thing = (*said.get(_SH.sourceShape, ()), *constraint)

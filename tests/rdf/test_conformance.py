@@ -192,6 +192,19 @@ def test_of_a_message_in_several_languages_that_in_english_is_told(messages: str
     assert {violation.message for some in found.values() for violation in some} == {told}
 
 
+def test_a_violation_points_to_no_details_that_nothing_shows() -> None:
+    graphs = [
+        rdflib_terms.to_rdflib(turtle.parse(HEAD + text, "a.ttl").triples())
+        for text in (
+            ":good :link :bad .",
+            ":shape sh:property [ sh:path :link ; sh:node [ sh:nodeKind sh:Literal ] ] .",
+        )
+    ]
+    ((violation,),) = violations(graphs[0], graphs[1], IRI("urn:x:shape"), NODES, "a.ttl").values()
+    assert isinstance(violation, ShapeViolated)
+    assert violation.message == "Value does not conform to Shape [ sh:nodeKind sh:Literal ]."
+
+
 def test_a_shape_that_comes_back_to_itself_is_judged_in_silence(capfd: pytest.CaptureFixture[str]) -> None:
     assert outside(":shape sh:node :shape ; sh:property [ sh:path :size ; sh:minCount 1 ] .") == {"bare"}
     assert capfd.readouterr() == ("", "")
