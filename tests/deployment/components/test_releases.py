@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies, Request
 from selfconf.configurator import Failed
 from selfconf.configurator.state import Phase
@@ -129,6 +130,39 @@ def test_a_component_that_hangs_is_started_again_each_time_that_its_site_does_so
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 4 * (STARTING + 2 * CALL))
     assert lab.active() == TASK | {"tracker"}
     assert [wake.after for wake in woken] == lives[:2]  # so that the site counts them
+
+
+def test_what_is_waited_for_is_started_again_when_its_site_has_ended_it_for_an_earlier_release(tmp_path: Path) -> None:
+    """Its site was asked for it before, while it lived out of sight of the task alone."""
+    lab, tracker, woken = Lab(tmp_path), iri("person-tracker"), list[float]()
+    lab.site("astrid", *TASK)
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    hung = lab.runtimes["tracker"]
+
+    def wake(node: object) -> None:
+        woken.append(lab.network.time)
+        if not lab.node_of("tracker").open:
+            lab.component("tracker")
+
+    def end(request: Request) -> None:
+        lab.crash("tracker")
+        request.reply(lab.keys.end("living-room"), b"ended")
+        request.finish()
+
+    living_room(lab, "1", wake).serve(lab.keys.end("living-room"), end)
+    agent = lab.agent()
+    assert lab.running(agent)
+    hung.calls.close()
+    hung.bus.serve(lab.keys.call(tracker), lambda _: None)
+    hung.hung("it hangs")
+    lab.let_pass(0.1)
+    assert isinstance(agent.bus, MemoryBus)
+    lab.network.cut(agent.bus, lab.node_of("tracker"))
+    assert lab.until(lambda: len(woken) == 1, 1.0)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, CALL + SITE_ENDS)
+    assert len(woken) == 2
+    assert lab.runtimes["tracker"].active
 
 
 def test_a_component_that_has_obeyed_since_is_not_ended_for_a_release_that_was_lost(
