@@ -7,107 +7,13 @@ The events are those of `run --format json`, as a configurator keeps them. Of a 
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
 
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.render.names import short
 from selfconf.render.tables import clock_time
-
-EventBody = Mapping[str, Any]
-
-
-@dataclass(slots=True)
-class TaskStory:
-    """What a task was at a moment, by its events until then."""
-
-    task: str
-    configuration: Mapping[str, Any] | None = None
-    refusal: Mapping[str, Any] | None = None
-    since: float = 0.0
-    """When its configuration began, or since when it has none."""
-    unchanged: dict[str, float] = field(default_factory=dict)
-    """Since when each role has been played by the same components, and each recruit has been one; by their IRIs."""
-    lost: dict[str, EventBody] = field(default_factory=dict)
-    replaced: dict[str, str] = field(default_factory=dict)
-    """The component before, by the one that took over from it."""
-    ended: float | None = None
-    """When it was taken down, if it was."""
-    begun: bool = False
-    """Whether it has told anything."""
-
-    def take(self, event: EventBody) -> None:
-        """Note an event."""
-        act, self.begun = event.get("act"), True
-        if act == "lost":
-            self.lost[str(event.get("component"))] = event
-        elif act == "running" and isinstance(event.get("configuration"), dict):
-            # One that was taken down is replaced by none, unless that is said, as of one that ended by a failure.
-            before = self.configuration if self.ended is None or event.get("revises") else None
-            self._note_unchanged(event["configuration"], _time(event))
-            self.configuration, self.refusal, self.since = event["configuration"], None, _time(event)
-            self.ended = None
-            self._note_replaced(before)
-        elif act in ("waiting", "refused"):
-            if self.refusal is None:  # one that waits comes to the same again and again
-                self.since = _time(event)
-            self.refusal = event.get("refusal") or {}
-        elif act in ("stopped", "detached"):
-            self.ended = _time(event)
-
-    def _note_unchanged(self, configuration: Mapping[str, Any], time: float) -> None:
-        """Note what goes on through a new configuration: nothing does after an end, a refusal or a loss of its own."""
-        interrupted = self.ended is not None or self.refusal is not None
-        lost = {component for component, event in self.lost.items() if _time(event) >= self.since}
-        before = {} if interrupted else _players(self.configuration)
-        self.unchanged = {
-            one: self.unchanged[one] if before.get(one) == players and not lost.intersection(players) else time
-            for one, players in _players(configuration).items()
-        }
-
-    def _note_replaced(self, before: Mapping[str, Any] | None) -> None:
-        """Note which components have come since a configuration, each with the one that it took over from."""
-        for role, components in self.roles():
-            gone = [one for one in _components(before, role) if one not in components]
-            come = [one for one in components if one not in _components(before, role)]
-            for one in come:
-                self.replaced.pop(one, None)
-            self.replaced.update(zip(come, gone, strict=False))
-        for one in self.recruits:
-            if one not in _recruits(before):
-                self.replaced.pop(one, None)
-                self.replaced.update((one, gone) for gone in _fed_before(before, self.configuration, one))
-
-    def roles(self) -> Iterator[tuple[str, list[str]]]:
-        """Each role with its components."""
-        for one in (self.configuration or {}).get("roles", ()):
-            yield str(one["role"]), list(map(str, one["components"]))
-
-    @property
-    def recruits(self) -> list[str]:
-        """The components that play no role and feed those that do, or each other."""
-        return _recruits(self.configuration)
-
-    def sinks_of(self, component: str) -> list[str]:
-        """The components that a component feeds, each once."""
-        sinks = (sink for source, (sink, _) in _connections(self.configuration) if source == component)
-        return list(dict.fromkeys(sinks))
-
-    def recruits_of(self, components: Sequence[str]) -> list[str]:
-        """The recruits that feed some of these components, each once."""
-        fed = {source for source, (sink, _) in _connections(self.configuration) if sink in components}
-        return [one for one in self.recruits if one in fed]
-
-
-def story(task: str, events: Iterable[EventBody], at: float | None = None) -> TaskStory:
-    """The story of a task until a moment, or until now."""
-    found = TaskStory(task)
-    for event in events:
-        if at is None or _time(event) <= at:
-            found.take(event)
-    return found
+from selfconf.render.task_story import NO_CONFIGURATION, EventBody, TaskStory, story, time_of
 
 
 def told_why(
@@ -129,12 +35,12 @@ def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequenc
     """
     if found.refusal is not None:
         return _refused(found, term)
-    everything = _means(term, found.task) or any(_means(term, str(value)) for value in _bindings(found))
+    everything = _means(term, found.task) or any(_means(term, value) for value in found.configuration.bindings)
     sentences = _not_yet(found, term)
-    for role, components in found.roles():
+    for role, components in found.configuration.roles.items():
         if everything or _means(term, role) or any(_means(term, one) for one in components):
             sentences += _played(found, role, components, passed_over.get(role))
-    for component in found.recruits:
+    for component in found.configuration.recruits:
         if everything or _means(term, component):
             sentences += _recruited(found, component)
     return sentences + _without_a_role(found, term, passed_over)
@@ -142,7 +48,7 @@ def why_sentences(found: TaskStory, term: str, passed_over: Mapping[str, Sequenc
 
 def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Sequence[str]]) -> list[str]:
     """Why a component that a term means plays no role."""
-    playing = {component for _, components in found.roles() for component in components}.union(found.recruits)
+    playing = {component for players in found.configuration.players.values() for component in players}
     lost = {component: event for component, event in found.lost.items() if _means(term, component)}
     sentences = [
         f"{_name(component)} plays no role in {found.task}: {_loss(event)}"
@@ -150,7 +56,7 @@ def _without_a_role(found: TaskStory, term: str, passed_over: Mapping[str, Seque
         if component not in playing
     ]
     for role, others in passed_over.items() if not lost else ():
-        chosen = ", ".join(map(_name, _components(found.configuration, role)))
+        chosen = ", ".join(map(_name, found.configuration.roles.get(role, [])))
         for one in filter(partial(_means, term), others):
             sentences.append(f"{_name(one)} goes before {chosen} for the role {_name(role)}, and was passed over")
     return sentences
@@ -162,7 +68,7 @@ def _played(found: TaskStory, role: str, components: Sequence[str], before: Sequ
     sentences = [f"{_name(role)} in {found.task}: {who}, {_while(found, role)}"]
     for component in components:
         sentences += _came_about(found, component)
-    recruits = found.recruits_of(components)
+    recruits = found.configuration.recruits_of(components)
     if recruits:
         sentences.append(f"  fed by recruits: {', '.join(map(_name, recruits))}")
     others = [one for one in before or () if one not in components]
@@ -193,7 +99,7 @@ def _changes(found: TaskStory, passed_over: Sequence[str], told: Container[str |
 
 def _recruited(found: TaskStory, component: str) -> list[str]:
     """What a recruit is there for."""
-    fed = ", ".join(map(_name, found.sinks_of(component)))
+    fed = ", ".join(map(_name, found.configuration.sinks_of(component)))
     return [
         f"{_name(component)} in {found.task}: recruited to feed {fed}, {_while(found, component)}",
         *_came_about(found, component),
@@ -208,7 +114,7 @@ def _came_about(found: TaskStory, component: str) -> Iterator[str]:
         yield f"  it took over from {_name(instead)}{'' if loss is None else ': ' + _loss(loss)}"
     if component in found.lost:
         loss = found.lost[component]
-        yield f"  {_name(component)} was {_loss(loss)}{', and has come back' if _time(loss) <= found.since else ''}"
+        yield f"  {_name(component)} was {_loss(loss)}{', and has come back' if time_of(loss) <= found.since else ''}"
 
 
 def _refused(found: TaskStory, term: str) -> list[str]:
@@ -217,7 +123,7 @@ def _refused(found: TaskStory, term: str) -> list[str]:
     roles = [str(reason.get("role")) for reason in reasons]
     near = list(refusal.get("near_misses", ()))
     told = (found.task, *roles, *(str(miss.get("component")) for miss in near), *found.lost)
-    if not any(_means(term, one) for one in (*told, *map(str, _bindings(found)))):
+    if not any(_means(term, one) for one in (*told, *found.configuration.bindings)):
         return []
     sentences = [f"{found.task} has no configuration, since {clock_time(found.since)}"]
     if "message" in refusal:  # of a search that has ended undecided, which has no reasons
@@ -235,48 +141,13 @@ def _refused(found: TaskStory, term: str) -> list[str]:
 
 def _not_yet(found: TaskStory, term: str) -> list[str]:
     """That a task which a term means is being configured, and what it has lost meanwhile."""
-    waits = found.configuration is None and found.begun and found.ended is None
+    waits = found.configuration is NO_CONFIGURATION and found.begun and found.ended is None
     return [f"{found.task} has no configuration yet", *_losses(found)] if waits and _means(term, found.task) else []
 
 
 def _losses(found: TaskStory) -> list[str]:
     """What the task has lost."""
     return [f"  {_name(component)}: {_loss(event)}" for component, event in found.lost.items()]
-
-
-def _components(configuration: Mapping[str, Any] | None, role: str) -> list[str]:
-    roles = (configuration or {}).get("roles", ())
-    return next((list(one["components"]) for one in roles if one["role"] == role), [])
-
-
-def _players(configuration: Mapping[str, Any] | None) -> dict[str, list[str]]:
-    """The components of each role, and each recruit as its own."""
-    roles = {str(one["role"]): list(map(str, one["components"])) for one in (configuration or {}).get("roles", ())}
-    return roles | {one: [one] for one in _recruits(configuration)}
-
-
-def _recruits(configuration: Mapping[str, Any] | None) -> list[str]:
-    return list(map(str, (configuration or {}).get("recruits", ())))
-
-
-def _connections(configuration: Mapping[str, Any] | None) -> Iterator[tuple[str, tuple[str, str]]]:
-    """Each connection: the source, and the sink with its input."""
-    for one in (configuration or {}).get("connections", ()):
-        yield str(one["from"]["component"]), (str(one["to"]["component"]), str(one["to"]["input"]))
-
-
-def _fed_before(
-    before: Mapping[str, Any] | None, configuration: Mapping[str, Any] | None, recruit: str
-) -> Iterator[str]:
-    """Yield the recruits before, there no more, that have fed an input that a recruit feeds now."""
-    fed = {wanted for source, wanted in _connections(configuration) if source == recruit}
-    for source, wanted in _connections(before):
-        if wanted in fed and source in _recruits(before) and source not in _recruits(configuration):
-            yield source
-
-
-def _bindings(found: TaskStory) -> list[object]:
-    return list((found.configuration or {}).get("bindings", {}).values())
 
 
 def _means(term: str, thing: str) -> bool:
@@ -290,12 +161,7 @@ def _name(thing: object) -> str:
 
 def _loss(event: EventBody) -> str:
     detail = f", {event['detail']}" if event.get("detail") else ""
-    return f"lost at {clock_time(_time(event))} ({event.get('cause')}{detail})"
-
-
-def _time(event: EventBody) -> float:
-    moment = event.get("time")
-    return float(moment) if isinstance(moment, int | float) else 0.0
+    return f"lost at {clock_time(time_of(event))} ({event.get('cause')}{detail})"
 
 
 def _while(found: TaskStory, one: str) -> str:

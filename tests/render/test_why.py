@@ -3,26 +3,14 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any
 
 import pytest
 
 from selfconf.errors import PeerError
-from selfconf.render.why import story, told_why, why_sentences
+from selfconf.render.task_story import story
+from selfconf.render.why import told_why, why_sentences
+from tests.render.told_events import EVENTS, HOME, LOST, recruiting, running
 
-HOME = "https://example.org/peis-home#"
-
-
-def running(time: float, position: str) -> dict[str, Any]:
-    """A configuration with that component as position."""
-    roles = [{"role": HOME + "position", "components": [HOME + position]}]
-    roles.append({"role": HOME + "drive", "components": [HOME + "astrid-drive"]})
-    body = {"template": HOME + "navigate", "bindings": {"robot": HOME + "Astrid"}, "roles": roles}
-    return {"act": "running", "time": time, "configuration": body}
-
-
-LOST = {"act": "lost", "time": 20.0, "component": HOME + "tracker", "cause": "fail", "detail": "out of view"}
-EVENTS = [running(10.0, "tracker"), LOST, running(21.0, "odometry")]
 PASSED = {HOME + "position": [HOME + "tracker"]}
 
 
@@ -73,13 +61,8 @@ def test_who_was_lost_and_has_not_come_back_yet_is_said() -> None:
     assert why.endswith("(crash)")
 
 
-def test_what_goes_on_through_a_repair_is_told_since_it_began_and_not_since_the_repair() -> None:
-    lost = {**LOST, "time": 30.0, "component": HOME + "astrid-drive"}
+def test_what_goes_on_through_a_repair_is_told_since_it_began() -> None:
     found = story("navigate", EVENTS)
-    assert found.unchanged == {HOME + "position": 21.0, HOME + "drive": 10.0}
-    assert story("navigate", [*EVENTS, lost, running(31.0, "odometry")]).unchanged[HOME + "drive"] == 31.0
-    for between in ({"act": "stopped", "time": 30.0}, {"act": "waiting", "time": 30.0, "refusal": {}}):
-        assert set(story("navigate", [*EVENTS, between, running(31.0, "odometry")]).unchanged.values()) == {31.0}
     (drive,) = (line for line in why_sentences(found, "drive", {}) if "drive" in line)
     assert drive.endswith(datetime.fromtimestamp(10.0).astimezone().strftime("since %Y-%m-%d %H:%M:%S"))
 
@@ -137,26 +120,6 @@ def test_a_search_that_ended_undecided_is_told_as_that() -> None:
     first, why = why_sentences(story("patrol", [{"act": "waiting", "time": 30.0, "refusal": undecided}]), "patrol", {})
     assert first.startswith("patrol has no configuration, since ")
     assert why == "  not decided within 1 step; allow more by --steps"
-
-
-def test_a_task_that_waits_has_no_configuration_since_it_waits() -> None:
-    looks = [{"act": "waiting", "time": time, "refusal": {}} for time in (30.0, 60.0, 90.0)]
-    assert story("navigate", [*EVENTS, *looks]).since == 30.0
-    assert story("navigate", [*EVENTS, *looks, running(100.0, "tracker")]).since == 100.0
-    assert story("navigate", [*EVENTS, *looks, running(100.0, "tracker"), *looks[:1]]).since == 30.0
-
-
-def recruiting(time: float, *chain: str) -> dict[str, Any]:
-    """A configuration in which a locator is fed by a chain of recruits, the last of which has no inputs."""
-    ends = zip(chain, ("locator", *chain), strict=False)
-    connections = [
-        {"from": {"component": HOME + source, "output": "o"}, "to": {"component": HOME + sink, "input": "i"}}
-        for source, sink in ends
-    ]
-    roles = [{"role": HOME + "place", "components": [HOME + "locator"]}]
-    recruits = [HOME + one for one in sorted(chain)]
-    body = {"template": HOME + "locate", "roles": roles, "connections": connections, "recruits": recruits}
-    return {"act": "running", "time": time, "configuration": body}
 
 
 def test_a_recruit_is_told_by_its_own_name_by_what_it_feeds_and_by_its_task() -> None:
