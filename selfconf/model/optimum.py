@@ -23,6 +23,8 @@ class Optimum:
     """Whether nothing costs less for sure."""
     first: bool = True
     """Whether none that costs as little comes before it for sure."""
+    unaided: bool = False
+    """Whether it was found without the extra `solvers`, which might have proved more."""
 
     @property
     def unknown_terms(self) -> int:

@@ -86,7 +86,10 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
     for number, (spent, least) in enumerate(zip(optimum.cost, optimum.bound, strict=True), 1):
         bound = "" if optimum.proved else f"  (bound {_decimal(least)})"
         lines.append(f"  level {number}  {_decimal(spent)}{bound}")
-    lines.append("  proved: nothing costs less" if optimum.proved else "  not proved: there may be something better")
+    unproved = "not proved: there may be something better"
+    if optimum.unaided:
+        unproved += ", which the extra `solvers` would tell"
+    lines.append(f"  {'proved: nothing costs less' if optimum.proved else unproved}")
     if optimum.missing:
         terms = "1 term is" if optimum.unknown_terms == 1 else f"{optimum.unknown_terms} terms are"
         lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")

@@ -91,6 +91,13 @@ def test_a_single_point_of_failure_stands_out() -> None:
     ]
 
 
+def test_what_is_not_proved_without_the_solvers_names_their_extra() -> None:
+    unaided = replace(OPTIMUM, unaided=True)
+    line = "  not proved: there may be something better, which the extra `solvers` would tell"
+    assert line in cost_text(unaided, (), NAMES).splitlines()
+    assert "solvers" not in cost_text(replace(unaided, proved=True), (), NAMES)
+
+
 def test_a_cost_says_its_levels_its_bound_and_what_has_no_number() -> None:
     assert cost_text(OPTIMUM, {term("error")}, NAMES).splitlines() == [
         "cost, compared level by level",

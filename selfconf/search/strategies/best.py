@@ -89,6 +89,7 @@ def _best_players(given: LazyReduction, steps: int, running: Configuration | Non
         missing_of(problem, playing),
         proved=spent == least,
         first=first,
+        unaided=not solver_available(),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
 
@@ -24,6 +25,7 @@ from selfconf.search.strategies import best, first
 from tests.harness.effort import NIGHTLY
 from tests.search.chance import Chance, by_chance, with_chance
 from tests.search.oracle import Players, World
+from tests.search.without_solvers import without_solvers
 from tests.search.worlds import a_problem, agreement, component, explained_once, iri, problem
 
 LATENCY, ERROR = iri("latency"), iri("error")
@@ -178,6 +180,15 @@ def test_what_is_found_in_few_steps_has_a_true_bound(
     search()
     assert len(unproved) >= 10
     assert any(unproved)
+
+
+def test_an_answer_says_whether_the_solvers_were_missing() -> None:
+    plain = problem({"r": [component("a")]})
+    for without in (False, True):
+        with without_solvers() if without else nullcontext():
+            found = best.best_configuration(plain)
+        assert isinstance(found, Optimum)
+        assert found.unaided is without
 
 
 def test_first_takes_the_preferred_and_best_the_cheapest() -> None:
