@@ -10,27 +10,48 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
 from typing import IO
 
 PATIENCE = 60.0
 """Seconds that anything may take, on a busy machine."""
+LAST_WORDS = 1.0
+"""Seconds that the last lines of a process that has ended may take."""
+INSTALLED_BY = {
+    "aiohttp": "'.[wot]'",
+    "numpy": "numpy",
+    "rosbags": "'.[ros2]'",
+    "zenoh_ros2_sdk": "zenoh-ros2-sdk",
+}
+"""What `pip install` takes in the checkout for each module that an example may need besides those of selfconf."""
+
+
+def need(*modules: str) -> None:
+    """Say what is to be installed first. Raises SystemExit if a module is missing."""
+    missing = [module for module in modules if find_spec(module) is None]
+    if missing:
+        packages = " ".join(INSTALLED_BY[module] for module in missing)
+        raise SystemExit(f"this example needs {', '.join(missing)}; type in the checkout: pip install {packages}")
 
 
 class Player:
     """A process whose lines are shown, and can be waited for."""
 
     def __init__(self, *command: str) -> None:
+        self.command = command
         environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
         self.process = subprocess.Popen(
             [sys.executable, *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
         )
         self.lines: list[str] = []
-        threading.Thread(target=self._listen, args=(self.process.stdout,), daemon=True).start()
+        self._listening = threading.Thread(target=self._listen, args=(self.process.stdout,), daemon=True)
+        self._listening.start()
 
     def _listen(self, said: IO[str]) -> None:
-        for line in said:
-            print(line, end="", flush=True)
-            self.lines.append(line.strip())
+        with said:
+            for line in said:
+                print(line, end="", flush=True)
+                self.lines.append(line.strip())
 
     def says(self, words: str, times: int = 1) -> str:
         """Wait until so many lines have some words in them; the last of these."""
@@ -38,7 +59,10 @@ class Player:
         def found() -> list[str]:
             return [line for line in self.lines if words in line]
 
-        until(lambda: len(found()) >= times, f"{words!r}")
+        until(lambda: len(found()) >= times or self.process.poll() is not None, f"{words!r}")
+        self._listening.join(0.0 if self.process.poll() is None else LAST_WORDS)
+        if len(found()) < times:
+            raise SystemExit(f"{' '.join(self.command)} has ended before it said {words!r}")
         return found()[times - 1]
 
     def shines(self) -> bool:

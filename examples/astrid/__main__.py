@@ -12,7 +12,7 @@ import os
 import secrets
 from pathlib import Path
 
-from examples.players import free_port, stage
+from examples.players import free_port, need, stage
 
 HERE = Path(__file__).parent
 DOMAIN = "8"
@@ -20,6 +20,7 @@ DOMAIN = "8"
 
 def main() -> None:
     """Play the scene once."""
+    need("aiohttp", "numpy", "rosbags", "zenoh_ros2_sdk")
     ecology, port = f"astrid-{secrets.token_hex(3)}", str(free_port())
     with stage() as play:
         play(str(HERE.parent / "ros2" / "router.py"), "--port", port).says("relaying")

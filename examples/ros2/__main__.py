@@ -10,7 +10,7 @@ from __future__ import annotations
 import secrets
 from pathlib import Path
 
-from examples.players import Player, free_port, stage, until
+from examples.players import Player, free_port, need, stage, until
 
 HERE = Path(__file__).parent
 
@@ -19,6 +19,7 @@ DOMAIN = "7"
 
 def main() -> None:
     """Play the scene once."""
+    need("rosbags", "zenoh_ros2_sdk")
     ecology, port = f"chat-{secrets.token_hex(3)}", str(free_port())
     where = ("--port", port, "--domain", DOMAIN)
     node = str(HERE / "node.py")

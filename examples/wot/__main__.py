@@ -10,7 +10,7 @@ import secrets
 import urllib.request
 from pathlib import Path
 
-from examples.players import PATIENCE, Player, stage, until
+from examples.players import PATIENCE, Player, need, stage, until
 
 HERE = Path(__file__).parent
 
@@ -23,6 +23,7 @@ def press(switch: str) -> None:
 
 def main() -> None:
     """Play the scene once."""
+    need("aiohttp")
     ecology = f"light-{secrets.token_hex(3)}"
     with stage() as play:
         things = [
