@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import secrets
+import sys
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
@@ -13,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from selfconf.__main__ import COLLECTING
-from tests.harness import forks
+from tests.harness import forks, rewriting
 from tests.harness.asked_here import ask_here
 from tests.harness.effort import examples
 from tests.harness.frozen import freeze_what_is_there
@@ -27,6 +28,8 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("selfconf")
+REWRITING = pytest.StashKey[list[int]]()
+"""The processes that rewrite assertions while the tests are collected."""
 gc.set_threshold(10 * COLLECTING[0], *COLLECTING[1:])  # of what tests make, little is garbage that waits to be found
 
 
@@ -41,14 +44,25 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     return forks.run(session)
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    """Where tests run in several processes, use all processors while these are collected too."""
+    config = session.config
+    keeps = config.option.assertmode == "rewrite" and not sys.dont_write_bytecode
+    config.stash[REWRITING] = (
+        rewriting.begin(config, (os.cpu_count() or 1) - 1) if config.option.forks > 1 and keeps else []
+    )
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Where tests run in several processes, put those that wait for programs first, and those that compute last."""
     if config.option.forks > 1:
         items.sort(key=_place)
 
 
-def pytest_collection_finish() -> None:
+def pytest_collection_finish(session: pytest.Session) -> None:
     """The collector of garbage has no need to look at what the tests are made of again and again."""
+    rewriting.end(session.config.stash[REWRITING])
     freeze_what_is_there()
 
 
