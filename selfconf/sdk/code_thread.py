@@ -46,7 +46,7 @@ class RunningCode(NamedTuple):
     @property
     def why_overdue(self) -> str:
         """What is said of it when it has not returned in that time."""
-        when = ", as it was turned off" if self.delays_rest else ""
+        when = ", though a component is to come to rest" if self.delays_rest else ""
         return f"`{self.what}` has not returned within {self.limit:g} s{when}"
 
 

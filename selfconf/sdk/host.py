@@ -234,7 +234,8 @@ class Host:
         self._overdue = overdue
         for runtime in (*self.runtimes, *self._leaving):
             if runtime.code is overdue.owner:
-                runtime.hung(overdue.why_overdue)
+                if not overdue.delays_rest:  # else another component of this host may be the one that is to rest
+                    runtime.hung(overdue.why_overdue)
                 self._hung(f"{runtime.profile.component}: {overdue.why_overdue}")
 
 

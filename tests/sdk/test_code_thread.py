@@ -146,7 +146,10 @@ def test_code_may_not_take_long_while_something_is_to_come_to_rest(monkeypatch: 
     code.poll()
     first, second, third = seen
     assert isinstance(first, RunningCode)
-    assert (first.owner, first.why_overdue) == ("me", "`received` has not returned within 0 s, as it was turned off")
+    assert (first.owner, first.why_overdue) == (
+        "me",
+        "`received` has not returned within 0 s, though a component is to come to rest",
+    )
     assert isinstance(second, RunningCode)
     assert (second.owner, second.what) == ("you", "stopped")
     assert third is None

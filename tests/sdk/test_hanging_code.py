@@ -49,6 +49,7 @@ class Hanging(Component):
 LAMP = """:lamp a sc:Component, :Lamp ; sc:deadline [ sc:value 0.3 ; sc:unit unit:SEC ] ;
     sc:hasInput [ sc:name "level" ; sc:signalType :Level ] ; sc:hasOutput [ sc:name "light" ; sc:signalType :Light ] ;
     sc:hasParameter [ sc:name "goal" ; sc:parameterType :Goal ] ."""
+BELL = ':bell a sc:Component, :Bell ; sc:hasOutput [ sc:name "ring" ; sc:signalType :Ring ] .'
 SOURCE = IRI("urn:c:source")
 
 
@@ -112,7 +113,36 @@ def test_code_goes_on_no_longer_than_a_release_may_take_where_its_configurator_i
         assert not until(lambda: living.hangs, 0.6), "it may take so long while it acts"
     living.leave()
     assert until(lambda: living.hangs)
-    assert living.hangs == [f"urn:c:lamp: `{where}` has not returned within 0.3 s, as it was turned off"]
+    assert living.hangs == [
+        f"urn:c:lamp: `{where}` has not returned within 0.3 s, though a component is to come to rest"
+    ]
+
+
+def test_what_keeps_another_component_of_its_program_from_coming_to_rest_has_not_failed(
+    living: LivingStage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that a site has started ends all the same, as the one that is to rest may act on."""
+    monkeypatch.setattr("selfconf.sdk.code_thread.TO_REST", 0.3)
+
+    class Bell(Component):
+        component = "urn:c:bell"
+
+    host = living.host()
+    lamp = host.add(living.advertised(Hanging, LAMP.replace("0.3", "60.0"))(living, "started"))
+    bell = host.add(living.advertised(Bell, BELL)())
+    living.run(host)
+    living.apply("urn:c:bell")
+    assert until(lambda: bell.active)
+    answers = living.apply("urn:c:lamp", values={"goal": Literal("x")})
+    assert lamp.begun.wait(PATIENCE)
+    living.call("urn:c:bell", "release", Release(2, living.supervisor, "task~1"))
+    assert until(lambda: living.hangs)
+    assert living.hangs == [
+        "urn:c:lamp: `started` has not returned within 0.3 s, though a component is to come to rest"
+    ]
+    living.release_code.set()
+    assert until(lambda: answers)
+    assert ([answer.verdict for answer in answers], living.fails) == ([Verdict.DONE], [])
 
 
 def test_starting_may_take_longer_where_no_deadline_is_stated(
