@@ -27,13 +27,15 @@ LogSource = Callable[[LogQuestion], LogPart]
 def site_logs(ecology: str | None, folder: Path | None = None) -> list[Path]:
     """The logs of the sites of an ecology on this machine, also of those that have ended, sorted.
 
-    Without a folder they are where the sites that run keep them, and in the folder that is usual. Raises NetworkError,
-    where there is none, and AuthorError where several ecologies have logs and none is named, or for what names none.
+    Without a folder they are where the sites that run keep them, or will once a component has printed something, and in
+    the folder that is usual. Raises NetworkError, where there is none, and AuthorError where several ecologies have
+    logs and none is named, or for what names none.
     """
     if ecology is not None:
         checked_name(ecology, "an ecology")
-    folders = _folders(ecology) if folder is None else {folder}
-    found = sorted(path for one in folders for path in one.glob(f"{ecology or '*'}@*.log"))
+    running = _logs_of_running_sites(ecology) if folder is None else set()
+    folders = {this_machine.log_folder(), *(path.parent for path in running)} if folder is None else {folder}
+    found = sorted(running.union(*(one.glob(f"{ecology or '*'}@*.log") for one in folders)))
     if ecology is None:
         found = _of_one_ecology(found)
     if not found:
@@ -52,9 +54,8 @@ def names_of_log(path: Path) -> tuple[str, str]:
     return ecology, site
 
 
-def _folders(ecology: str | None) -> set[Path]:
-    sites = this_machine.local_sites(ecology)
-    return {this_machine.log_folder(), *(Path(site.log).parent for site in sites if site.log)}
+def _logs_of_running_sites(ecology: str | None) -> set[Path]:
+    return {Path(site.log) for site in this_machine.local_sites(ecology) if site.log}
 
 
 def _of_one_ecology(logs: list[Path]) -> list[Path]:

@@ -44,6 +44,18 @@ def test_logs_are_found_where_they_are_usual_and_where_sites_that_run_say(runtim
         site_logs("other")
 
 
+@pytest.mark.usefixtures("runtime")
+def test_the_log_of_a_site_that_runs_can_be_followed_before_it_is_there(tmp_path: Path) -> None:
+    log = tmp_path / "home@here.log"
+    this_machine.announce(this_machine.LocalSite("home", "here", "tcp/127.0.0.1:1", os.getpid(), log=str(log)))
+    assert site_logs(None) == [log]
+    source = local_log(log)
+    before = source(LogQuestion(lines=10))
+    assert not before.lines
+    log.write_text("2026-11-22T06:30:01.000Z stdout urn:x hello\n")
+    assert [line.text for line in source(LogQuestion(position=before.position)).lines] == ["hello"]
+
+
 def test_of_several_ecologies_the_one_that_lives_is_meant_else_one_has_to_be_named(runtime: Path) -> None:
     (runtime / "log").mkdir(parents=True)
     for name in ("home", "lab"):
