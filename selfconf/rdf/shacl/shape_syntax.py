@@ -50,6 +50,8 @@ STATED_ONCE = (
     | _terms("qualifiedValueShape")
 )
 """What a shape says once, if it does (SHACL, appendix C): of some that are said twice, pySHACL judges no shape."""
+VALIDATORS = (SH.validator, SH.nodeValidator, SH.propertyValidator)
+"""How a constraint component has what says whether a constraint of it holds (SHACL, 6.2.3)."""
 PATH_FORMS = _terms("inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
 """What leads from a path in brackets to the path that it is made of; an alternative leads to a list of paths."""
 DEEPEST_PATH = 50
@@ -90,13 +92,15 @@ def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[T
 
     A variable may stand wherever no list and no constraint has to be: its value is an IRI or a literal.
     """
+    validators = _validators(document)
     for triple in triples:
         shape, predicate, value = triple
+        for query in [value] if predicate == SH.sparql else validators.get(predicate, ()):
+            refused = _refused(document, query)
+            if refused is not None:
+                return refused
         if value in variables and predicate not in LISTS | DESCRIBED:
             continue
-        refused = _refused(document, value) if predicate == SH.sparql else None
-        if refused is not None:
-            return refused
         if predicate in WANTED and not _fits(document, triple):
             return triple, unfit(predicate).rstrip(".")
         lacking = _lacking(document, shape, predicate)
@@ -228,15 +232,21 @@ def _refused(document: Document, constraint: Term) -> tuple[Triple, str] | None:
     return None
 
 
+def _validators(document: Document) -> dict[IRI, list[Term]]:
+    """What holds the queries of the document's own SPARQL-based constraint components, by the predicates of these."""
+    found: dict[IRI, list[Term]] = {}
+    for component in document.instances(SH.ConstraintComponent):
+        holding = [one for predicate in VALIDATORS for one in document.values(component, predicate)]
+        for parameter in document.values(component, SH.parameter):
+            for path in document.values(parameter, SH.path):
+                if isinstance(path, IRI):
+                    found.setdefault(path, []).extend(holding)
+    return found
+
+
 def component_parameters(document: Document) -> frozenset[IRI]:
     """Return the predicates by which a shape of the document uses one of its own SPARQL-based constraint components.
 
     Only pySHACL can judge what they say.
     """
-    return frozenset(
-        path
-        for component in document.instances(SH.ConstraintComponent)
-        for parameter in document.values(component, SH.parameter)
-        for path in document.values(parameter, SH.path)
-        if isinstance(path, IRI)
-    )
+    return frozenset(_validators(document))

@@ -48,6 +48,7 @@ from selfconf.rdf.shacl import (
 )
 from selfconf.rdf.sparql import why_not_asked
 from selfconf.rdf.validation.diagnostics import at
+from selfconf.rdf.validation.lints.normal_form import ShapeSource
 from selfconf.rdf.vocabulary import SC
 
 _SAMPLES: dict[Node, Literal] = {
@@ -121,13 +122,11 @@ def _with_samples(graph: Graph) -> Graph:
         datatype = graph.value(parameter, SH.datatype)
         kind = graph.value(parameter, SH.nodeKind)
         samples[parameter] = parameter if kind == SH.IRI else _SAMPLES.get(datatype) if datatype else None
-    shapes = Graph()
+    shapes, of_any_term = Graph(), ShapeSource(graph).constraints | {RDF.first, SH.hasValue}
     for subject, predicate, value in graph:
         sample = samples.get(value, value)
-        if str(predicate) in LISTS | DESCRIBED or (
-            sample is None and (predicate == RDF.first or predicate == SH.hasValue)
-        ):
-            sample = value  # no parameter will do for a list or a constraint, and any term as a member
+        if str(predicate) in LISTS | DESCRIBED or (sample is None and predicate in of_any_term):
+            sample = value  # no parameter will do for a list or a constraint, and any term where a term is asked for
         if sample is None and str(predicate) in PATH_FORMS | {str(SH.path)}:
             sample = _STAND_IN
         if sample is None and (subject, SH.path, None) not in graph:

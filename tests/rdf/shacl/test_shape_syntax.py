@@ -141,3 +141,21 @@ def test_a_statement_leads_to_its_value_or_to_the_members_of_a_list_of_shapes() 
     document = turtle.parse(PREFIXES + ":r sh:or ( :a :b ) ; sh:xone () ; sh:node :c ; sh:class :d .", "shapes.ttl")
     found = {predicate: [*shapes_behind(document, predicate, value)] for predicate, value in document.about(iri("r"))}
     assert found == {SH["or"]: [iri("a"), iri("b")], SH.xone: [], SH.node: [iri("c")], SH["class"]: []}
+
+
+@pytest.mark.parametrize("kind", ["validator", "nodeValidator", "propertyValidator"])
+def test_a_query_of_a_constraint_component_that_a_shape_uses_is_looked_at(kind: str) -> None:
+    text = f"""
+        :r :one :v . :s sh:class :Lamp .
+        :One a sh:ConstraintComponent ; sh:parameter [ sh:path :one ] ;
+            sh:{kind} [ sh:ask "ASK {{ $value foo:p $one }}" ] .
+    """
+    document = turtle.parse(PREFIXES + text, "shapes.ttl")
+    used, unused = (
+        misfit(document, [(subject, *said) for said in document.about(subject)], frozenset((iri("v"),)))
+        for subject in (iri("r"), iri("s"))
+    )
+    assert used is not None
+    assert used[0][1] == SH.ask
+    assert "the prefix foo: is not declared" in used[1]
+    assert unused is None

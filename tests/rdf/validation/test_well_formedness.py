@@ -195,6 +195,14 @@ def test_a_shape_of_what_is_recruited_is_looked_at(recruited: str) -> None:
         read_task(parse(PREFIXES + text, "a.ttl"), iri("t"))
 
 
+def test_a_constraint_component_that_a_parameter_is_given_to_is_tried() -> None:
+    role = ":r a sc:Role ; :one :robot . :One a sh:ConstraintComponent ; sh:parameter [ sh:path :one ]"
+    text = PARAMETER.format("") + role
+    (only,) = malformed(f"{text} .")
+    assert only.code == "SC-T13"
+    assert malformed(f'{text} ; sh:validator [ a sh:SPARQLAskValidator ; sh:ask "ASK {{ $value ?any $one }}" ] .') == []
+
+
 @pytest.mark.parametrize("shape", ["sh:class 5", "sh:path :p"])
 def test_of_two_roles_only_the_one_that_cannot_be_asked_is_told(shape: str) -> None:
     found = malformed(f":good a sc:Role ; sh:class :A .\n:bad a sc:Role ; {shape} .")
