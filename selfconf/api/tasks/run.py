@@ -10,20 +10,18 @@ from typing import NamedTuple
 
 from selfconf import this_machine
 from selfconf.api.answer import Answer
-from selfconf.api.configuring import refusal_with_places
 from selfconf.api.membership import Membership
 from selfconf.api.method import Method
-from selfconf.api.places import Places
 from selfconf.api.synchronous_bus import ROLL_CALL, SynchronousBus
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.tasks.detached import task_record
 from selfconf.api.tasks.living_tasks import LivingTasks
-from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
+from selfconf.api.tasks.refusal_explanations import RefusalExplanations
+from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing
 from selfconf.api.tasks.task_options import AS_USUAL, TaskOptions
 from selfconf.api.tasks.work_queue import UNDISTURBED, WorkQueue
 from selfconf.bus.port import Undo
 from selfconf.bus.zenoh import ZenohBus
-from selfconf.composition import Composer, TimeLimit
 from selfconf.configurator import Loss
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import NetworkError, ProgrammerError
@@ -88,10 +86,8 @@ class Run:
         membership.check_may_run()
         self.task, self.method = completed(task), method
         self._refusal: Refusal | Undecided | None = None
-        self._composer = method.composer(self.task)
-        self._rests_on, self._described = rests_on, described
-        self._told: tuple[Refusal, Mapping[IRI, Advertisement], Refusal] | None = None
-        """The refusal that was explained last, of which ecology, and the explanation."""
+        composer, self._rests_on = method.composer(self.task), rests_on
+        self._explanations = RefusalExplanations(self.task, method, composer, described)
         self._work = WorkQueue()
         self._begun: _Begun | None = None
         self._termination: Termination | None = None
@@ -103,7 +99,7 @@ class Run:
         self.wanted_name = self.task_name = task_name(record.task)
         """The name that was given to the task, or that of its template; and the one that it has in the ecology."""
         self._request = replace(
-            RunRequest.of(self._composer, composing(self._composer, method.seconds)),
+            RunRequest.of(composer, composing(composer, method.seconds)),
             policy=options.policy,
             patient=wait,
             believed=membership.beliefs(),
@@ -236,17 +232,7 @@ class Run:
         """The refusal by which the task has ended, with all that can be found out now that nothing runs any more."""
         if not isinstance(self._refusal, Refusal):
             return self._refusal
-        explained = self._explain(self._refusal, self._composer, TimeLimit(self.method.seconds))
-        return answered(explained, self.task.document)
-
-    def _explain(self, refusal: Refusal, composer: Composer, limit: TimeLimit) -> Refusal:
-        """A refusal with all that the time allows to find out; one that waits comes to the same again and again."""
-        ecology = searched_ecology(refusal)
-        if self._told is None or self._told[:2] != (refusal, ecology):
-            described = self._described()
-            explained = refusal_with_places(composer, ecology, refusal, self.method, limit, described, self.task.texts)
-            self._told = refusal, ecology, explained
-        return self._told[2]
+        return answered(self._explanations.in_full(self._refusal), self.task.document)
 
     def _aside(self, work: Callable[[], None]) -> Undo:
         """Have the thread that reads the events do what takes long, once it has read what has led to it."""
@@ -273,23 +259,13 @@ class Run:
         refusal, found, over = event.refusal, list[Refusal](), isinstance(event, TaskRefused)
 
         def explain() -> None:
-            composer, limit = self._composer, TimeLimit(self.method.seconds)
-            if not over:
-                # With a composer of its own: to be ended in the middle must not spoil the partition of the next search.
-                composer, limit = self.method.composer(self.task), self.method.explaining()
-            found.append(self._explain(refusal, composer, limit))
+            found.append(self._explanations.in_full(refusal) if over else self._explanations.meanwhile(refusal))
 
         if not (self._work.do(explain) if over else self._work.until_more(explain, UNDISTURBED)):
-            found = [self._with_places(refusal)]
-            if over:
-                self._told = refusal, searched_ecology(refusal), found[0]
+            found = [self._explanations.with_places(refusal, is_last=over)]
         elif isinstance(event, TaskWaiting):
             self._in_ecology().runner.reports.explained(event, found[0])
         return replace(event, refusal=found[0])
-
-    def _with_places(self, refusal: Refusal) -> Refusal:
-        """A refusal that says where its facts stand, which takes no time to find out."""
-        return Places(self.task.document.template, self._described(), self.task.texts).placed(refusal)
 
     def __repr__(self) -> str:
         phase = "not begun" if self._begun is None else self._begun.runner.state.phase_in_words

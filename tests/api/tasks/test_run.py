@@ -17,7 +17,7 @@ from selfconf.api.membership import Membership
 from selfconf.api.method import Method
 from selfconf.api.tasks import work_queue
 from selfconf.api.tasks.run import Run, WorkQueue
-from selfconf.composition import Composer, TimeLimit
+from selfconf.composition import Composer
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
@@ -180,7 +180,7 @@ def test_a_refusal_is_explained_by_the_ecology_in_which_it_was_found(served: Hom
         refused = run._request.compose(home, frozenset(), None)
         run._request.compose({}, frozenset(), None)
         assert isinstance(refused, sc.Refusal)
-        explained = run._explain(refused, run._composer, TimeLimit(None))
+        explained = run._explanations.in_full(refused)
     assert [str(miss) for miss in explained.near_misses] == ["its place is kitchen, not cellar"]
 
 
