@@ -153,7 +153,7 @@ class Site:
 
     def _look(self) -> None:
         """Look at the files, now and from time to time, and tell the ecology if the advertisements have changed."""
-        began = self.bus.now()
+        began, before = self.bus.now(), self.shelf.advertisements
         try:
             changed = self.shelf.refresh()
         finally:  # whatever breaks: else the files would never be looked at again
@@ -163,6 +163,21 @@ class Site:
             self._tell_changed()
             self._changed(self.shelf.advertisements)
             log.info("%d advertisements", len(self._served))
+            self._tell_of_other_ports(before)
+
+    def _tell_of_other_ports(self, before: Mapping[IRI, Advertisement]) -> None:
+        """Say which components have other ports by now than their processes know, which have read the files once."""
+        for component, program in self.processes.by_component.items():
+            was, is_now = before.get(component), self.shelf.advertisements.get(component)
+            if program.running and was is not None and is_now is not None and was is not is_now:
+                then, now = was.profile, is_now.profile
+                if (then.ports, then.parameters) != (now.ports, now.parameters):
+                    log.warning(
+                        "%s is advertised with other ports, and its process runs on with those from before:"
+                        " `selfconf site restart %s` starts it anew",
+                        component,
+                        component.short,
+                    )
 
     def _answer(self, request: Request) -> None:
         """Reply the advertisements, each with its page: the asker counts them, n of n."""

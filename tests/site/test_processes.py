@@ -21,6 +21,7 @@ from selfconf.protocol.messages import Fail, Page, Release, Wake
 from selfconf.site import Site
 from selfconf.site.component_program import ComponentProgram
 from selfconf.site.process_group import ProcessGroup
+from selfconf.site.site import FILE_CHECK
 from tests.lab import iri, write_advertisements
 from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python, serve, until
 
@@ -83,6 +84,27 @@ def test_a_component_that_runs_is_not_started_twice_and_ends_with_its_site(
     site.close()
     assert group.code() is not None
     assert len([path for path in folder.iterdir() if path.name.isdigit()]) == 1
+
+
+def test_a_process_that_runs_with_other_ports_than_are_advertised_is_told_of(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site], caplog: pytest.LogCaptureFixture
+) -> None:
+    command, port = python("pass"), '; sc:hasOutput [ sc:name "{}" ; sc:signalType rob:Text ]'
+    dormant(tmp_path, command, more=port.format("time"))
+    site = sites(tmp_path)
+    ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
+    file = tmp_path / "sleeper.ttl"
+    for text, named in (
+        (f"# It sleeps.\n{file.read_text()}", 0),
+        (file.read_text().replace(" a sc:Component", " :bed :long ; a sc:Component"), 0),
+        (file.read_text().replace('"time"', '"hour"'), 1),
+    ):
+        file.write_text(text)
+        network.run(lambda: False, 2 * FILE_CHECK)
+        told = [record.getMessage() for record in caplog.records if "other ports" in record.getMessage()]
+        assert len(told) == named, text
+    assert "`selfconf site restart sleeper` starts it anew" in told[0]
+    site.close()
 
 
 def test_a_component_that_has_ended_may_be_started_again_and_its_end_is_reported(
