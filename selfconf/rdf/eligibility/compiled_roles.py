@@ -156,6 +156,12 @@ def with_named_suppliers(document: Document) -> Document:
     return replace(document, statements=statements)
 
 
+def called(shape: IRI) -> str:
+    """What a message calls the shape of a role or of suppliers, of which one without a name is called by its role."""
+    role = shape.removeprefix(_SUPPLIERS)
+    return f"the shape {shape!r}" if role == shape else f"the shape of what the role <{role}> recruits"
+
+
 def suppliers_of(document: Document, role: IRI, hierarchy: Hierarchy) -> CompiledRole:
     """The tests that a supplier has to pass under a hierarchy; none where a role recruits any component.
 

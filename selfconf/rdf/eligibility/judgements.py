@@ -16,7 +16,7 @@ from selfconf.model.term import IRI, Term
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
-from selfconf.rdf.eligibility.compiled_roles import bound_shape, left_to_judge
+from selfconf.rdf.eligibility.compiled_roles import bound_shape, called, left_to_judge
 from selfconf.rdf.eligibility.role_tests import CompiledRole
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, TYPE
@@ -124,7 +124,8 @@ class ShapeJudge:
         shapes = to_rdflib(bound_shape(left_to_judge(self._document, role), values))
         seen = self.subjects(role, focus, ecology) if subjects is None else subjects
         sizes = {advertisement.component: advertisement.breadth for advertisement in focus}
-        return violations(seen, shapes, role.iri, list(sizes), self._document.source, sizes=sizes)
+        source = self._document.source
+        return violations(seen, shapes, role.iri, list(sizes), source, called(role.iri), sizes)
 
     def subjects(self, role: CompiledRole, focus: Sequence[Advertisement], ecology: AdvertisementIndex) -> rdflib.Graph:
         """What the shape of a role is shown: no more than the survivors, if it looks at nothing else."""

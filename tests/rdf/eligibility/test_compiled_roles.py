@@ -76,3 +76,10 @@ def test_a_parameter_in_the_shape_of_suppliers_has_to_have_a_value() -> None:
         "base",
         "good",
     ]
+
+
+def test_a_shape_without_a_name_by_which_none_can_be_recruited_is_called_by_its_role() -> None:
+    """What only pySHACL finds wrong: a constraint component without a validator."""
+    odd = "[ :odd 1 ] . :Odd a sh:ConstraintComponent ; sh:parameter [ sh:path :odd ]"
+    with pytest.raises(TemplateError, match=r"the shape of what the role <\S+#r> recruits is not well-formed"):
+        recruited(odd, wanted="1")
