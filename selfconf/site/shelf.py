@@ -39,7 +39,7 @@ class Shelf:
     """The advertisements in some files and folders, read again when the files change."""
 
     def __init__(self, paths: Sequence[Path], complain: Complaint) -> None:
-        self._paths, self._complain = paths, complain
+        self._paths, self.complain = paths, complain
         self._files: dict[str, _ReadFile] = {}
         """What was read of each file, in the order in which of two advertisements of one component the first counts."""
         self._seen: dict[str, files.FileStamp] = {}
@@ -101,7 +101,7 @@ class Shelf:
         """Complain of what was not complained of the last time: the files are looked at every second."""
         for complaint in dict.fromkeys(complaints):
             if complaint not in self._told:
-                self._complain(complaint)
+                self.complain(complaint)
         self._told = frozenset(complaints)
 
 

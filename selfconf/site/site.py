@@ -172,11 +172,9 @@ class Site:
             if program.running and was is not None and is_now is not None and was is not is_now:
                 then, now = was.profile, is_now.profile
                 if (then.ports, then.parameters) != (now.ports, now.parameters):
-                    log.warning(
-                        "%s is advertised with other ports, and its process runs on with those from before:"
-                        " `selfconf site restart %s` starts it anew",
-                        component,
-                        component.short,
+                    self.shelf.complain(
+                        f"{component} is advertised with other ports, and its process runs on with those from before:"
+                        f" `selfconf site restart {component.short}` starts it anew"
                     )
 
     def _answer(self, request: Request) -> None:

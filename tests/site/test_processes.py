@@ -87,11 +87,12 @@ def test_a_component_that_runs_is_not_started_twice_and_ends_with_its_site(
 
 
 def test_a_process_that_runs_with_other_ports_than_are_advertised_is_told_of(
-    network: Network, tmp_path: Path, sites: Callable[[Path], Site], caplog: pytest.LogCaptureFixture
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site]
 ) -> None:
     command, port = python("pass"), '; sc:hasOutput [ sc:name "{}" ; sc:signalType rob:Text ]'
     dormant(tmp_path, command, more=port.format("time"))
-    site = sites(tmp_path)
+    site, told = sites(tmp_path), list[str]()
+    site.shelf.complain = told.append
     ask(network, KEYS.wake("home"), encode(Wake(SLEEPER)))
     file = tmp_path / "sleeper.ttl"
     for text, named in (
@@ -101,7 +102,6 @@ def test_a_process_that_runs_with_other_ports_than_are_advertised_is_told_of(
     ):
         file.write_text(text)
         network.run(lambda: False, 2 * FILE_CHECK)
-        told = [record.getMessage() for record in caplog.records if "other ports" in record.getMessage()]
         assert len(told) == named, text
     assert "`selfconf site restart sleeper` starts it anew" in told[0]
     site.close()
