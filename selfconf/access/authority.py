@@ -30,7 +30,7 @@ from selfconf.model.immutable import replace
 
 DAYS = 7.0
 """For how many days a certificate is good unless told otherwise."""
-KNOWN = (f"conf.{MAIN}", f"read.{MAIN}")
+KNOWN = (Principal(PrincipalKind.CONFIGURATOR, MAIN), Principal(PrincipalKind.READER, MAIN))
 """The principals that every site that is given the folder of the authority knows."""
 
 
@@ -62,8 +62,7 @@ class Authority(KeysFolder):
         except OSError as error:
             raise AuthorError(reason(error)) from None
         folder = cls(path)
-        for kind in (PrincipalKind.CONFIGURATOR, PrincipalKind.READER):  # known before any program asks
-            folder.credentials((kind,), MAIN)
+        folder._known()  # before any program asks
         return folder
 
     def issue(self, principal: Principal, out: Path, hosts: Sequence[str] = (), days: float = DAYS) -> Certificate:
@@ -173,9 +172,9 @@ class Authority(KeysFolder):
 
         What was issued into other folders stays on record.
         """
-        own = self.path / "own"
+        own, known = self.path / "own", {principal.common_name for principal in KNOWN}
         for folder in own.iterdir():
-            if folder.name not in KNOWN and self._has_expired(folder / f"{OWN}.pem"):
+            if folder.name not in known and self._has_expired(folder / f"{OWN}.pem"):
                 shutil.rmtree(folder, ignore_errors=True)
         for noted in (self.path / "issued").glob("*.folder"):
             issued = noted.with_suffix(".pem")
@@ -191,10 +190,17 @@ class Authority(KeysFolder):
 
     def _shown(self, ecology: str) -> Iterable[Certificate]:
         """What was shown to sites of an ecology, and what programs that are given this folder need not show."""
-        return [
-            *super()._shown(ecology),
-            *(read_certificate(self.path / "own" / name / f"{OWN}.pem") for name in KNOWN),
-        ]
+        return [*super()._shown(ecology), *self._known()]
+
+    def _known(self) -> list[Certificate]:
+        """What is known without being shown; made now if it is not there, as `init` may have been broken off."""
+        found = []
+        for principal in KNOWN:
+            own = self.path / "own" / principal.common_name / f"{OWN}.pem"
+            if not own.is_file():
+                self.credentials((principal.kind,), MAIN)
+            found.append(read_certificate(own))
+        return found
 
     # How it is kept.
 

@@ -28,6 +28,17 @@ def test_with_the_folder_of_an_authority_a_program_gets_what_it_needs(authority:
     assert {"conf.main", "read.main"} == authority.admitted("lab").keys()
 
 
+def test_an_authority_whose_making_was_broken_off_is_of_use(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Authority, "credentials", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            Authority.init(tmp_path / "authority")
+    assert Authority(tmp_path / "authority").admitted("lab").keys() == {"conf.main", "read.main"}
+
+
 def test_a_certificate_is_renewed_for_the_same_key(authority: Authority, tmp_path: Path) -> None:
     old = authority.issue(ALICE, tmp_path / "alice", ["10.0.0.1"], days=1)
     key = (tmp_path / "alice/certificate.key").read_bytes()
