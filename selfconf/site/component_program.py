@@ -297,6 +297,8 @@ class ComponentProgram:
         if again or not process.lived:
             self._count_crash(process)
         outlook = self._outlook() if again else ""
+        if code == 0 and not process.lived:  # nothing was printed that would tell why
+            outlook = " before the component lived; does its program call `main`?"
         self._report(
             process, Cause.CRASH, f"the process that its site started for it has ended with code {code}{outlook}"
         )

@@ -179,16 +179,16 @@ def test_a_program_that_crashes_too_often_is_given_up(
     assert live(network, lambda: len(runs(tmp_path)) == 3)
 
 
-@pytest.mark.parametrize("code", [0, 2])
+@pytest.mark.parametrize(("code", "hint"), [(0, " before the component lived; does its program call `main`?"), (2, "")])
 def test_a_program_that_wants_to_end_or_cannot_run_is_not_started_again(
-    network: Network, tmp_path: Path, site: Callable[..., Site], code: int
+    network: Network, tmp_path: Path, site: Callable[..., Site], code: int, hint: str
 ) -> None:
     made, heard = site(python(f"{NUMBERED}; raise SystemExit({code})")), fails(network)
     made.start(SLEEPER)
     assert live(network, lambda: bool(heard))
     live(network, lambda: len(runs(tmp_path)) > 1, 0.5)
     assert len(runs(tmp_path)) == 1
-    assert heard[0].detail == f"the process that its site started for it has ended with code {code}"
+    assert heard[0].detail == f"the process that its site started for it has ended with code {code}{hint}"
 
 
 def lost_lives(network: Network, tmp_path: Path, made: Site, number: int, told: bool) -> str:
