@@ -89,9 +89,9 @@ class ComponentRuntime:
             profile,
             component,
             self.fail,
-            self._woken,
-            self._restless,
-            lambda: self.offered_operations.end(),
+            woken=self._woken,
+            restless=self._restless,
+            rests=lambda: self.offered_operations.end(),
         )
         self._timers = ComponentTimers(bus, self.code)
         self._closed = False
@@ -120,10 +120,10 @@ class ComponentRuntime:
             keys,
             profile.component,
             self.life,
-            lambda: self.activation,
-            self._keep,
-            lambda task, why: self._put_fail(Cause.YIELD, why, task),
-            self._let_go,
+            activation=lambda: self.activation,
+            become=self._keep,
+            ask_holder=lambda task, why: self._put_fail(Cause.YIELD, why, task),
+            let_go=self._let_go,
         )
         self._answers = CallAnswers(
             bus,
