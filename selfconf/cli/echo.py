@@ -63,4 +63,5 @@ def _text(signal: HeardSignal) -> str:
 
     moment = clock_time(signal.stamp.time, exact=True)
     missed = f" ({signal.passed_over} passed over)" if signal.passed_over else ""
-    return f"{paint(moment, 'dim')}  {signal.rate:6.1f}/s  {signal.worded()}{missed}"
+    rate = f"{signal.rate:6.1f}/s" if signal.rate else " " * 8  # of the first signals it is not known
+    return f"{paint(moment, 'dim')}  {rate}  {signal.worded()}{missed}"

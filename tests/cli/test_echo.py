@@ -94,6 +94,7 @@ def test_values_are_shortened_and_bytes_described() -> None:
     image = Stamp(IRI("urn:c"), "life", 1, 0.25, SignalEncoding("image/x-raw", "uint8", (2, 3)))
     assert echo._text(HeardSignal(image, 2.0, 6, True)).endswith("<image/x-raw of uint8 2 x 3, 6 bytes>")
     assert echo._text(HeardSignal(STAMP, 2.0, 6, True)).endswith("2.0/s  <6 bytes>")
+    assert "/s" not in echo._text(HeardSignal(STAMP, 0.0, 6, True)), "of the first signals no rate is known"
 
 
 def test_the_time_of_a_clock_of_its_own_is_shown_with_its_date_or_as_it_is() -> None:
