@@ -61,6 +61,8 @@ _SAMPLES: dict[Node, Literal] = {
     XSD.dateTime: Literal("2000-01-01T00:00:00Z", datatype=XSD.dateTime),
 }
 _STAND_IN = URIRef("urn:-")  # short, so that no pattern takes long
+_RECRUITED = "urn:selfconf:recruited:"
+"""What the shapes of what is recruited are called in a trial, with numbers behind it."""
 _OF_PROPERTIES: dict[Node, Node] = {
     **dict.fromkeys((SH.minCount, SH.maxCount), Literal(1)),
     **dict.fromkeys((SH.lessThan, SH.lessThanOrEquals), _STAND_IN),
@@ -92,27 +94,33 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     shapes = _with_samples(graph)
     for role in roles:
         shapes.add((URIRef(role), RDF.type, SH.NodeShape))
-    for recruited in graph.objects(None, URIRef(SC.recruits)):
-        if not isinstance(recruited, Literal):
-            kind = SH.PropertyShape if (recruited, SH.path, None) in graph else SH.NodeShape
-            shapes.add((recruited, RDF.type, kind))
+    recruited = [one for one in graph.objects(None, URIRef(SC.recruits)) if not isinstance(one, Literal)]
+    for shape in recruited:
+        shapes.add((shape, RDF.type, SH.PropertyShape if (shape, SH.path, None) in graph else SH.NodeShape))
     faults = [*_with_own_path(shapes, graph, positions), *_literals(shapes, positions)]
     faults += _faults(shapes, graph, positions)
     faults += [fault for look in (_alone, _patterns, _queries) for fault in look(graph, positions)]
     faults += _too_deep(shapes, roles, positions)
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
-    if not faults and _trial(shapes, *roles) is not None:
-        yield from _trials(shapes, roles, positions)
+    if not faults:
+        yield from _trials(shapes, roles, recruited, positions)
 
 
-def _trials(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterator[Diagnostic]:
-    """The roles that cannot be evaluated, each tried by itself."""
-    for role in roles:
-        reason = _trial(shapes, role)
+def _trials(
+    shapes: Graph, roles: Iterable[str], recruited: Iterable[Node], positions: Positions
+) -> Iterator[Diagnostic]:
+    """The roles, and what they recruit, that cannot be evaluated, each tried by itself if not all together can be."""
+    tried: dict[str, tuple[Node, str]] = {role: (URIRef(role), "The shape of this role") for role in roles}
+    for number, shape in enumerate(recruited):
+        name = f"{_RECRUITED}{number}"  # in brackets it has none
+        for predicate, value in list(shapes.predicate_objects(shape)):
+            shapes.add((URIRef(name), predicate, value))
+        tried[name] = shape, "The shape of what is recruited"
+    for name, (shape, words) in tried.items() if _trial(shapes, *tried) is not None else ():
+        reason = _trial(shapes, name)
         if reason:
-            message = f"The shape of this role cannot be evaluated: {reason}"
-            yield at(positions, positions.offset(URIRef(role)), "SC-T13", message)
+            yield at(positions, positions.offset(shape), "SC-T13", f"{words} cannot be evaluated: {reason}")
 
 
 def _with_samples(graph: Graph) -> Graph:

@@ -195,6 +195,21 @@ def test_a_shape_of_what_is_recruited_is_looked_at(recruited: str) -> None:
         read_task(parse(PREFIXES + text, "a.ttl"), iri("t"))
 
 
+@pytest.mark.parametrize("shape", ["{}", "sh:path [ sh:zeroOrOnePath :p ] ; sh:node [ {} ]"])
+def test_a_shape_of_what_is_recruited_is_tried_as_that_of_a_role(shape: str) -> None:
+    query = "SELECT $this { $this ?p 1 MINUS { $this ?p 2 } }"
+    asked = shape.format(f'sh:sparql [ sh:select "{query}" ]')
+    (only,) = malformed(f":r a sc:Role ; sc:recruits true .\n:s a sc:Role ; sc:recruits [ {asked} ] .")
+    assert (only.code, only.line - HEAD) == ("SC-T13", 2)
+    assert only.message.startswith("The shape of what is recruited cannot be evaluated: ")
+    assert "MINUS" in only.message
+
+
+def test_a_shape_of_what_is_recruited_may_nest_as_deep_as_that_of_a_role() -> None:
+    deep = "[ sh:node " * (DEEPEST_SHAPE - 1) + "[ sh:class :Lamp ]" + " ]" * (DEEPEST_SHAPE - 1)
+    assert malformed(f":r a sc:Role ; sc:recruits {deep} .") == []
+
+
 def test_a_constraint_component_that_a_parameter_is_given_to_is_tried() -> None:
     role = ":r a sc:Role ; :one :robot . :One a sh:ConstraintComponent ; sh:parameter [ sh:path :one ]"
     text = PARAMETER.format("") + role
