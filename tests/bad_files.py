@@ -35,10 +35,10 @@ def source(path: Path) -> SourceText:
 @cache
 def checked(path: Path) -> Report:
     """The report of one bad file that is validated alone, with the shapes and ontologies that ship."""
-    return validate_texts([source(path)], *_shipped())
+    return validate_texts([source(path)], *shipped())
 
 
 @cache
-def _shipped() -> tuple[tuple[SourceText, ...], tuple[SourceText, ...]]:
+def shipped() -> tuple[tuple[SourceText, ...], tuple[SourceText, ...]]:
     """The shapes and the ontologies that ship."""
     return tuple(map(source, library.shapes())), tuple(map(source, library.ontologies()))
