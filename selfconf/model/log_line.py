@@ -9,6 +9,8 @@ from selfconf.model.term import IRI
 
 LONGEST_LINE = 8192
 """How many bytes a line has at most; a longer one is broken."""
+BETWEEN_COMPONENTS = "|"
+"""What is between the components of a line in a file: a character that no IRI has."""
 
 
 class LogLine(NamedTuple):

@@ -27,6 +27,7 @@ from pathlib import Path
 
 from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.errors import AuthorError, PeerError, reason
+from selfconf.model.log_line import BETWEEN_COMPONENTS
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
@@ -358,7 +359,7 @@ class ComponentProgram:
     def _source(self) -> str:
         """The components of the process, as a line of the log has them; of too many those that were asked for first."""
         others = sorted(self._profiles.keys() - self._asked)
-        return ",".join(sorted([*sorted(self._asked), *others][:NAMED_IN_LOG]))
+        return BETWEEN_COMPONENTS.join(sorted([*sorted(self._asked), *others][:NAMED_IN_LOG]))
 
 
 def _next_ending_check(waited: float) -> float:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from selfconf.errors import PeerError
-from selfconf.model.log_line import LogLine
+from selfconf.model.log_line import BETWEEN_COMPONENTS, LogLine
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import LogPart, LogQuestion
 from selfconf.site.log_file import PUT_ASIDE
@@ -131,7 +131,7 @@ def _line(line: str) -> LogLine:
     if len(parts) < 4:
         return LogLine(parts[0], "", (), " ".join(parts[1:]))
     time, stream, sources, text = parts
-    return LogLine(time, stream, tuple(map(IRI.unchecked, sources.split(","))), text)
+    return LogLine(time, stream, tuple(map(IRI.unchecked, sources.split(BETWEEN_COMPONENTS))), text)
 
 
 def _place(position: str) -> tuple[int, int]:

@@ -363,7 +363,7 @@ def test_a_line_of_the_log_names_all_components_of_its_process_and_no_more_than_
     made.start(iri(names[-1]))
     assert live(network, lambda: log.exists() and " hello\n" in log.read_text())
     (said,) = [line.split(" ")[2] for line in log.read_text().splitlines() if line.endswith(" hello")]
-    assert said.split(",") == [iri(name) for name in (*names[: component_program.NAMED_IN_LOG - 1], names[-1])]
+    assert said.split("|") == [iri(name) for name in (*names[: component_program.NAMED_IN_LOG - 1], names[-1])]
 
 
 def test_a_command_that_does_not_start_any_more_is_tried_again(

@@ -33,11 +33,18 @@ def latest(path: Path, component: str = "", lines: int = 100) -> list[str]:
 
 
 def test_a_line_is_taken_apart(tmp_path: Path) -> None:
-    (tmp_path / "a.log").write_text(said(1, "two words ", f"{CLOCK},{LAMP}") + "torn\n" + said(2, "") + "unfinished")
+    (tmp_path / "a.log").write_text(said(1, "two words ", f"{CLOCK}|{LAMP}") + "torn\n" + said(2, "") + "unfinished")
     first, torn, empty = log_part(tmp_path / "a.log", LogQuestion(lines=9)).lines
     assert first == LogLine("2026-11-22T06:30:01.000Z", "stdout", (IRI(CLOCK), IRI(LAMP)), "two words ")
     assert torn == LogLine("torn", "", (), "")
     assert empty.text == ""
+
+
+def test_a_component_whose_iri_has_a_comma_has_its_lines(tmp_path: Path) -> None:
+    path, tag = tmp_path / "lab@here.log", "tag:example.org,2026:lamp"
+    path.write_text(said(1, "ticks") + said(2, "glows", f"{CLOCK}|{tag}"))
+    assert latest(path, tag) == ["glows"]
+    assert latest(path, CLOCK) == ["ticks", "glows"]
 
 
 def test_the_latest_lines_of_a_component_come_from_all_files(tmp_path: Path) -> None:
