@@ -74,13 +74,20 @@ def _declined(state: State, event: Answered) -> Reaction:
     if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
         ended = event.detail or "it has begun another life"
         return losing.lose(state, event.component, Loss(Cause.CRASH, ended, startable=event.startable))
+    return losing.lose(counted, event.component, _loss_by(event, state, again=not repeats))
+
+
+def _loss_by(event: Answered, state: State, again: bool) -> Loss:
+    """The loss of a component that has not done what it was asked; `again`: it had not declined before.
+
+    Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough. What
+    has gone without a word, and with its site, may come back with it.
+    """
     silent = event.verdict is None
     detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
-    # Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough.
-    again = silent and event.startable and event.call is not Call.WAKE and not repeats
-    return losing.lose(
-        counted, event.component, Loss(Cause.REFUSED, detail, event.life, answered=not silent, startable=again)
-    )
+    startable = silent and event.startable and event.call is not Call.WAKE and again
+    cause = Cause.CRASH if event.site_unseen and event.component in state.ended_lives else Cause.REFUSED
+    return Loss(cause, detail, event.life, answered=not silent, startable=startable)
 
 
 def _told(state: State, event: Answered) -> State:

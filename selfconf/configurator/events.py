@@ -95,6 +95,8 @@ class Answered:
     """Whether a component that is reserved acts for this task, as one does that was given up when it was cut off."""
     startable: bool = False
     """Whether the site of the component can start it again."""
+    site_unseen: bool = False
+    """Whether its site, which was to start it, could not be reached either: both may only be cut off."""
 
 
 @immutable

@@ -269,6 +269,30 @@ def test_what_its_site_starts_no_more_is_a_reason_to_refuse() -> None:
     assert history.effects[-1] == Finish(REFUSAL)
 
 
+def test_what_has_gone_with_its_site_may_be_cut_off_and_is_waited_for_a_moment() -> None:
+    history = lost()
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    unseen = Answered(
+        TRACKER, Call.WAKE, history.state.epoch, None, detail="its site does not answer", site_unseen=True
+    )
+    history.hear(unseen)
+    assert (history.state.lost[TRACKER].cause, history.state.lost[TRACKER].answered) == (Cause.CRASH, False)
+    since = history.state.attempt
+    assert history.composed(REFUSAL) == [AwaitReturn(since)]
+    assert history.hear(Appeared({TRACKER: "1"}))[-1] == Discover()
+    assert TRACKER not in history.state.lost
+
+
+def test_what_was_not_there_before_is_not_waited_for_where_its_site_cannot_be_reached() -> None:
+    history = History().accepted()
+    history.composed(navigation())
+    history.hear(Answered(TRACKER, Call.WAKE, history.state.epoch, None, site_unseen=True))
+    assert history.state.lost[TRACKER].cause is Cause.REFUSED
+    history.composed(REFUSAL)
+    assert history.state.phase is Phase.DISMANTLING
+
+
 @pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])
 @pytest.mark.parametrize("startable", [True, False])
 def test_what_says_that_its_life_is_over_is_searched_with_if_its_site_can_start_it(call: Call, startable: bool) -> None:

@@ -110,7 +110,7 @@ class Waking:
         for waiting in list(self._waiting.values()):
             found = self._ecology.discovery.found.get(waiting.effect.component)
             if found is not None and found.site == site:
-                self._bus.later(SITE_BACK, partial(self._give_up, waiting, "its site has ended"))
+                self._bus.later(SITE_BACK, partial(self._give_up, waiting, "its site has ended", site_unseen=True))
 
     def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
         """Have the site start the process; that is done when the component lives."""
@@ -132,20 +132,22 @@ class Waking:
                 return
             if attempts > 1 and not (replies.errors or replies.complete):
                 self._ask_site(waiting, attempts - 1)
+            elif replies.errors:
+                self._give_up(waiting, replies.errors[0])
             else:
-                self._give_up(waiting, replies.errors[0] if replies.errors else "its site does not answer")
+                self._give_up(waiting, "its site does not answer", site_unseen=True)
 
         wake = Wake(component, self._lives.lost_life(component))
         self._bus.ask(self._ecology.keys.wake(waiting.site), encode(wake), WAKE_CALL, answered)
 
-    def _give_up(self, waiting: _Start, detail: str) -> None:
+    def _give_up(self, waiting: _Start, detail: str, *, site_unseen: bool = False) -> None:
         """Do without a component that was to be started, unless it lives by now or is being started anew."""
         component = waiting.effect.component
         if self._waiting.get(component) is waiting:
             self.abandon(component)
-            self._fail(waiting.effect, detail)
+            self._fail(waiting.effect, detail, site_unseen)
 
-    def _fail(self, effect: WakeUp, detail: str) -> None:
+    def _fail(self, effect: WakeUp, detail: str, site_unseen: bool = False) -> None:
         """Say soon that a component cannot be had, unless it lives by then: nothing would disprove that loss again."""
 
         def fail() -> None:
@@ -153,6 +155,7 @@ class Waking:
                 self._step(Answered(effect.component, Call.WAKE, effect.epoch, Verdict.DONE))
                 return
             self._report(ComponentUnreachable(effect.component, Call.WAKE.value, detail))
-            self._step(Answered(effect.component, Call.WAKE, effect.epoch, None, detail=detail))
+            component, epoch = effect.component, effect.epoch
+            self._step(Answered(component, Call.WAKE, epoch, None, detail=detail, site_unseen=site_unseen))
 
         self._bus.wake_up(fail)

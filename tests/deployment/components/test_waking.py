@@ -233,6 +233,22 @@ def test_what_a_site_was_starting_is_given_up_if_the_site_does_not_come_back(tmp
     assert [event.detail for event in lab.acts("unreachable")] == ["its site has ended"]
 
 
+def test_a_task_is_not_refused_where_a_component_and_its_site_are_out_of_sight_for_a_moment(tmp_path: Path) -> None:
+    """As where the link between two hosts is lost."""
+    lab = home(tmp_path)
+    site = living_room(lab, "1", lambda _: lab.component("tracker"))
+    agent = lab.agent()
+    assert lab.running(agent)
+    there = (site, lab.node_of("tracker"))
+    for node in there:
+        lab.network.cut(node, agent.bus)
+    lab.let_pass(0.5)
+    assert "its site does not answer" in [event.detail for event in lab.acts("unreachable")]
+    for node in there:
+        lab.network.reconnect(node, agent.bus)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING and lab.active() == TASK | {"tracker"}, 3.0)
+
+
 def test_that_nothing_is_found_without_what_a_site_starts_again_is_not_reported(tmp_path: Path) -> None:
     lab = home(tmp_path)
     living_room(lab, "1", lambda _: lab.component("tracker"))
