@@ -61,7 +61,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """The collector of garbage has no need to look at what the tests are made of again and again."""
+    """Have read what many tests need; neither at this nor at the tests has the collector of garbage to look again."""
     rewriting.end(session.config.stash[REWRITING])
     if session.config.option.forks > 1:
         from tests.harness.read_before import read_what_many_tests_need
