@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from selfconf.bus.memory import MemoryBus
 from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
+from selfconf.site.component_program import ComponentProgram
 
 if TYPE_CHECKING:
     from tests.faults.histories import History
@@ -31,6 +32,8 @@ class SimulatedProcesses:
         self._asked_for: set[MemoryBus] = set()
         """The nodes of processes that were asked for while they ran: a task saw no life of them."""
         self._restarts: dict[str, int] = {}
+        self.by_component: Mapping[IRI, ComponentProgram] = {}
+        """None: a process in simulated time has the ports that are advertised."""
 
     def start(self, profile: Profile, sharing: Iterable[Profile] = (), after: str = "") -> None:
         """Start the process of a component, unless it runs."""
