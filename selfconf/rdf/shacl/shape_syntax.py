@@ -101,7 +101,7 @@ def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[T
                 return refused
         if value in variables and predicate not in LISTS | DESCRIBED:
             continue
-        if predicate in WANTED and not _fits(document, triple):
+        if predicate in WANTED and not _fits(document, triple, variables):
             return triple, unfit(predicate).rstrip(".")
         lacking = _lacking(document, shape, predicate)
         if lacking is not None:
@@ -137,7 +137,7 @@ def _lacking(document: Document, shape: Node, predicate: IRI) -> str | None:
     return None
 
 
-def _fits(document: Document, triple: Triple) -> bool:
+def _fits(document: Document, triple: Triple, variables: frozenset[Term]) -> bool:
     """Whether the value of a statement may be that of its property, one of SHACL's."""
     shape, predicate, value = triple
     literal = value if isinstance(value, Literal) else None
@@ -146,7 +146,7 @@ def _fits(document: Document, triple: Triple) -> bool:
     if predicate in SWITCHES:
         return literal is not None and literal.datatype == XSD.boolean
     if predicate in LISTS:
-        return _is_list(document, predicate, value)
+        return _is_list(document, predicate, value, variables)
     if predicate in NAMES:
         return isinstance(value, IRI)
     if predicate in LIMITS:
@@ -159,11 +159,11 @@ def _fits(document: Document, triple: Triple) -> bool:
     return literal is None and _fitting_node(document, predicate, value)
 
 
-def _is_list(document: Document, predicate: IRI, value: Term) -> bool:
+def _is_list(document: Document, predicate: IRI, value: Term, variables: frozenset[Term]) -> bool:
     """Whether a term is a list that may be the value of one of SHACL's properties."""
     if value == NIL:
         return predicate not in LISTS_OF_SHAPES
-    members = document.items(value)
+    members = [member for member in document.items(value) if member not in variables]
     if predicate == SH.languageIn:
         fit = all(isinstance(member, Literal) and member.datatype == XSD.string for member in members)
     else:

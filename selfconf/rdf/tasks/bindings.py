@@ -27,6 +27,7 @@ from selfconf.rdf.vocabulary import RDF, SC, SH, XSD
 
 _LOCAL_PART = re.compile(r"[^\s\"'<>()]*")
 _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePath, SH.oneOrMorePath, SH.zeroOrOnePath))
+_LISTS = frozenset((SH.languageIn, SH.ignoredProperties))
 _NAMING = frozenset((SH.equals, SH.disjoint, SH.lessThan, SH.lessThanOrEquals, SH.datatype, SH.nodeKind))
 """What has the name of a property, a datatype or a kind of node as its value, which no component states as one."""
 _PLAIN = {
@@ -259,8 +260,9 @@ def _with_values(template: Template, bindings: Mapping[IRI, Term]) -> Template:
 def _rigid(given: TaskDocument, parameter: Parameter) -> str | None:
     """The property by which a parameter stands where no value is searched, as it is written; None if there is none.
 
-    These are those properties of a role's shape that ask for a literal, paths, `sc:recruits`, the types of what roles
-    set, and the properties that a cost counts; and those that ask for a name, where the parameter lists no values.
+    These are those properties of a role's shape that ask for a literal, paths, lists of languages and of properties,
+    `sc:recruits`, the types of what roles set, and the properties that a cost counts; and those that ask for a name,
+    where the parameter lists no values.
     """
     document, template = given.document, given.template
     naming = frozenset[IRI]() if document.values(parameter.iri, SH["in"]) else _NAMING
@@ -272,7 +274,7 @@ def _rigid(given: TaskDocument, parameter: Parameter) -> str | None:
         for predicate, value in shape_statements(document, role.iri):
             if predicate in LITERAL | naming and value == parameter.iri:
                 return f"sh:{predicate.short}"
-            if predicate in _PATHS and parameter.iri in _steps(document, value):
+            if predicate in _PATHS | _LISTS and parameter.iri in _steps(document, value):
                 return f"sh:{predicate.short}"
         if any(
             mentions(document, shape, frozenset((parameter.iri,))) for shape in document.values(role.iri, SC.recruits)

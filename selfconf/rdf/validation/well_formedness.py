@@ -13,7 +13,7 @@ beforehand.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from importlib.resources import files
@@ -63,6 +63,9 @@ _SAMPLES: dict[Node, Literal] = {
 _STAND_IN = URIRef("urn:-")  # short, so that no pattern takes long
 _RECRUITED = "urn:selfconf:recruited:"
 """What the shapes of what is recruited are called in a trial, with numbers behind it."""
+_LANGUAGE = Literal("en")
+_COUNTS: dict[Node, Node] = dict.fromkeys((SH.qualifiedMinCount, SH.qualifiedMaxCount), Literal(1))
+"""Samples for what stands beside sh:qualifiedValueShape, which says nothing alone."""
 _OF_PROPERTIES: dict[Node, Node] = {
     **dict.fromkeys((SH.minCount, SH.maxCount), Literal(1)),
     **dict.fromkeys((SH.lessThan, SH.lessThanOrEquals), _STAND_IN),
@@ -123,22 +126,39 @@ def _trials(
             yield at(positions, positions.offset(shape), "SC-T13", f"{words} cannot be evaluated: {reason}")
 
 
-def _with_samples(graph: Graph) -> Graph:
-    """The graph with samples for parameters, without what says nothing before the parameter is bound."""
+def _samples(graph: Graph) -> dict[Node, Node | None]:
+    """A sample for each parameter, by what it says of its values; None where it says too little."""
     samples: dict[Node, Node | None] = {}
     for parameter in graph.subjects(RDF.type, URIRef(SC.Parameter)):
         datatype = graph.value(parameter, SH.datatype)
         kind = graph.value(parameter, SH.nodeKind)
         samples[parameter] = parameter if kind == SH.IRI else _SAMPLES.get(datatype) if datatype else None
+    return samples
+
+
+def _by_place(graph: Graph, subject: Node, predicate: Node, languages: Container[Node | None]) -> Node | None:
+    """A sample for a parameter that says too little of its values, by the place where it stands."""
+    if subject in languages and predicate == RDF.first:
+        return _LANGUAGE
+    if str(predicate) in PATH_FORMS | {str(SH.path)}:
+        return _STAND_IN
+    with_path = (subject, SH.path, None) in graph
+    return _COUNTS.get(predicate) or (None if with_path else _OF_PROPERTIES.get(predicate))
+
+
+def _with_samples(graph: Graph) -> Graph:
+    """The graph with samples for parameters, without what says nothing before the parameter is bound."""
+    samples = _samples(graph)
     shapes, of_any_term = Graph(), ShapeSource(graph).constraints | {RDF.first, SH.hasValue}
+    languages = {
+        cell for head in graph.objects(None, SH.languageIn) for cell in graph.transitive_objects(head, RDF.rest)
+    }
     for subject, predicate, value in graph:
         sample = samples.get(value, value)
+        if sample is None:
+            sample = _by_place(graph, subject, predicate, languages)
         if str(predicate) in LISTS | DESCRIBED or (sample is None and predicate in of_any_term):
             sample = value  # no parameter will do for a list or a constraint, and any term where a term is asked for
-        if sample is None and str(predicate) in PATH_FORMS | {str(SH.path)}:
-            sample = _STAND_IN
-        if sample is None and (subject, SH.path, None) not in graph:
-            sample = _OF_PROPERTIES.get(predicate)
         if sample is not None:
             shapes.add((subject, predicate, sample))
     for prefix, namespace in graph.namespaces():

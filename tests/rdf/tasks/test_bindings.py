@@ -265,6 +265,23 @@ def test_a_path_cannot_be_left_free(path: str) -> None:
         bindings.complete(templates.read_task(turtle.parse(text, "t.ttl")))
 
 
+@pytest.mark.parametrize(
+    ("place", "good", "bad"), [("languageIn", "en", ":y"), ("closed true ; sh:ignoredProperties", ":y", "3")]
+)
+def test_a_member_of_a_list_of_names_is_bound_and_cannot_be_left_free(place: str, good: str, bad: str) -> None:
+    text = (
+        "@prefix sc: <https://w3id.org/selfconf#> . @prefix sh: <http://www.w3.org/ns/shacl#> . @prefix : <urn:x:> ."
+        " :t a sc:Template ; sc:parameter :x ; sc:roles ( :r ) . :x a sc:Parameter ; sc:name 'x' ."
+        f" :r a sc:Role ; sh:property [ sh:path :n ; sh:{place} ( :x ) ] ."
+    )
+    task = templates.read_task(turtle.parse(text, "t.ttl"))
+    assert bindings.complete(bindings.bind(task, [("x", good)])).task.bindings
+    with pytest.raises(BindingError, match="has to be a list in parentheses, of"):
+        bindings.complete(bindings.bind(task, [("x", bad)]))
+    with pytest.raises(BindingError, match=r"'x' cannot be left free, for it stands in sh:(languageIn|ignoredProp)"):
+        bindings.complete(task)
+
+
 @pytest.mark.parametrize("place", ["minInclusive", "maxExclusive", "minCount", "pattern"])
 def test_a_limit_cannot_be_left_free(place: str) -> None:
     text = (

@@ -187,6 +187,21 @@ def test_a_parameter_of_any_kind_may_be_a_property_of_a_path() -> None:
         assert malformed(text + PARAMETER.format("rdfs:comment 'of any kind'")) == []
 
 
+@pytest.mark.parametrize("kind", ["sh:datatype xsd:{}", "rdfs:comment 'of any kind, not {}'"])
+@pytest.mark.parametrize(
+    ("said", "datatype"),
+    [
+        ("sh:languageIn ( 'de' :robot )", "string"),
+        ("sh:qualifiedValueShape [ sh:class :A ] ; sh:qualifiedMaxCount :robot", "integer"),
+    ],
+)
+def test_a_parameter_may_be_a_language_of_a_list_or_the_only_count_of_a_shape(
+    said: str, datatype: str, kind: str
+) -> None:
+    text = f":r a sc:Role ; sh:property [ sh:path :p ; {said} ] .\n"
+    assert malformed(text + PARAMETER.format(kind.format(datatype))) == []
+
+
 @pytest.mark.parametrize("recruited", ["[ sh:path 'x' ]", "[ sh:path :p ; sh:class 5 ]"])
 def test_a_shape_of_what_is_recruited_is_looked_at(recruited: str) -> None:
     text = f":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; sc:recruits {recruited} ."
