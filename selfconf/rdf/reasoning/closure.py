@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain
+from types import ModuleType, SimpleNamespace
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy, Reasoning
 from selfconf.model.term import IRI, BlankNode, Literal, Term
@@ -30,16 +31,26 @@ def owlrl_owl_rl(triples: Iterable[Triple]) -> Iterator[Triple]:
     """The hierarchy in the OWL 2 RL closure of an ontology by owlrl, without the literal subjects that it emits."""
     # Loaded here, as the other modes need neither.
     import rdflib
-    from owlrl import DeductiveClosure, OWLRL_Semantics
+    from owlrl import OWLRL, DeductiveClosure, OWLRL_Semantics
 
     from selfconf.rdf.rdflib_terms import to_rdflib
 
+    _keep_terms(OWLRL)
     graph = to_rdflib(triples, "SimpleMemory")
     DeductiveClosure(OWLRL_Semantics).expand(graph)
     for predicate in HIERARCHY:
         for subject, value in graph.subject_objects(rdflib.URIRef(predicate)):
             if isinstance(subject, rdflib.URIRef) and isinstance(value, rdflib.URIRef):
                 yield IRI.unchecked(subject), predicate, IRI.unchecked(value)
+
+
+def _keep_terms(rules: ModuleType) -> None:
+    """Let the rules of owlrl mention terms that are kept: for rdflib to look each up takes as long as all else."""
+    for name in ("OWL", "RDF", "RDFS"):
+        terms = getattr(rules, name)
+        if not isinstance(terms, SimpleNamespace):  # else they are kept already
+            kept = {term: terms[term] for term in terms.__annotations__ if not term.startswith("_")}
+            setattr(rules, name, SimpleNamespace(**kept))
 
 
 def hierarchy(ontologies: Sequence[Document], reasoning: Reasoning, entail: Entailment = owlrl_owl_rl) -> Hierarchy:

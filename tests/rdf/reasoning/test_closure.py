@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rdflib.namespace import DefinedNamespaceMeta
 
 from selfconf import library
 from selfconf.model.hierarchy import Hierarchy, Reasoning
@@ -79,6 +82,19 @@ def test_owl_thing_lies_above_the_classes_of_which_an_ontology_says_so(mode: Rea
     assert found.superclasses(iri("A")) == {iri("A"), iri("B"), thing}
     assert found.superclasses(iri("C")) == {iri("C"), RDFS.Resource}
     assert of(":A a owl:Class . :B a owl:Class .", mode).superclasses(iri("A")) == {iri("A")}
+
+
+def test_the_rules_of_owl_rl_look_up_no_term_each_time_that_they_mention_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_up, look_up = list[str](), DefinedNamespaceMeta.__getattr__
+
+    def noting(namespace: DefinedNamespaceMeta, name: str) -> Any:
+        looked_up.append(name)
+        return look_up(namespace, name)
+
+    monkeypatch.setattr(DefinedNamespaceMeta, "__getattr__", noting)
+    classes = "".join(f":c{n} rdfs:subClassOf :c{n + 1} .\n" for n in range(20))
+    of(classes, Reasoning.OWL_RL)
+    assert len(looked_up) < 1000
 
 
 def test_owl_rl_infers_what_subclass_mode_does_not() -> None:
