@@ -57,7 +57,7 @@ class ReducedSearch:
         """The options of each role that may play: none where a variable has no value."""
         self.values = list(reduced.values)
         """The values that the variables may still have."""
-        self.narrowed: list[list[tuple[int, int]]] = []
+        self.narrowed: list[Sequence[tuple[int, int]]] = []
         """For each option chosen the variables that have lost values to it, with those that they had before."""
         self.supports = [0] * len(reduced.needs)
         """How many options chosen support each need."""
@@ -128,9 +128,8 @@ class ReducedSearch:
             return False
         if self.matching is not None and not self.matching.give(place, option.component):
             return False
-        narrowed: list[tuple[int, int]] = []
-        if kind.admits and not self._narrow(kind.admits, narrowed):
-            self._restore(narrowed)
+        narrowed = self._narrow(kind.admits) if kind.admits else ()
+        if narrowed is None:
             return False
         needed, supports = self.needed, self.supports
         for need in kind.needs:
@@ -146,20 +145,22 @@ class ReducedSearch:
             return False
         return True
 
-    def _narrow(self, admits: Mapping[int, int], narrowed: list[tuple[int, int]]) -> bool:
-        """Leave the variables the values that are admitted, note which lose some; False if one has none left."""
+    def _narrow(self, admits: Mapping[int, int]) -> list[tuple[int, int]] | None:
+        """Leave the variables the values that are admitted, and return which lost some; None if one would have none."""
         values = self.values
+        narrowed: list[tuple[int, int]] = []
         for variable, mask in admits.items():
             before = values[variable]
             left = before & mask
             if not left:
-                return False
+                self._restore(narrowed)
+                return None
             if left != before:
                 values[variable] = left
                 narrowed.append((variable, before))
-        return True
+        return narrowed
 
-    def _restore(self, narrowed: list[tuple[int, int]]) -> None:
+    def _restore(self, narrowed: Sequence[tuple[int, int]]) -> None:
         """Give variables the values back that they had before."""
         for variable, before in narrowed:
             self.values[variable] = before
@@ -179,7 +180,9 @@ class ReducedSearch:
         """Take the last option out again."""
         option = self.chosen.pop()
         self.taken.discard(option.component)
-        self._restore(self.narrowed.pop())
+        narrowed = self.narrowed.pop()
+        if narrowed:
+            self._restore(narrowed)
         for need in option.kind.needs:
             self.needed[need] -= 1
         for need in option.kind.supports:

@@ -112,8 +112,8 @@ class _Admitted:
         """The classes of roles that need not be played."""
         for kind in kinds:
             self._of_role.get(kind.role, self._optional).append(kind)
-        self._constrained: list[dict[int, None]] = [{} for _ in values]
-        """For each variable the required roles with a class that does not admit all values."""
+        self._constraining: list[dict[int, list[InterchangeabilityClass]]] = [{} for _ in values]
+        """For each variable the classes that do not admit all values, by required role; some may be removed by now."""
 
     def valueless(self, removed: Set[int], roles: Iterable[int]) -> dict[int, Removal]:
         """Return the classes left, by identity, that admit only values of a variable that some role cannot have.
@@ -128,11 +128,12 @@ class _Admitted:
         self._optional = [kind for kind in self._optional if id(kind) not in removed]
         for number in sorted(self._narrowed):
             common = self.values[number]
-            concerned = self._constrained[number] if common else self._of_role
-            for some in (*map(self._of_role.__getitem__, concerned), self._optional):
+            concerned = self._constraining[number] if common else self._of_role
+            for some in (*concerned.values(), self._optional):
                 for kind in [kind for kind in some if not kind.admits.get(number, ANY_VALUE) & common]:
-                    # A class may fail on two variables; the first is its cause.
-                    found.setdefault(id(kind), Removal(kind, variable=number))
+                    if id(kind) not in removed:
+                        # A class may fail on two variables; the first is its cause.
+                        found.setdefault(id(kind), Removal(kind, variable=number))
         self._narrowed.clear()
         return found
 
@@ -140,15 +141,15 @@ class _Admitted:
         """Take from the variables the values that the classes left of some roles do not admit."""
         for role in sorted(self._of_role.keys() & roles):
             left = self._of_role[role] = [kind for kind in self._of_role[role] if id(kind) not in removed]
-            admitted: defaultdict[int, list[int]] = defaultdict(list)
+            constraining: defaultdict[int, list[InterchangeabilityClass]] = defaultdict(list)
             for kind in left:
-                for number, mask in kind.admits.items():
-                    admitted[number].append(mask)
-            for number, masks in admitted.items():
-                self._constrained[number][role] = None
-                if len(masks) < len(left):
+                for number in kind.admits:
+                    constraining[number].append(kind)
+            for number, some in constraining.items():
+                self._constraining[number][role] = some
+                if len(some) < len(left):
                     continue  # some class admits any value
-                common = self.values[number] & reduce(or_, masks)
+                common = self.values[number] & reduce(or_, [kind.admits[number] for kind in some])
                 if common != self.values[number]:
                     self.values[number] = common
                     self._narrowed.add(number)

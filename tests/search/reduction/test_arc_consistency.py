@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.model.partition import Candidate, Partition, Variable
+from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
 from selfconf.model.template import Interaction, Role, Task, Template
 from selfconf.search.budget import Budget
 from selfconf.search.engines.reduced_search import first_solution
@@ -26,3 +26,18 @@ def test_a_class_that_fails_on_two_variables_is_removed_once() -> None:
     given_ = pruned(reduced(Problem(Task(template), partition)))
     assert numbers(first_solution(given_, Budget())) == [1, 0]
     assert len(given_.removals) == 1
+
+
+def test_a_class_removed_for_want_of_a_need_is_not_removed_again_for_a_value() -> None:
+    template = Template(iri("template"), tuple(Role(iri(name)) for name in "abcd"), (Interaction(iri("b"), iri("a")),))
+    partition = Partition(
+        (
+            (Candidate(component("a1", "i:S"), (1, ANY_VALUE)), Candidate(component("a2"), (ANY_VALUE, ANY_VALUE))),
+            (Candidate(component("b1", outputs="o:S"), (ANY_VALUE, 1)), Candidate(component("b2"), (ANY_VALUE,) * 2)),
+            (Candidate(component("c1"), (3, 1)), Candidate(component("c2"), (2, ANY_VALUE))),
+            (Candidate(component("d1"), (ANY_VALUE, 2)),),
+        ),
+        tuple(Variable(iri(name), (iri("one"), iri("two"))) for name in ("robot", "room")),
+    )
+    removals = pruned(reduced(Problem(Task(template), partition))).removals
+    assert [(removal.kind.role, removal.kind.number) for removal in removals] == [(1, 0), (2, 0), (0, 0)]
