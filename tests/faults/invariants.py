@@ -30,8 +30,9 @@ LOOKS = 10.0
 """Seconds within which a configurator notices that a component does not act any more without having said so."""
 DECIDED = (Phase.RUNNING, Phase.REFUSED, Phase.STOPPED)
 """The phases in which a task is decided."""
-DECIDED_WITHIN = 8.0
-"""Seconds after the last fault within which a task is decided: the longest of 2,600 histories took less than 6."""
+DECIDED_WITHIN = 10.0
+"""Seconds after the last fault within which a task is decided: a call may take 8, and two tasks may take turns with a
+component that refuses; the longest of 8,000 histories took 9.5."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,12 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from selfconf.bus.memory import MemoryBus
+from selfconf.bus.port import Urgency
 from selfconf.errors import PeerError
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Cause, Fail
 from selfconf.site.component_program import ComponentProgram
 
 if TYPE_CHECKING:
@@ -92,3 +95,13 @@ class SimulatedProcesses:
             self._history.network.after(1.0, lambda: self._begin(name) if name in self._nodes else None)
         else:
             self._nodes.pop(name)
+            self._give_up(name, node)
+
+    def _give_up(self, name: str, node: MemoryBus | None) -> None:
+        """Say that a process has ended and is not started again, as a site does: what waits for it asks once more."""
+        keys, component = self._history.lab.keys, self._history.lab.profile(name).component
+        life = next((run.runtime.life for run in self._history.processes if run.node is node), "")
+        if self._site.open:
+            notice = self._site.publisher(keys.fail(component), Urgency.EVENT)
+            notice.put(encode(Fail(component, life, 0, Cause.CRASH, "it has crashed too often")))
+            notice.undeclare()
