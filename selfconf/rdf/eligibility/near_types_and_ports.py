@@ -65,11 +65,13 @@ def _relation(
     failed = [lacking for test in role.tests if (lacking := _lacking(test, types, seen))]
     if len(failed) != 1:
         return None
-    likely = [_likely(wanted, types, known) for wanted in failed[0]]
-    rank = min(how for how, _ in likely)
-    if rank == UNRELATED and all(test.kind in failed[0] for test in role.classes):
+    (wanted,) = failed
+    likely = [_likely(kind, types, known) for kind in wanted]
+    rank = min(how for how, *_ in likely)
+    if rank == UNRELATED and all(test.kind in wanted for test in role.classes):
         return None
-    obstacles = tuple(obstacle for _, obstacle in likely)
+    related = zip(wanted, likely, strict=True)
+    obstacles = tuple(WrongType(kind, offered, relation) for kind, (_, offered, relation) in related)
     return rank, obstacles[0] if len(obstacles) == 1 else NoAlternative(obstacles)
 
 
@@ -87,16 +89,16 @@ def _lacking(test: RoleTest, types: frozenset[IRI], seen: Hierarchy) -> tuple[IR
     return lacking if found.count(None) < test.minimum else ()
 
 
-def _likely(wanted: IRI, types: frozenset[IRI], known: Hierarchy) -> tuple[int, WrongType]:
-    """How likely (0 most) and in what words some types were meant to be of a class."""
+def _likely(wanted: IRI, types: frozenset[IRI], known: Hierarchy) -> tuple[int, IRI | None, TypeRelation | None]:
+    """How likely (0 most) some types were meant to be of a class, by which of them, and how that is related to it."""
     for offered in sorted(types - {SC.Component}):
         if _alike(offered, wanted):
-            return 0, WrongType(wanted, offered, TypeRelation.SIMILAR)
+            return 0, offered, TypeRelation.SIMILAR
         if known.matches(offered, wanted):
-            return 1, WrongType(wanted, offered, TypeRelation.BELOW)
+            return 1, offered, TypeRelation.BELOW
         if known.matches(wanted, offered):
-            return 2, WrongType(wanted, offered, TypeRelation.ABOVE)
-    return UNRELATED, WrongType(wanted)
+            return 2, offered, TypeRelation.ABOVE
+    return UNRELATED, None, None
 
 
 def _alike(offered: IRI, wanted: IRI) -> bool:
