@@ -127,13 +127,15 @@ class Network:
         """Let a node do nothing, as SIGSTOP does: what arrives waits, timers are late, and after `LEASE` it is gone.
 
         Pausing a node that never resumes, and closing it later, is what others see of a host that loses its power.
-        Several nodes are those of a host that is frozen: they are gone for all others, and not for each other.
+        Several nodes are those of a host that is frozen: they are gone for all others, and not for each other; one that
+        is gone already, from a pause before, is gone for these too.
         """
         still = [node for node in nodes if node.open and not node.paused]
-        host = frozenset(node.number for node in still)
+        host = frozenset(node.number for node in still if not node.expelled)
         for node in still:
             number = self._pause(node)
-            node.host = host
+            if not node.expelled:
+                node.host = host
 
             def expel(node: MemoryBus = node, number: int = number) -> None:
                 if node.open and node.paused and node.pauses == number:

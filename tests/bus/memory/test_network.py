@@ -186,6 +186,25 @@ def test_a_node_that_is_paused_again_before_it_is_connected_again_stays_gone() -
     assert here.lives == [True, False, True]
 
 
+def test_a_node_that_is_gone_when_its_host_is_frozen_sees_that_again_when_it_is_connected_again() -> None:
+    network = Network()
+    one, other = network.node(), network.node()
+    other.announce("lives/other")
+    lives: list[bool] = []
+    one.watch("lives/*", lambda key, alive: lives.append(alive))
+    network.let_pass(0.1)
+    network.pause(one)
+    network.let_pass(2.0)
+    network.resume(one)
+    network.pause(one, other)
+    network.let_pass(0.5)
+    network.resume(one)
+    network.resume(other)
+    assert not network.reaches(one, other)
+    network.let_pass(1.0)
+    assert lives == [True, False, True]
+
+
 def test_the_nodes_of_a_host_that_is_frozen_are_gone_for_all_but_each_other() -> None:
     here = Watched()
     third = here.network.node()
