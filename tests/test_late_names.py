@@ -70,7 +70,7 @@ def run():
     referred = Referred()
     reference = weakref.ref(referred, interrupted)
     del referred
-    print("goes on", flush=True)
+    print("goes on\\n", end="", flush=True)  # at once: the interrupt may come between a text and its end
     time.sleep(60)
 
 signal.signal(signal.SIGINT, signal.default_int_handler)
