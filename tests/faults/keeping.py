@@ -9,20 +9,17 @@ from __future__ import annotations
 import random
 import tempfile
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
-from selfconf.bus.port import Replies
 from selfconf.configurator.state import Policy
 from selfconf.deployment import Keeper, RunRequest, TaskFolder, TaskRunner
-from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from tests.faults.histories import History
+from tests.faults.kept_tasks import BEGAN, end_task
 from tests.faults.script import MOMENTS, PAUSES, Action, Script
 from tests.lab import request_for
 
-BEGAN = 1_800_000_000.0
-"""When a history begins, in seconds since 1970."""
 SPARE = "spare"
 """A site that advertises nothing, and keeps tasks as the others do."""
 BEGUN = (0.0, 0.01, 1.0)
@@ -102,22 +99,10 @@ class KeepingHistory(History):
         if (action.who in self._handed) == (action.kind == "begin"):
             return False
         if action.kind in ("stop_task", "begin_again"):
-            self._stop(f"{action.who}~{self._handed[action.who]}")
+            end_task(self._user, self.lab.keys, f"{action.who}~{self._handed[action.who]}")
         if action.kind != "stop_task":
             number = self._handed[action.who] = self._handed.get(action.who, 0) + 1
             priority, beginning = self.script.tasks[action.who].priority, self._clock()
-            self._tell(TaskRecord(f"{action.who}~{number}", 1, priority=priority, beginning=beginning))
+            record = TaskRecord(f"{action.who}~{number}", 1, priority=priority, beginning=beginning)
+            self._user.ask(self.lab.keys.keep(), encode(record), 1.0, lambda replies: None)
         return True
-
-    def _tell(self, record: TaskRecord) -> None:
-        self._user.ask(self.lab.keys.keep(), encode(record), 1.0, lambda replies: None)
-
-    def _stop(self, task: str) -> None:
-        """End a task as `selfconf stop` does: by a newer record than those that the sites answer with."""
-        self._user.ask(self.lab.keys.kept_tasks(), b"", 1.0, partial(self._end, task))
-
-    def _end(self, task: str, replies: Replies) -> None:
-        records = [decode(sample.payload, TaskRecord) for sample in replies.samples]
-        newest = max((one.revision for one in records if one.task == task and not one.ended), default=0)
-        if newest:
-            self._tell(TaskRecord(task, newest + 1, ended=True))

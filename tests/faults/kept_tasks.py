@@ -25,6 +25,7 @@ from selfconf.configurator.state import Phase
 from selfconf.deployment import Keeper, TaskFolder
 from selfconf.deployment.keeper import keeper_of
 from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import TaskRecord
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.lab import Lab, request_for
@@ -45,6 +46,19 @@ TWO_RUN = 12.0
 """Seconds for which two sites may believe that they run one task: no component acts for both meanwhile."""
 
 _OF_RUNTIME = attrgetter("activation", "code.turn", "code._acting_turn")  # by the turns it is decided whether it acts
+
+
+def end_task(user: MemoryBus, keys: Keys, task: str, ending: Callable[[], None] = lambda: None) -> None:
+    """End a task as `selfconf stop` does: by a newer record than those that the sites answer with, if any keeps it."""
+
+    def answered(replies: Replies) -> None:
+        records = [decode(sample.payload, TaskRecord) for sample in replies.samples]
+        newest = max((one.revision for one in records if one.task == task and not one.ended), default=0)
+        if newest:
+            ending()
+            user.ask(keys.keep(), encode(TaskRecord(task, newest + 1, ended=True)), 1.0, lambda replies: None)
+
+    user.ask(keys.kept_tasks(), b"", 1.0, answered)
 
 
 class KeptHistory:
@@ -152,18 +166,8 @@ class KeptHistory:
         self._user.ask(self.lab.keys.keep(), encode(record), 1.0, lambda replies: None)
 
     def _stop(self) -> None:
-        """End a task as `selfconf stop` does: by a newer record than those that the sites answer with."""
         task = self._chance.choice(TASKS).task
-
-        def answered(replies: Replies) -> None:
-            records = [decode(sample.payload, TaskRecord) for sample in replies.samples]
-            newest = max((one.revision for one in records if one.task == task and not one.ended), default=0)
-            if newest:
-                self._tell(f"{task} is ended")
-                ended = TaskRecord(task, newest + 1, ended=True)
-                self._user.ask(self.lab.keys.keep(), encode(ended), 1.0, lambda replies: None)
-
-        self._user.ask(self.lab.keys.kept_tasks(), b"", 1.0, answered)
+        end_task(self._user, self.lab.keys, task, lambda: self._tell(f"{task} is ended"))
 
     def _fail(self) -> None:
         if self.lab.runtimes["tracker"].active:
