@@ -23,9 +23,10 @@ def pytest_collection(session):
 def outcome(folder: Path, processes: int) -> str:
     """What pytest says of a folder of tests whose assertions so many processes rewrite before they are collected."""
     (folder / "conftest.py").write_text(CONFTEST.format(processes=processes))
-    quiet = "-q", "-s", "-p", "no:cacheprovider", "-c", "/dev/null", "--rootdir", str(folder)
+    quiet = "-q", "-s", "-rN", "-p", "no:cacheprovider", "-c", "/dev/null", "--rootdir", str(folder)
     environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    for asked_of_the_outer_run in ("PYTHONDONTWRITEBYTECODE", "PYTEST_ADDOPTS"):
+        environment.pop(asked_of_the_outer_run, None)
     return subprocess.run(
         [sys.executable, "-m", "pytest", *quiet, str(folder)],
         cwd=ROOT,
