@@ -96,10 +96,12 @@ def open_host(
 
     def hung(what: str) -> None:
         if started_by_another():
+            host.leave()
             bus.later(HUNG_ENDS, lambda: os._exit(HUNG_EXIT_CODE))
         said.put(what)
 
-    return Host(bus, name, hung)
+    host = Host(bus, name, hung)
+    return host
 
 
 def run_until_ended(host: Host) -> None:

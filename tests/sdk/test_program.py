@@ -250,6 +250,18 @@ def test_a_program_that_a_site_has_started_ends_when_its_code_hangs_so_that_it_c
     assert programs.stage.fails[0][1].detail == "`every` has not returned within 0.3 s"
 
 
+@pytest.mark.process
+def test_a_life_that_ends_as_its_code_hangs_is_over_before_its_process_is_so_that_no_task_begins_it_anew(
+    programs: Programs,
+) -> None:
+    lasting = "from selfconf.sdk import program\nprogram.HUNG_ENDS = 60.0\n"
+    (programs.stage.folder / "lamp.py").write_text(lasting + PROGRAM)
+    process = programs.acting("hang", **parent_environment())
+    assert until(lambda: programs.stage.fails)
+    assert until(lambda: not programs.lives())
+    assert process.poll() is None
+
+
 # A terminal that is held: whatever the program has to say of what it does, nobody reads it.
 
 HOLDING = """
