@@ -62,6 +62,8 @@ class ComponentCode:
         """Counts starts and stops: what belongs to an earlier one is not run any more."""
         self._wanted_turn = self._acting_turn = self._started_turn = -1
         self._rests = 0
+        self.is_to_rest = False
+        """Whether it has been blind for too long, and what runs now has not returned yet."""
         self._on = self._resting = self._lacking = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
         required = frozenset(port.name for port in profile.required if not port.is_operation)
@@ -255,8 +257,10 @@ class ComponentCode:
     def _rest(self) -> None:
         """Be stopped until all inputs are fed again: the component is blind, and that is not tolerated any longer."""
         turn = self.turn
+        self.is_to_rest = True
 
         def rest() -> None:
+            self.is_to_rest = False
             if turn == self.turn and self.active and self._blindness.blind and not self._resting:
                 lacking = (
                     "the configuration is incomplete" if INCOMPLETE in self._blindness.unfed else "an input is unfed"
@@ -266,7 +270,7 @@ class ComponentCode:
                 self._about_to_rest()
                 self._resting = self._stop()
 
-        self._thread.call(rest)
+        self._thread.rest(rest)
 
     # What runs on the thread of the code.
 

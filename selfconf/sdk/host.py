@@ -241,9 +241,10 @@ class Host:
             return
         self._overdue = overdue
         for runtime in (*self.runtimes, *self._leaving):
+            # What delays a rest has not failed itself: another component of this host may be the one that is to rest.
+            if runtime.code.is_to_rest if overdue.delays_rest else runtime.code is overdue.owner:
+                runtime.hung(overdue.why_overdue)
             if runtime.code is overdue.owner:
-                if not overdue.delays_rest:  # else another component of this host may be the one that is to rest
-                    runtime.hung(overdue.why_overdue)
                 self._hung(f"{runtime.profile.component}: {overdue.why_overdue}")
 
 

@@ -12,7 +12,7 @@ import pytest
 from selfconf.bus.port import Urgency
 from selfconf.model.term import IRI, Literal
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Cause, Release, Stamp, Verdict, Wire
+from selfconf.protocol.messages import Cause, Release, Reserve, Stamp, Verdict, Wire
 from selfconf.sdk.component import Component, Signal
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.sdk.living import PATIENCE, LivingStage, until
@@ -57,6 +57,8 @@ def hanging(living: LivingStage, where: str, advertised: str = LAMP) -> Hanging:
     """A lamp that hangs as soon as it is activated, or gets a signal, or else once it is turned off."""
     lamp = living.component(living.advertised(Hanging, advertised)(living, where))
     inputs = {"level": (Wire(SOURCE, "level"),)}
+    reserved = living.call("urn:c:lamp", "reserve", Reserve(1, living.supervisor, "task~1"))
+    assert until(lambda: reserved)
     living.apply("urn:c:lamp", inputs=inputs, values={"goal": Literal("x")})
     if where == "received":
         assert until(lambda: lamp.active)
@@ -116,6 +118,25 @@ def test_code_goes_on_no_longer_than_a_release_may_take_where_its_configurator_i
     assert living.hangs == [
         f"urn:c:lamp: `{where}` has not returned within 0.3 s, though a component is to come to rest"
     ]
+
+
+MOTOR = LAMP.replace("0.3", "60.0").replace(
+    'sc:hasOutput [ sc:name "light" ; sc:signalType :Light ]', "sc:tolerates [ sc:value 0.1 ; sc:unit unit:SEC ]"
+)
+
+
+def test_an_actuator_that_is_blind_for_too_long_has_no_longer_to_come_to_rest_than_one_that_is_turned_off(
+    living: LivingStage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever its deadline: it would go on by what is not true any more. Its source shows no life, and so is lost."""
+    monkeypatch.setattr("selfconf.sdk.code_thread.TO_REST", 0.3)
+    motor = hanging(living, "received", MOTOR)
+    assert until(lambda: living.hangs)
+    late = "`received` has not returned within 0.3 s, though a component is to come to rest"
+    assert living.hangs == [f"urn:c:lamp: {late}"]
+    assert until(lambda: living.fails)
+    assert [(fail.cause, fail.detail) for _, fail in living.fails] == [(Cause.HUNG, late)]
+    assert not motor.active
 
 
 def test_what_keeps_another_component_of_its_program_from_coming_to_rest_has_not_failed(
