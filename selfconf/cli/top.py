@@ -74,13 +74,8 @@ def _rates(
     """By component and output, the signals a second between two looks."""
     from selfconf.api.living.component_states import issue_rates
 
-    known = {one.component: one for one in before}
-    return {
-        one.component: {port: round(rate, 2) for port, rate in issue_rates(known[one.component], one, seconds).items()}
-        if one.component in known
-        else {}
-        for one in now
-    }
+    found = issue_rates(before, now, seconds)
+    return {component: {port: round(rate, 2) for port, rate in rates.items()} for component, rates in found.items()}
 
 
 def _table(ecology: LivingEcology, now: tuple[ComponentState, ...], rates: dict[str, dict[str, float]]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
@@ -70,13 +71,20 @@ def _moment(text: str) -> float:
     """A moment in seconds of the Unix epoch; one without a date is today's.
 
     A time without a fraction is the end of its second, as answers name times by whole seconds: what has begun at
-    14:02:07.4, they say, is so since 14:02:07.
+    14:02:07.4, they say, is so since 14:02:07. A second that has not begun is a mistake: nothing is known of it.
     """
     moment = _written(text)
     try:
-        return (moment if moment.microsecond else moment.replace(microsecond=999_999)).timestamp()
+        begins = moment.timestamp()
+        known = (moment if moment.microsecond else moment.replace(microsecond=999_999)).timestamp()
     except (ValueError, OverflowError):  # of the first year or the last one, as it is elsewhere
         raise argparse.ArgumentTypeError(f"{text!r} is before or after all moments that are known") from None
+    now = time.time()
+    if begins > now:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} has not come yet, it is {clock_time(now)}; a time of an earlier day takes its date"
+        )
+    return known
 
 
 def _written(text: str) -> datetime:

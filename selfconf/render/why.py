@@ -91,7 +91,7 @@ def _changes(found: TaskStory, passed_over: Sequence[str], told: Container[str |
     if lost:
         names = ", ".join(map(_name, lost))
         again = "free" if all(found.lost[one].get("cause") == "yield" for one in lost) else "able to act"
-        yield f"  what would change it: {names} {again} again, and `run --upgrade`, or a new start"
+        yield f"  what would change it: {names} {again} again; without `run --upgrade` a new start as well"
     rest = [one for one in passed_over if one not in lost]
     if rest:
         yield f"  `selfconf partition TEMPLATE --why` says what comes of {', '.join(map(_name, rest))}"

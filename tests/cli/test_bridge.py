@@ -88,6 +88,13 @@ def test_a_domain_without_a_router_is_one_sentence(capsys: pytest.CaptureFixture
 
 
 @ros2
+def test_what_is_no_endpoint_is_one_sentence_and_no_site_begins(capsys: pytest.CaptureFixture[str], home: Home) -> None:
+    for endpoint in ("", "nonsense", "tcp/127.0.0.1"):
+        said = run(capsys, "bridge", "ros2", f"--connect={endpoint}", "--ecology", home.ecology)
+        said.is_one_sentence(f"{endpoint} is no endpoint; write it like tcp/127.0.0.1:7447")
+
+
+@ros2
 def test_definitions_that_are_not_there_are_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     given = run(capsys, "bridge", "ros2", "--definitions", str(tmp_path), "--ecology", "lab")
     given.is_one_sentence(f"there is no definition of ROS 2 below {tmp_path}, such as lab_msgs/msg/Mood.msg")

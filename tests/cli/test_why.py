@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import signal
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.cli.command import run
+from tests.cli.command import Outcome, run
 from tests.cli.processes import Home
 
 
@@ -45,6 +45,17 @@ def test_what_is_no_time_is_one_sentence(text: str, capsys: pytest.CaptureFixtur
 def test_a_moment_that_no_clock_has_is_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:
     said = run(capsys, "why", "position", "--at", "0001-01-01")
     assert said.is_one_sentence("'0001-01-01' is before or after all moments that are known")
+
+
+def test_a_moment_that_has_not_come_yet_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What is known now is no answer about later; the second that lasts now is known, though its end is not."""
+
+    def said(moment: datetime) -> Outcome:
+        text = moment.isoformat(timespec="seconds")
+        return run(capsys, "why", "position", "--at", text, "--history", str(tmp_path))
+
+    assert said(datetime.now() + timedelta(minutes=1)).is_one_sentence("has not come yet, it is ")
+    assert said(datetime.now()).is_one_sentence("holds no history")
 
 
 @pytest.mark.process

@@ -27,7 +27,7 @@ def test_only_of_what_was_lost_it_is_said_that_it_has_to_be_able_to_act_again() 
     passed = {HOME + "position": [HOME + "slow-tracker", HOME + "tracker"]}
     *_, over, change, ask = why_sentences(story("navigate", EVENTS), "position", passed)
     assert over == "  passed over, though first in order: slow-tracker, tracker"
-    assert change == "  what would change it: tracker able to act again, and `run --upgrade`, or a new start"
+    assert change == "  what would change it: tracker able to act again; without `run --upgrade` a new start as well"
     assert ask == "  `selfconf partition TEMPLATE --why` says what comes of slow-tracker"
 
 
@@ -40,7 +40,7 @@ def test_of_what_others_play_on_without_it_is_said_why_it_was_lost_and_that_it_h
     assert over == "  passed over, though first in order: tracker"
     assert why.startswith("  tracker was lost at ")
     assert why.endswith("(yield, the task tidy of priority 3 asks for it)")
-    assert change == "  what would change it: tracker free again, and `run --upgrade`, or a new start"
+    assert change == "  what would change it: tracker free again; without `run --upgrade` a new start as well"
 
 
 def test_who_goes_first_and_who_has_come_back_is_said() -> None:

@@ -5,7 +5,7 @@ Each living component is asked for its `state`, which it answers from its contro
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from selfconf.bus.own_answers import own_answers
@@ -13,7 +13,7 @@ from selfconf.bus.port import Replies
 from selfconf.discovery import Discovery
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, task_name
-from selfconf.protocol.messages import CallAnswer
+from selfconf.protocol.messages import CallAnswer, Wire
 from selfconf.rdf.vocabulary import SC
 
 
@@ -36,7 +36,9 @@ class ComponentState(NamedTuple):
     memory: int = 0
     """The resident memory of its process in bytes."""
     issued: Mapping[str, int] = {}
-    """How many signals each output has issued since it lives."""
+    """How many signals each output has issued since it lives; those of a composite issue nothing themselves."""
+    issued_inside: Mapping[str, tuple[Wire, ...]] = {}
+    """Of a composite that acts: which outputs of others issue the signals of each of its own."""
     life: str = ""
     reason: str = ""
     """Why it cannot act now, where its site says so: of a composite whose inside cannot be configured."""
@@ -97,7 +99,7 @@ def component_states(discovery: Discovery, told: Mapping[IRI, Sequence[CallAnswe
         one = ComponentState(component, types, site, state, reason=found.unable)
         for heard in told.get(component, ())[:1]:
             task = task_name(heard.task)
-            what = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.life
+            what = heard.active, task, heard.place, heard.age, heard.memory, heard.issued, heard.outputs, heard.life
             one = ComponentState(component, types, site, "alive", *what, stopping=heard.stopping)
         yield one
 
@@ -112,8 +114,24 @@ def unadvertised(discovery: Discovery, told: Mapping[IRI, Sequence[CallAnswer]])
             yield f"{component} lives, and the task {task_name(answer.task)} holds it, but no site advertises it"
 
 
-def issue_rates(before: ComponentState, now: ComponentState, seconds: float) -> dict[str, float]:
-    """The signals a second of each output between two looks; none where another life has begun."""
-    if now.state != "alive" or before.life != now.life or seconds <= 0:
+def issue_rates(
+    before: Iterable[ComponentState], now: Iterable[ComponentState], seconds: float
+) -> dict[IRI, dict[str, float]]:
+    """The signals a second of each output of each component between two looks; none where another life has begun.
+
+    Signals flow past a composite, so the rate of its output is that of the outputs which issue for it now.
+    """
+    known, states = {one.component: one for one in before}, tuple(now)
+    rates = {one.component: _own_rates(known.get(one.component), one, seconds) for one in states}
+    for composite in states:
+        for port, wires in composite.issued_inside.items():
+            if port in rates[composite.component]:
+                inside = (rates.get(wire.component, {}).get(wire.output, 0.0) for wire in wires)
+                rates[composite.component][port] += sum(inside)
+    return rates
+
+
+def _own_rates(before: ComponentState | None, now: ComponentState, seconds: float) -> dict[str, float]:
+    if before is None or now.state != "alive" or before.life != now.life or seconds <= 0:
         return {}
     return {port: (count - before.issued.get(port, 0)) / seconds for port, count in now.issued.items()}

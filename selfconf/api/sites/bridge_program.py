@@ -76,8 +76,9 @@ def serve_nodes(
     """
     from selfconf import ros2
     from selfconf.bridging.ros2 import RosWorld
-    from selfconf.bus.zenoh import client
+    from selfconf.bus.zenoh import check_endpoint, client
 
+    check_endpoint(endpoint)  # before the site of the bridge begins
     for left_out in ros2.learn(definitions or ros2.named_folders()):
         complain(str(left_out))
     connect = partial(client, [endpoint], wanted="router of ROS 2")

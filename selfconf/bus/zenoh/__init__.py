@@ -3,7 +3,8 @@
 * `client` opens the `ZenohBus` of a program, `router` that of a site with its `Hub`, which keeps the rules and the
   certificate of a `Security`. `cut_connections` ends what is left of the connections to an endpoint.
 * `open_session` opens a bare session; `ANYWHERE_ON_LOOPBACK` is the endpoint of a hub that takes any free port, and
-  `with_port` puts a free port in place of port 0; `GREETING` is how long a silent end is waited for.
+  `with_port` puts a free port in place of port 0; `GREETING` is how long a silent end is waited for;
+  `check_endpoint` refuses what is no endpoint, before anything is opened.
 * `hear_refusals` reads in Zenoh's log what the hub of this process refuses, and keeps it as a `RefusalLog`, of each key
   `LONGEST_KEY` characters; `includes` says whether a key is one of those that were granted.
 """
@@ -13,7 +14,14 @@ from selfconf.bus.zenoh.key_inclusion import includes
 from selfconf.bus.zenoh.opening import client, router
 from selfconf.bus.zenoh.refusals import LONGEST_KEY, RefusalLog, hear_refusals
 from selfconf.bus.zenoh.relay import Hub, cut_connections
-from selfconf.bus.zenoh.session import ANYWHERE_ON_LOOPBACK, GREETING, Security, open_session, with_port
+from selfconf.bus.zenoh.session import (
+    ANYWHERE_ON_LOOPBACK,
+    GREETING,
+    Security,
+    check_endpoint,
+    open_session,
+    with_port,
+)
 
 __all__ = [
     "ANYWHERE_ON_LOOPBACK",
@@ -23,6 +31,7 @@ __all__ = [
     "RefusalLog",
     "Security",
     "ZenohBus",
+    "check_endpoint",
     "client",
     "cut_connections",
     "hear_refusals",

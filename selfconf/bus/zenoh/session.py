@@ -128,7 +128,7 @@ def open_session(
     With `security` all links are mutual TLS.
     """
     for endpoint in (*listen, *connect):
-        _check_endpoint(endpoint, security)
+        check_endpoint(endpoint, security)
     _check_descriptors()
     _check_process()
     begin_log()
@@ -299,7 +299,7 @@ def _path_setting(file: Path) -> str:
     return path
 
 
-def _check_endpoint(endpoint: str, security: Security | None) -> None:
+def check_endpoint(endpoint: str, security: Security | None = None) -> None:
     """Raise NetworkError for what is no endpoint, or is not of what is spoken: TLS with keys, TCP without."""
     if not is_zenoh_endpoint(endpoint):
         raise _no_endpoint(endpoint)

@@ -17,7 +17,7 @@ from selfconf.discovery import Discovery, FoundAdvertisement
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import CallAnswer, Verdict
+from selfconf.protocol.messages import CallAnswer, Verdict, Wire
 from selfconf.rdf.advertisements import read_advertisements
 
 KEYS = Keys("lab")
@@ -46,7 +46,7 @@ def answer(component: IRI, life: str = "b", task: str = "t~1", key: str = "", pl
 def test_what_a_component_says_is_its_state_and_the_others_are_dormant_or_absent() -> None:
     found = states(answer(CLOCK))
     assert found[CLOCK] == ComponentState(
-        CLOCK, (IRI("https://example.org/x#Clock"),), "home", "alive", True, "t", "process 1 on a", 2.5, 9, {}, "b"
+        CLOCK, (IRI("https://example.org/x#Clock"),), "home", "alive", True, "t", "process 1 on a", 2.5, 9, {}, {}, "b"
     )
     assert (found[LAMP].state, found[LAMP].life, found[LAMP].age) == ("dormant", "", 0.0)
     assert states()[CLOCK].state == "absent"
@@ -99,7 +99,23 @@ def test_a_component_that_is_held_and_advertised_no_more_is_named() -> None:
 
 def test_rates_are_taken_over_one_life() -> None:
     before = ComponentState(CLOCK, (), "home", "alive", issued={"time": 10}, life="a")
-    assert issue_rates(before, before._replace(issued={"time": 14, "date": 2}), 2.0) == {"time": 2.0, "date": 1.0}
-    assert issue_rates(before, before._replace(life="b"), 2.0) == {}
-    assert issue_rates(before, before._replace(state="dormant"), 2.0) == {}
-    assert issue_rates(before, before, 0.0) == {}
+
+    def rates(now: ComponentState, seconds: float) -> dict[str, float]:
+        return issue_rates([before], [now], seconds)[CLOCK]
+
+    assert rates(before._replace(issued={"time": 14, "date": 2}), 2.0) == {"time": 2.0, "date": 1.0}
+    assert rates(before._replace(life="b"), 2.0) == {}
+    assert rates(before._replace(state="dormant"), 2.0) == {}
+    assert rates(before, 0.0) == {}
+    assert issue_rates([], [before], 2.0) == {CLOCK: {}}
+
+
+def test_an_output_of_a_composite_issues_what_is_issued_for_it_inside() -> None:
+    clock = ComponentState(CLOCK, (), "home", "alive", issued={"time": 10}, life="a")
+    said = CallAnswer(
+        Verdict.DONE, LAMP, "b", 1, True, issued={"light": 0, "dark": 0}, outputs={"light": (Wire(CLOCK, "time"),)}
+    )
+    composite = states(Sample(KEYS.call(LAMP, "state"), encode(said)))[LAMP]
+    rates = issue_rates([clock, composite], [composite, clock._replace(issued={"time": 14})], 2.0)
+    assert rates[LAMP] == {"light": 2.0, "dark": 0.0}
+    assert issue_rates([composite], [composite], 2.0)[LAMP] == {"light": 0.0, "dark": 0.0}, "the clock is unknown"
