@@ -63,15 +63,17 @@ class WrongType(_Predicate):
     relation: TypeRelation | None = None
 
     def __str__(self) -> str:
-        said = f"is no {self.wanted.short}"
         if self.offered is None:
-            return said
+            return f"is no {self.wanted.short}"
+        wanted, offered = self.wanted.short, self.offered.short
+        if wanted == offered:
+            wanted, offered = repr(self.wanted), repr(self.offered)
+        said = f"is no {wanted} but a {offered}"
         if self.relation is TypeRelation.SIMILAR:
-            name = self.offered.short if self.offered.short != self.wanted.short else repr(self.offered)
-            return f"{said} (did you mean {name}?)"
+            return f"{said} (is one of them misspelt?)"
         if self.relation is TypeRelation.BELOW:
-            return f"{said} but a {self.offered.short}, which lies below it (see {setting('reasoning', 'subclass')})"
-        return f"{said} but a {self.offered.short}, which lies above it"
+            return f"{said}, which lies below it (see {setting('reasoning', 'subclass')})"
+        return f"{said}, which lies above it"
 
 
 @immutable

@@ -118,12 +118,12 @@ def test_a_misspelt_type_is_a_near_miss_and_the_first_thing_to_read(
     assert [reason["place"] for reason in body["reasons"]] == [role]
     (miss,) = body["near_misses"]
     assert miss["place"] == clock
-    assert miss["obstacle"] == "is no Clok (did you mean Clock?)"
+    assert miss["obstacle"] == "is no Clok but a Clock (is one of them misspelt?)"
     assert body["repairs"][0]["code"] == "accept-near-miss"
     assert body["repairs"][0]["place"] == clock
     text = configure(capsys, home).out
     assert f"  because no component is eligible for the role source  [{role}]\n" in text
-    assert f"  source: :clock would fit, but it is no Clok (did you mean Clock?)  [{clock}]\n" in text
+    assert f"  source: :clock would fit, but it is no Clok but a Clock (is one of them misspelt?)  [{clock}]\n" in text
     assert len(text.splitlines()) < 24
 
 
@@ -141,7 +141,7 @@ def test_an_input_that_nobody_feeds_points_to_the_component_that_has_it(
     [
         ("rob:PositionSensor", "rob:PersonTracker", "which lies below it (see --reasoning subclass)"),
         ("rob:PersonTracker", "rob:PositionSensor", "which lies above it"),
-        ("rob:Tuner", ":Tuner", "did you mean <https://"),
+        ("rob:Tuner", ":Tuner", "but a <https://example.org/peis-home#Tuner> (is one of them misspelt?)"),
     ],
 )
 def test_a_related_type_is_a_near_miss(

@@ -245,7 +245,8 @@ def test_a_refusal_points_to_the_advertisements_that_were_given_and_says_what_wo
     spoken = home.selfconf(*arguments)
     assert spoken.ended() == 1
     place = f"[ads/control.ttl:{PREFIXES.count(chr(10)) + 1}]"
-    assert f"but it is no NavigationControl (did you mean NavigationContro?)  {place}" in spoken.complaints
+    near = "it is no NavigationControl but a NavigationContro (is one of them misspelt?)"
+    assert f"but {near}  {place}" in spoken.complaints
     assert "what would mend it" in spoken.complaints
     assert "an ecology of its own" not in spoken.complaints
     home.site("peis-home", "ads/tracker.ttl")

@@ -47,7 +47,7 @@ def test_a_misspelt_type_is_a_near_miss_and_to_accept_it_would_do() -> None:
     assert refusal.near_misses == ()
     told = explained(composer, ecology, refusal, NOTHING, UNLIMITED)
     assert [(miss.component, str(miss.obstacle)) for miss in told.near_misses] == [
-        (iri("cam"), "is no Camera (did you mean Camra?)")
+        (iri("cam"), "is no Camera but a Camra (is one of them misspelt?)")
     ]
     assert isinstance(told.repairs[0], AcceptNearMiss)
     assert told.reasons == refusal.reasons

@@ -236,14 +236,20 @@ def test_codes_are_stable_and_different() -> None:
 @pytest.mark.parametrize(
     ("offered", "relation", "words"),
     [
-        (SENSOR, TypeRelation.SIMILAR, "(did you mean Sensor?)"),
-        (IRI("urn:other#Camera"), TypeRelation.SIMILAR, "(did you mean <urn:other#Camera>?)"),
+        (SENSOR, TypeRelation.SIMILAR, "but a Sensor (is one of them misspelt?)"),
         (SENSOR, TypeRelation.BELOW, "but a Sensor, which lies below it (see reasoning='subclass')"),
         (SENSOR, TypeRelation.ABOVE, "but a Sensor, which lies above it"),
     ],
 )
 def test_a_type_that_is_related_is_named(offered: IRI, relation: TypeRelation, words: str) -> None:
     assert str(WrongType(CAMERA, offered, relation)) == f"is no Camera {words}"
+
+
+def test_types_of_one_name_are_told_apart_by_their_namespaces() -> None:
+    offered = IRI("urn:other#Camera")
+    assert str(WrongType(CAMERA, offered, TypeRelation.SIMILAR)) == (
+        f"is no {CAMERA!r} but a <urn:other#Camera> (is one of them misspelt?)"
+    )
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def advertisement(text: str) -> Advertisement:
     [
         (ADVERTISEMENTS["tracker"], {"position": ()}),
         (ADVERTISEMENTS["pippi"], {"drive": ("support is Pippi, not Astrid",)}),
-        (MISSPELT, {"position": ("is no PositionSensor (did you mean PositonSensor?)",)}),
+        (MISSPELT, {"position": ("is no PositionSensor but a PositonSensor (is one of them misspelt?)",)}),
         (":lamp a sc:Component, rob:Lamp .", {}),
     ],
 )
