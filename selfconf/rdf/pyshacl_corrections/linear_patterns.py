@@ -44,11 +44,12 @@ class _LinearRe(ModuleType):
     def search(self, expression: str, text: str, flags: int = 0) -> bool:
         return pattern(sparql_expression(expression, int(flags)), int(flags)).finds(text)
 
-    def sub(self, expression: str, replacement: str, text: str, count: int = 0, flags: int = 0) -> str:
+    def sub(self, expression: str, replacement: str, text: str, flags: int = 0) -> str:
+        """What `re.sub` returns; rdflib hands it the flags of REPLACE where it takes a count."""
         expression = sparql_expression(expression, int(flags))
         if not pattern(expression, int(flags)).finds(text):
             return text
-        return re.sub(expression, replacement, text, count=count, flags=flags)
+        return re.sub(expression, replacement, text, flags=flags)
 
 
 _initialised = vars(PatternConstraintComponent)["__init__"]

@@ -48,12 +48,17 @@ def test_sparql_answers_the_same_in_the_block_and_outside_of_it(condition: str, 
     assert ask(condition) == holds
 
 
-@pytest.mark.filterwarnings("ignore:'count' is passed as positional:DeprecationWarning")
 def test_a_dollar_of_sparql_stands_at_the_end_of_the_text_alone() -> None:
     with linear_patterns():
         assert not ask(r'REGEX("a\n", "^a$")')
         assert ask(r'REGEX("a\n", "^a$", "m")')
         assert ask(r'REPLACE("a\n", "a$", "b") = "a\n"')
+
+
+def test_replace_of_sparql_goes_by_its_flags() -> None:
+    with linear_patterns():
+        assert ask('REPLACE("Lamp, lAMP, lamp", "L", "c", "i") = "camp, cAMP, camp"')
+        assert ask(r'REPLACE("a\nb", "a.b", "c", "s") = "c"')
 
 
 def test_shacl_answers_the_same_in_the_block_and_outside_of_it() -> None:
