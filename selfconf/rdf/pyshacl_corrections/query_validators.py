@@ -4,6 +4,9 @@ pySHACL asks a SELECT validator once for each value, to which it binds `value` b
 selects `?value`, as SHACL's own do, finds nothing, and one that looks for a value that is missing is never asked. It
 binds no `value` for an ASK validator where the value is 0, "" or false. And of several values of a parameter, each of
 which is a constraint, it takes one, which depends on the seed of Python's hashes.
+
+Of the prefixes of a query it takes those that any ontology of the shapes declares, but not always those of an ontology
+that another imports (SHACL, 5.2.1).
 """
 
 from __future__ import annotations
@@ -18,8 +21,9 @@ from pyshacl.constraints.sparql.sparql_based_constraint_components import (
     BoundShapeValidatorComponent,
     SelectConstraintValidator,
 )
+from pyshacl.errors import ConstraintLoadError
 from pyshacl.helper.sparql_query_helper import SPARQLQueryHelper
-from rdflib import Literal, URIRef
+from rdflib import OWL, SH, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.term import IRI
@@ -58,6 +62,20 @@ def _with_any_value(
     return bindings if valuenode is None else {**bindings, "value": valuenode}, text
 
 
+def _collected(helper: Any) -> None:
+    """Take the prefixes of a query: those of `sh:prefixes/owl:imports*/sh:declare`."""
+    graph = helper.shape.sg.graph
+    for owner in {
+        one for first in graph.objects(helper.node, SH.prefixes) for one in graph.transitive_objects(first, OWL.imports)
+    }:
+        for declaration in graph.objects(owner, SH.declare):
+            prefix, namespace = (graph.value(declaration, said) for said in (SH.prefix, SH.namespace))
+            if not isinstance(prefix, Literal) or not isinstance(namespace, Literal):
+                message = "sh:declare leads to no sh:prefix and sh:namespace"
+                raise ConstraintLoadError(message, str(SH.declare))  # type: ignore[no-untyped-call]
+            helper.prefixes[str(prefix)] = URIRef(namespace)
+
+
 def _named(component: Any, *_: object) -> list[Literal]:
     """The message of a component that has none."""
     arguments = (f"{name} {_short(value)}" for name, value in component.query_helper.param_bind_map.items())
@@ -71,6 +89,7 @@ def _short(node: Node) -> str:
 _INSTEAD: tuple[tuple[object, str, object], ...] = (
     (AskConstraintValidator, "validate", _asked_each),
     (SelectConstraintValidator, "validate", _selected_each),
+    (SPARQLQueryHelper, "collect_prefixes", _collected),
     (SPARQLQueryHelper, "pre_bind_variables", _with_any_value),
     (BoundShapeValidatorComponent, "make_generic_messages", _named),
 )

@@ -5,11 +5,11 @@ makes tests of the constraints that can be; two `exclude` each other if no value
 `passed_by_none` at all. `passes_all` asks for a value that passes several. `misfit`, `unfit`, `of_values`,
 `said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
 `ILL_FORMED` say what may stand as a value of SHACL's own properties, `PATH_FORMS` are those of paths.
-`component_parameters` are the predicates by which a document constrains by components of its own, and `shapes_behind`
-are the shapes to which a statement leads. `pattern` is a regular expression that a text cannot make expensive
-(`Pattern`); where that cannot be, it is `MatchTooCostly`. `shacl_pattern` is one with the flags of SHACL,
-`sparql_expression` what an expression of SPARQL is to `re`, and `pattern_fault` why a text is none. Judging by pySHACL
-is `selfconf.rdf.conformance`, which loads it.
+`component_parameters` are the predicates by which a document constrains by components of its own, `shapes_behind` are
+the shapes to which a statement leads, and `refused_queries` the queries of a constraint that are not asked. `pattern`
+is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is `MatchTooCostly`.
+`shacl_pattern` is one with the flags of SHACL, `sparql_expression` what an expression of SPARQL is to `re`, and
+`pattern_fault` why a text is none. Judging by pySHACL is `selfconf.rdf.conformance`, which loads it.
 """
 
 from selfconf.rdf.shacl.patterns import (
@@ -20,6 +20,7 @@ from selfconf.rdf.shacl.patterns import (
     shacl_pattern,
     sparql_expression,
 )
+from selfconf.rdf.shacl.shape_queries import component_parameters, refused_queries
 from selfconf.rdf.shacl.shape_syntax import (
     BESIDES,
     COUNTS,
@@ -30,7 +31,6 @@ from selfconf.rdf.shacl.shape_syntax import (
     ONLY_WITH_A_PATH,
     PATH_FORMS,
     STATED_ONCE,
-    component_parameters,
     misfit,
     of_values,
     said_alone,
@@ -64,6 +64,7 @@ __all__ = [
     "passes_all",
     "pattern",
     "pattern_fault",
+    "refused_queries",
     "said_alone",
     "said_twice",
     "shacl_pattern",

@@ -107,6 +107,7 @@ def pattern(expression: str, flags: int = 0) -> Pattern:
     return Pattern(expression, flags)
 
 
+_INSTEAD_OF_CATEGORIES = r"pySHACL knows no categories of Unicode; a letter of any language is [^\W\d_]"
 _HOLDS_SPACE = re.compile(r"(\\.|\[(?:\\.|[^\]\\])*\])|[ \t\r\n]+", re.DOTALL)
 """White space in an expression, or what holds white space that counts: an escaped character, a class of characters."""
 _HOLDS_DOLLAR = re.compile(r"(\\.|\[\^?\]?(?:\\.|[^\]\\])*\])|\$", re.DOTALL)
@@ -145,12 +146,12 @@ def shacl_pattern(expression: str, flags: str) -> Pattern:
     return pattern(sparql_expression(expression, options), int(options))
 
 
-def pattern_fault(expression: str, flags: str) -> re.error | None:
-    """Why a text, with its `sh:flags`, is no regular expression; None if it is one."""
+def pattern_fault(expression: str, flags: str) -> str | None:
+    """Why a text, with its `sh:flags`, is no regular expression, without a full stop; None if it is one."""
     try:
         shacl_pattern(expression, flags)
     except re.error as error:
-        return error
+        return f"{error}. {_INSTEAD_OF_CATEGORIES}" if re.match(r"bad escape \\[pP]", error.msg) else str(error)
     return None
 
 

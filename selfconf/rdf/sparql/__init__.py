@@ -3,13 +3,13 @@
 `Dataset` holds named graphs and answers queries with a `QueryAnswer`; `QUERY_PREFIXES` are lent to every query,
 `declared_prefixes` are those that a query declares itself.
 `only_reads`, `fault`, `says` and `without` tell what a query must not say, `mistake` what is wrong with what is none,
-and `why_not_asked` both of the query of a shape.
+and `why_not_asked` both of the query of a shape; `hidden` is a query with blanks for its strings.
 """
 
 from selfconf.rdf.sparql.dataset import QUERY_PREFIXES, Dataset, QueryAnswer
 from selfconf.rdf.sparql.mistakes import mistake, why_not_asked
 from selfconf.rdf.sparql.prologue import declared_prefixes
-from selfconf.rdf.sparql.read_only import fault, only_reads, says, without
+from selfconf.rdf.sparql.read_only import fault, hidden, only_reads, says, without
 
 __all__ = [
     "QUERY_PREFIXES",
@@ -17,6 +17,7 @@ __all__ = [
     "QueryAnswer",
     "declared_prefixes",
     "fault",
+    "hidden",
     "mistake",
     "only_reads",
     "says",

@@ -12,11 +12,11 @@ beforehand.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Container, Iterable, Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from importlib.resources import files
+from itertools import chain
 
 from pyshacl.errors import ReportableRuntimeError, ValidationFailure
 from rdflib import RDF, SH, XSD, Graph, Literal, URIRef
@@ -42,13 +42,14 @@ from selfconf.rdf.shacl import (
     MatchTooCostly,
     of_values,
     pattern_fault,
+    refused_queries,
     said_alone,
     said_twice,
     unfit,
 )
-from selfconf.rdf.sparql import why_not_asked
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.normal_form import ShapeSource
+from selfconf.rdf.validation.placed_document import PlacedDocument
 from selfconf.rdf.vocabulary import SC
 
 _SAMPLES: dict[Node, Literal] = {
@@ -72,7 +73,6 @@ _OF_PROPERTIES: dict[Node, Node] = {
     SH.uniqueLang: Literal(True),
 }
 """Samples for what a shape without a path may not say, with whatever value."""
-_INSTEAD_OF_CATEGORIES = r" pySHACL knows no categories of Unicode; a letter of any language is [^\W\d_]."
 
 
 def endless_lists(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
@@ -284,21 +284,20 @@ def _patterns(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
     """Values of sh:pattern that are no regular expressions."""
     for shape, pattern in graph.subject_objects(SH.pattern):
         flags = str(graph.value(shape, SH.flags) or "")
-        error = pattern_fault(str(pattern) if isinstance(pattern, Literal) else "", flags)
-        if error is not None:
+        fault = pattern_fault(str(pattern) if isinstance(pattern, Literal) else "", flags)
+        if fault is not None:
             offset = positions.triples[shape, SH.pattern, pattern].object
-            advice = _INSTEAD_OF_CATEGORIES if re.match(r"bad escape \\[pP]", error.msg) else ""
-            yield at(positions, offset, "SC-T13", f"This is no regular expression: {error}.{advice}")
+            yield at(positions, offset, "SC-T13", f"This is no regular expression: {fault}.")
 
 
 def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
-    """Queries of roles that are no SPARQL, or that would leave this machine."""
-    for predicate in (SH.select, SH.ask):
-        for constraint, query in graph.subject_objects(predicate):
-            word = IRI.unchecked(predicate).short
-            reason = why_not_asked(str(query), dict(_declared(graph, constraint)), word)
-            if reason is not None:
-                yield at(positions, positions.triples[constraint, predicate, query].object, "SC-T13", reason)
+    """Queries of roles that are no SPARQL, that would leave this machine, or that find nothing by mistake."""
+    if (None, SH.select, None) not in graph and (None, SH.ask, None) not in graph:
+        return
+    placed = PlacedDocument.of(positions)
+    refused = dict(chain.from_iterable(refused_queries(placed.document, one) for one in placed.document.statements))
+    for statement, reason in refused.items():
+        yield at(positions, placed.places[statement].object, "SC-T13", reason)
 
 
 def _too_deep(shapes: Graph, roles: Iterable[str], positions: Positions) -> Iterator[Diagnostic]:
@@ -335,15 +334,6 @@ def _within(shapes: Graph, shape: Node) -> Iterator[Node]:
                 yield from shapes.items(value)
             else:
                 yield value
-
-
-def _declared(graph: Graph, constraint: Node) -> Iterator[tuple[str, str]]:
-    """The prefixes of a SPARQL constraint (SHACL, 5.2.1)."""
-    for owner in graph.objects(constraint, SH.prefixes):
-        for declaration in graph.objects(owner, SH.declare):
-            prefix, namespace = graph.value(declaration, SH.prefix), graph.value(declaration, SH.namespace)
-            if prefix is not None and namespace is not None:
-                yield str(prefix), str(namespace)
 
 
 def _trial(shapes: Graph, *roles: str) -> str | None:

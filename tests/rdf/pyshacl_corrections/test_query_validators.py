@@ -57,3 +57,18 @@ def test_the_message_of_a_component_names_what_is_violated() -> None:
     subjects, shapes = (to_rdflib(turtle.parse(each, "a.ttl").triples()) for each in (HEAD + SAID, text))
     (found,) = violations(subjects, shapes, IRI("http://e.org/shape"), [IRI("http://e.org/high")], "a.ttl").values()
     assert [each.message for each in found] == ["most, with arg 7"]
+
+
+def test_a_query_has_the_prefixes_of_ontologies_that_others_import_and_of_no_others() -> None:
+    text = (
+        HEAD
+        + """@prefix owl: <http://www.w3.org/2002/07/owl#> .
+        :shape sh:sparql [ sh:prefixes :one ; sh:select "SELECT $this { $this a:flow 3 }" ] .
+        :one a owl:Ontology ; owl:imports :two ; sh:declare [ sh:prefix "b" ; sh:namespace "urn:b:" ] .
+        :two a owl:Ontology ; sh:declare [ sh:prefix "a" ; sh:namespace "http://e.org/" ] .
+        :three a owl:Ontology ; sh:declare [ sh:prefix "a" ; sh:namespace "urn:other:" ] .
+    """
+    )
+    subjects, shapes = (to_rdflib(turtle.parse(each, "a.ttl").triples()) for each in (HEAD + SAID, text))
+    focus = [IRI(f"http://e.org/{node}") for node in NODES]
+    assert [*violations(subjects, shapes, IRI("http://e.org/shape"), focus, "a.ttl")] == [IRI("http://e.org/low")]

@@ -83,7 +83,7 @@ def test_what_takes_no_character_costs_as_often_as_it_is_repeated(text: str) -> 
 
 @pytest.mark.parametrize("expression", ["a{99999999999}", f"{'(' * 9000}a{')' * 9000}", "(a"])
 def test_what_re_cannot_take_is_no_expression(expression: str) -> None:
-    assert isinstance(pattern_fault(expression, ""), re.error)
+    assert pattern_fault(expression, "") is not None
     assert pattern_fault(expression, "q") is None
 
 
