@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TypeVar
 
-from selfconf.bus.port import Bus, Replies
+from selfconf.bus.port import Bus, Replies, Sample, Undo, Urgency
 from selfconf.errors import NetworkError, ProgrammerError
 
 ROLL_CALL = 3.0
@@ -182,6 +182,12 @@ class SynchronousBus:
             self._bus.roll_call(key, self._seconds, done)
 
         return self.wait(begin)
+
+    def subscribe(self, key: str, receive: Callable[[Sample], None]) -> Undo:
+        """Receive what is put on a key from now on, whenever the bus runs; returns what ends that."""
+        self.check()
+        with self._in_turn():
+            return self._bus.subscribe(key, receive, Urgency.EVENT)
 
     def pause(self, seconds: float) -> None:
         """Let the bus run for some time."""

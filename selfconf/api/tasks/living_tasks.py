@@ -7,6 +7,7 @@ from contextlib import suppress
 from itertools import chain, count
 
 from selfconf.api.synchronous_bus import SynchronousBus
+from selfconf.api.tasks.last_words import LastWords
 from selfconf.api.tasks.living_task import LivingTask, RunningTasks, SilentHolder
 from selfconf.api.tasks.meant_tasks import MeantTasks, raise_for, said_of_silent
 from selfconf.api.tasks.released_components import ReleasedComponents
@@ -182,27 +183,32 @@ class LivingTasks:
     def _take_down(self, running: Sequence[Status], kept: Sequence[TaskRecord], sites: Set[str]) -> list[str]:
         """End tasks that run, and those that the sites keep; returns what is to be said once what they held rests."""
         here = {site.site for site in local_sites(self._keys.ecology)}
+        last_words = LastWords(self._bus, self._keys, {status.configurator for status in running})
         for record in kept:
             self._end_record(record)
         for status in running:
             self._bus.ask(self._keys.configurator_call(status.configurator, "stop"))
         try:
             self._await_end({status.configurator for status in running})
-            return self._disobedience(running)
+            return self._disobedience(running, last_words.owed())
         except NetworkError:
             # the site of a `run` with advertisements of its own ends with it, and all that the site has started
             if sites and sites <= here and not local_sites(self._keys.ecology):
                 return []
             raise
 
-    def _disobedience(self, ended: Sequence[Status]) -> list[str]:
-        """What is to be said of components that do not obey in time though their task has ended: they may act on."""
+    def _disobedience(self, ended: Sequence[Status], owed: Iterable[IRI]) -> list[str]:
+        """What is to be said of components that do not obey in time though their task has ended: they may act on.
+
+        So may those that were `owed` their release at the end and do not live: they may be frozen, or cut off.
+        """
         asked = {(component, status.task) for status in ended for component in (*status.components, *status.owed)}
+        troubles = {component: why for (component, _), why in self._released.still_acting(asked).items()}
+        unseen = (one for one in owed if one not in troubles and not self._bus.living(self._keys.lives(one)))
+        troubles |= dict.fromkeys(unseen, "it is not seen any more, and may only be frozen or cut off")
         return sorted(
-            {
-                f"{disobedience(component.short, why)}; it is out of control until it is gone"
-                for (component, _), why in self._released.still_acting(asked).items()
-            }
+            f"{disobedience(component.short, why)}; it is out of control until it is gone"
+            for component, why in troubles.items()
         )
 
     def _end_record(self, record: TaskRecord) -> None:

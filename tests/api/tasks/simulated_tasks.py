@@ -7,11 +7,11 @@ from dataclasses import replace
 from selfconf.api.synchronous_bus import SynchronousBus
 from selfconf.api.tasks.living_tasks import LivingTasks
 from selfconf.bus.memory import MemoryBus, Network
-from selfconf.bus.port import Request
+from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
-from selfconf.protocol.messages import CallAnswer, Status, TaskRecord, Verdict
+from selfconf.protocol.messages import CallAnswer, Notice, Status, TaskRecord, Verdict
 
 KEYS = Keys("lab")
 HERE = "tcp/127.0.0.1:7001"
@@ -39,10 +39,15 @@ class Tasks:
         outside: IRI | None = None,
         phase: str = "running",
         beginning: float = 0.0,
+        owed: tuple[IRI, ...] = (),
     ) -> MemoryBus:
-        """A configurator that runs a task, perhaps the inside of a composite, until it is stopped."""
+        """A configurator that runs a task, perhaps the inside of a composite, until it is stopped.
+
+        Then some components are `owed` their release, which it says as it ends.
+        """
         node = self.network.node()
         node.announce(KEYS.configurator_life(name, "1"))
+        last_words = node.publisher(KEYS.notices(name), Urgency.EVENT)
         speaker = speaks_of or name
         status = Status(speaker, phase, TEMPLATE, 3, 1.5, components=components, task=task, outside=outside)
         status = replace(status, beginning=beginning)
@@ -55,7 +60,11 @@ class Tasks:
         def stop(request: Request) -> None:
             request.reply(KEYS.configurator_call(name, "stop"), encode(status))
             request.finish()
-            node.later(0.1, node.close)
+            node.later(0.1, end)
+
+        def end() -> None:
+            last_words.put(encode(Notice(name, 1, task, {"act": "stopped", "owed": list(owed)})))
+            node.close()
 
         node.serve(KEYS.configurator_call(name, "status"), answer)
         node.serve(KEYS.configurator_call(name, "stop"), stop)

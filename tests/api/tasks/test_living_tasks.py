@@ -170,6 +170,15 @@ def test_a_component_that_does_not_obey_is_named_after_all_is_taken_down(
     assert tasks.asked.running().statuses == ()
 
 
+def test_what_a_task_is_owed_at_its_end_is_named_where_it_is_not_seen_any_more(tasks: Tasks) -> None:
+    """It may be frozen, as a process that is stopped (SIGSTOP) for longer than its lease."""
+    tasks.configurator("c1", "patrol~1", owed=(DRIVE, IRI("urn:c#cap")))
+    tasks.component(IRI("urn:c#cap"), replace(AT_REST, component=IRI("urn:c#cap")))  # it has obeyed since
+    unseen = "drive was turned off and has not obeyed: it is not seen any more, and may only be frozen or cut off"
+    with pytest.raises(NetworkError, match=f"^{unseen}; it is out of control until it is gone$"):
+        tasks.asked.stop()
+
+
 def held_by(configurator: str, task: str) -> CallAnswer:
     """How the drive is that acts for a task."""
     return replace(AT_REST, active=True, task=task, supervisor=KEYS.configurator_life(configurator, "1"))
