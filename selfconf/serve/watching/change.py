@@ -32,7 +32,7 @@ class EcologyChange:
     """The templates of tasks, with how each is searched for, by the identity of the task."""
 
     link: str = ""
-    """The link of the bus over which all that is advertised was found anew, if it was."""
+    """The link of the bus over which all that is advertised and deployed was found anew, if it was."""
 
     @property
     def empty(self) -> bool:

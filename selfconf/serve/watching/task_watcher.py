@@ -71,6 +71,21 @@ class TaskWatcher:
         self.bus.watch(self.keys.any_configurator_life(), self._configurator_changed)
         self._audit()
 
+    def look(self, looked: Callable[[], None]) -> None:
+        """Ask each configurator that lives what it has deployed; `looked` is called once that is to be handed on."""
+
+        def called(lives: tuple[str, ...]) -> None:
+            for key in lives:
+                if (task := self._tasks.get(owner_of(key))) is None or not task.alive:
+                    self._configurator_changed(key, alive=True)
+            self._ask(self.keys.configuration(), answered)
+
+        def answered(replies: Replies) -> None:
+            self._take_deployed(replies)
+            looked()
+
+        self.bus.roll_call(self.keys.any_configurator_life(), PATIENCE_WITH_PEERS, called)
+
     def bodies(self) -> Iterable[tuple[str, Body]]:
         """Every task by its identity; of two configurators of one the one that lives comes last."""
         kept = {task for task, record in self._kept.items() if not record.ended}

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
 from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Undo
@@ -57,8 +58,8 @@ class EcologyWatcher:
         """The tasks as they were sent last, by identity."""
         self._events: list[Body] = []
         self._touched: set[IRI] = set()
-        self._link = ""
-        """The link over which was last found what is advertised."""
+        self._link = self._told_link = ""
+        """The link over which was last found what is advertised, and the one over which also what is deployed was."""
         self._ask_again: Undo = lambda: None
         self._discovering = self._discover_again = self._following = False
 
@@ -105,14 +106,23 @@ class EcologyWatcher:
         shown: dict[str, Body | None] = {str(component): body for component, body in bodies.items()}
         shown |= {str(component): None for component in gone}
         sites = self._changed_sites(discovery)
-        self._hand_on(EcologyChange({**new, **gone}, shown, sites, graphs=graphs, link=self._link))
+        self._hand_on(EcologyChange({**new, **gone}, shown, sites, graphs=graphs))
         if not self._following:
             self._follow()
+        if self._link not in ("", self._told_link):
+            self._tasks.look(partial(self._looked, self._link))
         if self._discover_again:
             self._discover_again = False
             self._discover()
         elif discovery.missing:
             self._ask_again = self.bus.later(ASKED_AGAIN, self._discover)
+
+    def _looked(self, link: str) -> None:
+        """Tell over which link everything was found, once it was handed on."""
+        self._flush()
+        if link == self.bus.link and link != self._told_link:
+            self._told_link = link
+            self._hand_on(EcologyChange(link=link))
 
     def _tell_left_out(self, discovery: Discovery) -> None:
         """Tell what was left out of what sites advertise, and why, unless it was the last time as well."""

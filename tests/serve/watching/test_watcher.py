@@ -243,6 +243,13 @@ def test_over_another_link_everything_is_looked_at_anew(lab: Lab, monkeypatch: p
     assert seen.links.count("second") == 1
 
 
+def test_what_is_deployed_is_known_once_it_is_told_that_everything_was_looked_at(lab: Lab) -> None:
+    lab.running(lab.agent())
+    seen = Seen(lab)
+    assert lab.until(lambda: bool(seen.links), 5.0)
+    assert [name for name in seen.graphs if name.startswith(DEPLOYED)]
+
+
 def test_an_observer_that_comes_and_goes_is_noticed_by_nobody(lab: Lab) -> None:
     agent = lab.agent()
     lab.running(agent)
