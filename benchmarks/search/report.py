@@ -24,13 +24,14 @@ PLOTTED = ("navigation", "navigation, impossible", "fleet of 100", "chain", "3-S
 
 TUNING = """\
 Before it writes clauses, the search looks for a quick answer: depth first over the candidates, for at most
-`CANDIDATE_STEPS` steps for each role that it has reached, where `SKIPS_PER_STEP` candidates that play already are
-skipped for the price of one. If `PREFIX_REACH` times the roles that it has reached are one in `PREFIX_SHARE` of all at
-most, they are tried by themselves. Then it goes depth first over the reduced problem, for at most `REDUCED_PACE` steps
-for each option of the roles that it has reached. Then comes the `SOLVER` of python-sat. Each was varied by itself, on
-seeds 7001 to 7003 and on sizes of the same families that are not in the tables above
-(`python -m benchmarks.search.run --tuning`); solvers that cannot get cardinalities as clauses. A time is a multiple of
-that with the value chosen, which is in bold; `worst` is the instance on which a value does worst against that."""
+`CANDIDATE_STEPS` steps for each role that it has reached, or one for each `REDUCED_PER_STEP` candidates with ports of
+their own, where `SKIPS_PER_STEP` candidates that play already are skipped for the price of one. If `PREFIX_REACH` times
+the roles that it has reached are one in `PREFIX_SHARE` of all at most, they are tried by themselves. Then it goes depth
+first over the reduced problem, for at most `REDUCED_PACE` steps for each option of the roles that it has reached. Then
+comes the `SOLVER` of python-sat. Each was varied by itself, on seeds 7001 to 7003 and on sizes of the same families
+that are not in the tables above (`python -m benchmarks.search.run --tuning`); solvers that cannot get cardinalities as
+clauses. A time is a multiple of that with the value chosen, which is in bold; `worst` is the instance on which a value
+does worst against that."""
 
 
 @dataclass(frozen=True)

@@ -15,13 +15,14 @@ partial configurations in the order of their roles and candidates, so that the f
 for a lesser solution until there is none (`clause_learning`). "None" follows from a role without candidates, from
 Hall's theorem (`matching`), from an exhausted search or from a refuted set of clauses, never from a budget that ended.
 
-*Costs.* An easy instance takes a few steps for each slot, however many candidates there are; then a pass over the
-candidates and matching, slots times options; then depth-first search, for no more steps than writing down the clauses
-would take, so that it never costs more than it could have saved; then clause learning, exponential in the worst case.
-Depth-first search is left as soon as it has taken more steps than it should have for the slots it has reached: where
-it succeeds, it goes ahead steadily; where it thrashes, it is stuck early, and the cause is near: then the first roles
-are decided by themselves before the rest of many is looked at. Without a solver library depth-first search goes on
-alone. The thresholds were chosen by measurement (`benchmarks/search/tuning.py`).
+*Costs.* An easy instance takes a few steps for each slot, however many candidates there are, and more where these are
+so many that to reduce them takes longer; then a pass over the candidates and matching, slots times options; then
+depth-first search, for no more steps than writing down the clauses would take, so that it never costs more than it
+could have saved; then clause learning, exponential in the worst case. Depth-first search is left as soon as it has
+taken more steps than it should have for the slots it has reached: where it succeeds, it goes ahead steadily; where it
+thrashes, it is stuck early, and the cause is near: then the first roles are decided by themselves before the rest of
+many is looked at. Without a solver library depth-first search goes on alone. The thresholds were chosen by measurement
+(`benchmarks/search/tuning.py`).
 """
 
 from __future__ import annotations
@@ -66,7 +67,12 @@ from selfconf.search.reduction import LazyReduction, Option, ReducedProblem, ass
 Engine = Callable[[ReducedProblem, Budget, OtherWay | None], list[Option] | Undecided | None]
 
 CANDIDATE_STEPS = 4
-"""Steps of search over candidates for each slot reached, before the problem is reduced."""
+"""Steps of search over candidates for each slot reached, at least, before the problem is reduced."""
+REDUCED_PER_STEP = 32
+"""How many candidates with ports of their own are to be reduced where search over candidates may take a step more.
+
+So it takes a fiftieth of the time of reducing, at most.
+"""
 REDUCED_PACE = 0.6
 """Steps of search over the reduced problem for each option of the slots reached, before clauses are written."""
 PREFIX_REACH = 3
@@ -115,20 +121,38 @@ def solution(
     if _short_of_candidates(problem):
         return None
     slots = sum(role.minimum for role in problem.roles)
-    part = budget.part(CANDIDATE_STEPS * (slots + SLOT_HEADROOM))
-    steps = part.steps or 0
-    search = CandidateSearch(problem, part, CANDIDATE_STEPS)
-    found = search.first()
-    if found is not None or part.steps:
-        # Found, or exhausted with steps to spare, which proves that there is none. Neither is charged to the budget: it
-        # bounds what takes long.
-        return found
-    budget.spend(steps)
+    for most in _candidate_steps(problem, slots + SLOT_HEADROOM):
+        part = budget.part(most)
+        steps = part.steps or 0
+        search = CandidateSearch(problem, part, most // (slots + SLOT_HEADROOM))
+        found = search.first()
+        if found is not None or part.steps:
+            # Found, or exhausted with steps to spare, which proves that there is none. Neither is charged to the
+            # budget: it bounds what takes long.
+            return found
+        budget.spend(steps)
     prefix = PREFIX_REACH * (search.furthest + SLOT_HEADROOM)
     if PREFIX_SHARE * prefix < slots and _prefix_impossible(problem, search.slots[prefix] + 1, budget):
         return None
     chosen = least_of(given.reduced, budget, by_clauses)
     return assigned(problem, chosen) if isinstance(chosen, list) else chosen
+
+
+def _candidate_steps(problem: Problem, reach: int) -> Iterator[int]:
+    """Yield how many steps search over candidates may take to reach some slots, and again where reducing takes longer.
+
+    Candidates that share their ports take next to no time to reduce. So the ports among the first of each role are
+    counted, a step for each of them.
+    """
+    few = CANDIDATE_STEPS * reach
+    yield few
+    many = sum(
+        len({id(candidate.profile.ports) for candidate in candidates[: len(candidates) // REDUCED_PER_STEP]})
+        for role, candidates in zip(problem.roles, problem.candidates, strict=True)
+        if role.minimum
+    )
+    if many > few:
+        yield many
 
 
 def _short_of_candidates(problem: Problem) -> bool:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 from hypothesis import given
 
 from benchmarks.search import sparql
 from benchmarks.search.families import scaling
+from benchmarks.search.families.wiring import made, profile
+from selfconf.model.partition import Candidate
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.least_solution import least_by_clauses
@@ -61,6 +65,30 @@ def test_where_the_first_roles_are_impossible_the_whole_problem_is_not_reduced()
     given_ = LazyReduction(scaling.graph("graph", 200, 10, 3, 7_001))
     assert first.solution(given_, Budget()) is None
     assert "reduced" not in vars(given_)
+
+
+def _relays(roles: int, pool: int, kinds: int, seed: int) -> Problem:
+    """Return a chain of roles of one pool, whose components all have ports of their own."""
+    rng = random.Random(seed)
+    some = [
+        Candidate(profile(f"relay{k:04}", [rng.randrange(kinds)], [rng.randrange(kinds), f"of{k}"]))
+        for k in range(pool)
+    ]
+    source = [Candidate(profile("source", (), range(kinds)))]
+    return made([source, *[some] * roles], [(role, role + 1) for role in range(roles)])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_many_candidates_are_not_reduced_where_the_first_that_fits_is_met_soon(seed: int) -> None:
+    pytest.importorskip("pysat")
+    problem = _relays(12, 960, 15, seed)
+    given_ = LazyReduction(problem)
+    found = first.solution(given_, Budget())
+    assert isinstance(found, list)
+    assert "reduced" not in vars(given_)
+    assert [problem.candidates[r].index(c) for r, some in enumerate(found) for c in some] == numbers(
+        least_by_clauses(reduced(problem), Budget())
+    )
 
 
 def test_a_problem_is_possible_though_the_steps_end_before_its_first_solution_is_proved(
