@@ -29,7 +29,7 @@ from selfconf.cli.options import (
 )
 from selfconf.cli.progress import ProgressLine
 from selfconf.cli.run_lines import LinePrinter, TextLines, json_lines
-from selfconf.cli.terminal import complain
+from selfconf.cli.terminal import complain, silence
 from selfconf.errors import AuthorError, NetworkError, reason
 
 if TYPE_CHECKING:
@@ -253,8 +253,14 @@ def _detach(given: argparse.Namespace, task: TaskSpecification) -> int:
             priority=given.priority,
             upgrade=upgrade,
         )
-    report = json_lines if given.format == "json" else TextLines(task)
-    report(TaskDetached(name, time=time.time()))
+    report, stream = (json_lines, sys.stdout) if given.format == "json" else (TextLines(task), sys.stderr)
+    try:
+        report(TaskDetached(name, time=time.time()))
+    except OSError as error:  # the task lives all the same
+        silence(stream)
+        if stream is sys.stdout and not isinstance(error, BrokenPipeError):
+            said = f"the task {name!r} lives in the sites now, but that cannot be written ({reason(error)})"
+            raise NetworkError(said) from None
     return 0
 
 

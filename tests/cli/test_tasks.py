@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -139,6 +141,24 @@ def test_a_detached_task_runs_without_the_command_that_began_it(
     assert run(capsys, "run", TEMPLATE, "--detach", *where).is_one_sentence("a task 'tell-the-time' lives already")
     assert run(capsys, "stop", "tell-the-time", *where).code == 0
     assert phases() == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+@pytest.mark.parametrize(("form", "stream", "code"), [("text", "stderr", 0), ("json", "stdout", 2)])
+def test_a_detached_task_of_which_nothing_can_be_written_is_not_said_to_have_failed(
+    house: Home, form: str, stream: str, code: int
+) -> None:
+    house.site("kitchen", CLOCK)
+    command = [sys.executable, "-m", "selfconf", "run", TEMPLATE, "--detach", *house.arguments()]
+    with Path("/dev/full").open("w") as full:
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: full}
+        done = subprocess.run(
+            [*command, "--format", form], env=house.environment, text=True, check=False, timeout=60.0, **streams
+        )
+    assert done.returncode == code
+    if form == "json":
+        said = "the task 'tell-the-time' lives in the sites now, but that cannot be written (No space left on device)"
+        assert done.stderr == f"selfconf run: {said}\n"
 
 
 def test_a_detached_task_that_no_site_can_keep_does_not_run(house: Home, capsys: pytest.CaptureFixture[str]) -> None:
