@@ -12,7 +12,7 @@ SEEDS  ?= 20
 # as containers with this variable have it, costs a minute and more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-keys quick nightly foreign mangled faults fuzz check audit package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo test thorough test-keys quick nightly foreign mangled faults fuzz check audit package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -30,20 +30,27 @@ MEMORY := $(shell df --output=avail /dev/shm 2>/dev/null | awk '$$1 >= 2097152 {
 IN_MEMORY := $(if $(MEMORY),$(shell awk '$$2 == "/dev/shm" && $$4 !~ /noexec/ { print "TMPDIR=/dev/shm"; exit }' /proc/mounts))
 
 # A test that starves among others on a busy machine is run once more, alone; more than five failures stand.
+REPORT  = $(VENV)/$@.xml
+PYTEST  = rm -f $(REPORT); $(IN_MEMORY) $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) --junitxml $(REPORT)
+OR_ALONE = || $(BIN)/python -m tests.harness.alone $(REPORT)
+
+# Every test but those that are thorough.
 test: $(VENV)/with-dev
-	@rm -f $(VENV)/tests.xml
-	$(IN_MEMORY) $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) --junitxml $(VENV)/tests.xml || $(BIN)/python -m tests.harness.alone $(VENV)/tests.xml
+	$(PYTEST) -m 'not thorough' $(OR_ALONE)
+
+# The tests that play more seeds of what others play few of, or run a benchmark for a moment.
+thorough: $(VENV)/with-dev
+	$(PYTEST) -m thorough $$(grep -lrE 'harness.effort import .*(batches|thorough)' tests --include='test_*.py') $(OR_ALONE)
 
 # The tests that start programs once more, each ecology with keys: a job of its own, as it takes as long as the others.
 # One that starves among others is run once more, alone, as by `make test`.
+test-keys: export SELFCONF_TEST_KEYS := 1
 test-keys: $(VENV)/with-dev
-	@rm -f $(VENV)/tests.xml
-	SELFCONF_TEST_KEYS=1 $(BIN)/python -m pytest $(PARALLEL) $(BOUNDED) -m process --junitxml $(VENV)/tests.xml \
-		tests/access tests/cli tests/api tests/serve/test_page.py || SELFCONF_TEST_KEYS=1 $(BIN)/python -m tests.harness.alone $(VENV)/tests.xml
+	$(PYTEST) -m process tests/access tests/cli tests/api tests/serve/test_page.py $(OR_ALONE)
 
 # The inner loop: without tests that start processes or are slow, and a tenth of the examples of each property.
 quick: $(VENV)/with-dev
-	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow'
+	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest $(PARALLEL) -m 'not process and not slow and not thorough'
 
 # What programs judge that others wrote: nodes of ROS 2 by hiroz, Things and a client by node-wot, a page by YASGUI. They
 # are had by cargo and npm into ~/.cache/selfconf-tests; where that cannot be, the tests are skipped and say so.
@@ -85,6 +92,7 @@ fuzz: $(VENV)/with-dev
 check: $(VENV)/with-dev
 	@$(MAKE) --jobs=2 --output-sync=target lint types floors shapes docs-check package audit
 	@$(MAKE) test
+	@$(MAKE) thorough
 
 package: $(VENV)/with-dev
 	.ci/package

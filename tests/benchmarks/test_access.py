@@ -6,8 +6,10 @@ import pytest
 
 from benchmarks.access import KEYED, PLAIN, UNREAD, report
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     printed = short_run("benchmarks.access")

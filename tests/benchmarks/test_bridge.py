@@ -6,10 +6,12 @@ import pytest
 
 from benchmarks.bridge import LOADS, Relayed, report
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 pytest.importorskip("rosbags", reason="the extra `ros2` is not installed")
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     assert "| sensor_msgs/msg/LaserScan | 2,936 | 40 |" in short_run("benchmarks.bridge")

@@ -19,14 +19,17 @@ from benchmarks.faults.ecology import HUB, Ecology, Halted, Sign, lives_at_once
 from benchmarks.faults.plan import KINDS, PHASES, ROUTED_VICTIMS, Plan, plan
 from benchmarks.faults.trial import PROMISES, Outcome, Trial
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_of_the_adoption_runs() -> None:
     printed = short_run("benchmarks.adoption")
     assert "1 trials; 0 components were stopped or started." in printed
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     printed = short_run("benchmarks.faults")
@@ -185,6 +188,7 @@ def test_an_ecology_that_is_halted_waits_for_nothing_and_can_be_closed(tmp_path:
     assert [site.ended for site in sites] == [0, 0]
 
 
+@thorough
 @pytest.mark.process
 def test_a_fault_of_a_reservation_comes_though_all_components_live_already(tmp_path: Path) -> None:
     ecology = Ecology(tmp_path)

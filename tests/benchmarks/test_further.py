@@ -22,6 +22,7 @@ from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row
 from selfconf.model.partition import Candidate
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
 def test_engines_agree_where_roles_draw_on_one_pool_each_in_an_order_of_its_own() -> None:
@@ -124,6 +125,7 @@ def test_sensors_of_a_hall_serve_rooms_of_their_floor_alone() -> None:
     assert [[name for name in some if "hall" in name] for some in floors] == [[], ["hall01.01", "hall01.02"]]
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_asks_all_engines_both_questions() -> None:
     printed = short_run("benchmarks.search.further")

@@ -7,8 +7,10 @@ import random
 import pytest
 
 from benchmarks import fuzz
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.slow
 def test_the_short_run_meets_its_goals(capsys: pytest.CaptureFixture[str]) -> None:
     assert fuzz.main(["--smoke"]) == 0

@@ -12,10 +12,12 @@ import pytest
 
 from benchmarks import history
 from benchmarks.history import ALLOWED, Killed, kill, kills, report
+from tests.harness.effort import thorough
 
 KILLED = Killed(3, 0.02, (), ())
 
 
+@thorough
 @pytest.mark.process
 @pytest.mark.slow
 def test_the_history_opens_is_whole_and_lacks_at_most_the_last_second(monkeypatch: pytest.MonkeyPatch) -> None:

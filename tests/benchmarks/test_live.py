@@ -6,14 +6,17 @@ import pytest
 
 from benchmarks.live.__main__ import Measured, report
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     printed = short_run("benchmarks.live")
     assert "| 20 | 2 |" in printed
 
 
+@thorough
 @pytest.mark.process
 @pytest.mark.parametrize("keys", ["no", "yes"])
 def test_sites_and_their_tasks_are_back_after_a_short_stall(keys: str) -> None:

@@ -6,8 +6,10 @@ import pytest
 
 from benchmarks.recruiting.services import FAMILIES
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_finds_answers() -> None:
     assert "| decoys | 40 | 1 |" in short_run("benchmarks.recruiting")

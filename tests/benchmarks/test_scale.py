@@ -10,8 +10,10 @@ import rdflib
 from benchmarks.scale import engines, report, styles, worlds
 from selfconf.rdf.advertisements import read_advertisements
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     printed = short_run("benchmarks.scale")

@@ -14,8 +14,10 @@ from benchmarks.search.report import Row, exponents, page, verdict
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     printed = short_run("benchmarks.search.run")

@@ -6,8 +6,10 @@ import pytest
 
 from benchmarks.signals.__main__ import Effort, Found, Measured, report
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs() -> None:
     printed = short_run("benchmarks.signals")

@@ -6,8 +6,10 @@ import pytest
 
 from benchmarks.strangers import Timed
 from tests.benchmarks.short_run import short_run
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_finds_the_same_answers() -> None:
     printed = short_run("benchmarks.strangers")

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from benchmarks import validate
+from tests.harness.effort import thorough
 
 
+@thorough
 @pytest.mark.process
 def test_the_short_run_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert validate.main(["--smoke"]) == 0

@@ -9,7 +9,7 @@ import pytest
 from tests.faults.ecologies import CROWDED
 from tests.faults.script import Recipe, with_crowd, write
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, batches
 
 __all__ = ["folder"]
 CROWDS = HISTORIES // (10 if NIGHTLY else 30)
@@ -22,9 +22,9 @@ def recipe(seed: int) -> Recipe:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, CROWDS, BATCH // 2))
+@pytest.mark.parametrize("batch", batches(CROWDS, BATCH // 4))
 def test_no_history_of_a_crowd_breaks_an_invariant(batch: int, folder: Path) -> None:
-    for seed in range(batch, batch + BATCH // 2):
+    for seed in range(batch, batch + BATCH // 4):
         play_well(recipe(seed), folder)
 
 

@@ -15,7 +15,7 @@ from tests.faults.histories import SETTLED, History
 from tests.faults.replay import account, played, shrink, told
 from tests.faults.script import KINDS, Action, Recipe, Script, write
 from tests.faults.watch import ENDS, STEPS
-from tests.harness.effort import NIGHTLY, examples
+from tests.harness.effort import NIGHTLY, batches, examples
 
 HISTORIES = 10_000 if NIGHTLY else examples(750)  # 300 for every push
 BUSY = HISTORIES // 5
@@ -36,14 +36,14 @@ def play_well(recipe: Recipe, folder: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, HISTORIES if NIGHTLY else HISTORIES - BUSY, BATCH))
+@pytest.mark.parametrize("batch", batches(HISTORIES if NIGHTLY else HISTORIES - BUSY, BATCH, usual=2))
 def test_no_history_breaks_an_invariant(batch: int, folder: Path) -> None:
     for seed in range(batch, batch + BATCH):
         play_well(Recipe(seed, COMPOSED if seed % 4 == 3 else PAPER, large=seed % 3 == 2), folder)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, BUSY, BATCH))
+@pytest.mark.parametrize("batch", batches(BUSY, BATCH))
 def test_no_history_in_which_code_is_busy_or_hangs_on_breaks_an_invariant(batch: int, folder: Path) -> None:
     """As components do that somebody has started by hand: nothing ends them."""
     for seed in range(batch, batch + BATCH):

@@ -13,13 +13,13 @@ from selfconf.deployment.record_exchange import RecordExchange
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
 from tests.faults.kept_tasks import FAULTY, TASKS, KeptHistory, account, played
-from tests.harness.effort import NIGHTLY, examples
+from tests.harness.effort import NIGHTLY, batches, examples
 
 HISTORIES = 2_000 if NIGHTLY else examples(50)  # 20 for every push
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, HISTORIES, 10))
+@pytest.mark.parametrize("batch", batches(HISTORIES, 10))
 def test_after_all_that_happens_to_sites_each_task_is_run_by_one_or_over(batch: int, tmp_path: Path) -> None:
     for seed in range(batch, min(batch + 10, HISTORIES)):
         history = played(seed, tmp_path / str(seed))
@@ -54,7 +54,7 @@ class Undisturbed(KeptHistory):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, HISTORIES, 10))
+@pytest.mark.parametrize("batch", batches(HISTORIES, 10))
 def test_no_component_stops_as_a_task_goes_from_site_to_site(batch: int, tmp_path: Path) -> None:
     for seed in range(batch, min(batch + 10, HISTORIES)):
         history = Undisturbed(seed, tmp_path / str(seed))

@@ -9,7 +9,7 @@ import pytest
 from tests.faults.ecologies import LATCHED
 from tests.faults.script import Recipe
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, batches
 
 __all__ = ["folder"]
 LATCHING = HISTORIES // (10 if NIGHTLY else 15)
@@ -22,9 +22,9 @@ def recipe(seed: int) -> Recipe:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, LATCHING, BATCH // 2))
+@pytest.mark.parametrize("batch", batches(LATCHING, BATCH // 4))
 def test_no_history_of_what_has_one_thing_to_say_breaks_an_invariant(batch: int, folder: Path) -> None:
-    for seed in range(batch, batch + BATCH // 2):
+    for seed in range(batch, batch + BATCH // 4):
         play_well(recipe(seed), folder)
 
 

@@ -13,7 +13,7 @@ from tests.faults.random_ecologies import random_ecology
 from tests.faults.replay import played
 from tests.faults.script import Recipe
 from tests.faults.test_histories import HISTORIES, folder, play_well
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, batches
 from tests.lab import Lab, task_of
 
 __all__ = ["folder"]
@@ -36,7 +36,7 @@ def recipe(seed: int) -> Recipe:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, RANDOM, BATCH))
+@pytest.mark.parametrize("batch", batches(RANDOM, BATCH))
 def test_no_history_in_an_ecology_of_random_shape_breaks_an_invariant(batch: int, folder: Path) -> None:
     for seed in range(batch, batch + BATCH):
         play_well(recipe(seed), folder)

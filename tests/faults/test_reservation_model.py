@@ -8,7 +8,7 @@ import pytest
 
 from tests.faults.exploration import Bounds, Findings, explore
 from tests.faults.reservation_state import Claim, Mask, Scheme
-from tests.harness.effort import examples
+from tests.harness.effort import examples, thorough
 
 STATES = 20_000 * examples(100) // 100
 """How many states of a case are explored at most; at night fifty times as many."""
@@ -62,11 +62,12 @@ CASES: dict[str, list[Claim]] = {
         claim("bd", "ab", actuators="b", **HASTY),
     ],
 }
+BOTH = "a crash and a false suspicion"
 FAULTS = {
     "a crash": Bounds(crashes=1),
     "a false suspicion": Bounds(cuts=1),
     "a preemption": Bounds(preemptions=1),
-    "a crash and a false suspicion": Bounds(crashes=1, cuts=1),
+    BOTH: Bounds(crashes=1, cuts=1),
 }
 
 
@@ -86,7 +87,7 @@ def test_waiting_tasks_run_when_running_ones_end(case: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("faults", FAULTS)
+@pytest.mark.parametrize("faults", [BOTH, *(pytest.param(one, marks=thorough) for one in FAULTS if one != BOTH)])
 @pytest.mark.parametrize(
     "claims",
     [ONE_TARGET, [claim("ab"), claim("ab", priority=1)], CHAIN, YIELDING, STARTING],

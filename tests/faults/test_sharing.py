@@ -9,7 +9,7 @@ import pytest
 from tests.faults.ecologies import SHARED
 from tests.faults.script import Recipe
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, batches
 
 __all__ = ["folder"]
 SHARING = HISTORIES // (10 if NIGHTLY else 30)
@@ -22,9 +22,9 @@ def recipe(seed: int) -> Recipe:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, SHARING, BATCH // 2))
+@pytest.mark.parametrize("batch", batches(SHARING, BATCH // 4))
 def test_no_history_of_tasks_that_share_breaks_an_invariant(batch: int, folder: Path) -> None:
-    for seed in range(batch, batch + BATCH // 2):
+    for seed in range(batch, batch + BATCH // 4):
         play_well(recipe(seed), folder)
 
 

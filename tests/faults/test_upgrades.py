@@ -10,7 +10,7 @@ from tests.faults.ecologies import CHOICE, COMPOSED, PAPER
 from tests.faults.replay import played
 from tests.faults.script import KINDS, Recipe, with_upgrades, write
 from tests.faults.test_histories import BATCH, HISTORIES, folder, play_well
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, batches
 
 __all__ = ["folder"]
 UPGRADING = HISTORIES // (10 if NIGHTLY else 30)
@@ -24,9 +24,9 @@ def recipe(seed: int) -> Recipe:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("batch", range(0, UPGRADING, BATCH // 2))
+@pytest.mark.parametrize("batch", batches(UPGRADING, BATCH // 4))
 def test_no_history_of_upgrades_breaks_an_invariant(batch: int, folder: Path) -> None:
-    for seed in range(batch, batch + BATCH // 2):
+    for seed in range(batch, batch + BATCH // 4):
         play_well(recipe(seed), folder)
 
 

@@ -19,6 +19,7 @@ from selfconf.protocol.messages import Apply, Cause, Fail, Page, Reserve, Stamp,
 from selfconf.sdk.inputs.signal_order import LATE
 from selfconf.sdk.payloads import LARGEST_JSON
 from selfconf.sdk.runtime.runtime import MOST_PENDING
+from tests.harness.effort import thorough
 from tests.hostile.bounded import bounded
 from tests.lab import Lab, iri
 from tests.sdk.inputs.test_handover import Change
@@ -146,6 +147,7 @@ def test_lives_by_the_thousand_are_followed_and_forgotten(lab: Lab) -> None:
     assert sum(map(len, agent.ecology.lives.values())) == len(lab.components)
 
 
+@thorough
 @pytest.mark.slow
 def test_ten_thousand_advertisements_of_one_site_are_read(lab: Lab) -> None:
     crowd = Crowd(lab, 10_000, 50)
@@ -155,6 +157,7 @@ def test_ten_thousand_advertisements_of_one_site_are_read(lab: Lab) -> None:
     crowd.leave()
 
 
+@thorough
 @pytest.mark.slow
 @pytest.mark.parametrize(("number", "size"), [(MOST_ADVERTISED + 5000, 1), (2000, 100_000)], ids=["many", "large"])
 def test_of_more_than_a_site_may_advertise_the_rest_is_left_out(lab: Lab, number: int, size: int) -> None:

@@ -13,7 +13,7 @@ import sys
 import pytest
 
 from tests.harness.asked_here import ask_here
-from tests.harness.effort import examples
+from tests.harness.effort import examples, thorough
 from tests.recorded import cases
 from tests.recorded.answers import Answer, differences, taken_apart
 from tests.recorded.record import GROUPS, answers, compared, load
@@ -22,7 +22,10 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("pysat", reason="with fewer solvers, fewer searches are decided: install the extra solvers")
 
 
-@pytest.fixture(scope="module", params=sorted(GROUPS))
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=thorough if name == "ecologies" else ()) for name in sorted(GROUPS)],
+)
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, Answer]]:
     """A group, and what is answered to its cases now."""
     with pytest.MonkeyPatch.context() as patch:
