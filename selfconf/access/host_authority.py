@@ -8,7 +8,7 @@ the hub of one of them.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Sequence
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
@@ -79,7 +79,7 @@ class HostAuthority:
             authority, _ = self._pair()
             ends = self._component_ends()
             kept = _certificate(folder)
-            if kept is None or _is_due(kept, authority, ends, self._keys.revoked()):
+            if kept is None or _is_due(kept, authority, ends):
                 self._issue(folder, (principal, *also), ends)
         return folder
 
@@ -115,8 +115,8 @@ class HostAuthority:
             return
         with exclusive(self._keys.path):
             authority, _ = self._pair()
-        ends, revoked = self._component_ends(), self._keys.revoked()
-        if any(_is_due(certificate, authority, ends, revoked) for certificate in kept.values()):
+        ends = self._component_ends()
+        if any(_is_due(certificate, authority, ends) for certificate in kept.values()):
             for folder, certificate in kept.items():
                 with exclusive(self._keys.path):
                     self._issue(folder, certificate.principals, self._component_ends())
@@ -133,7 +133,7 @@ def _certificate(folder: Path) -> Certificate | None:
     return certificate
 
 
-def _is_due(certificate: Certificate, authority: Certificate, ends: datetime, revoked: Set[int]) -> bool:
+def _is_due(certificate: Certificate, authority: Certificate, ends: datetime) -> bool:
     """Whether the certificate of a process is to be made anew; `ends` is until when it would be good."""
     expires = certificate.half_over() and certificate.ends < ends
-    return expires or certificate.ends > ends or certificate.serial in revoked or bool(certificate.fault((authority,)))
+    return expires or certificate.ends > ends or bool(certificate.fault((authority,)))

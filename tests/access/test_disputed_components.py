@@ -20,7 +20,7 @@ def test_what_was_said_is_kept(tmp_path: Path) -> None:
     assert believed(tmp_path) == {IRI("urn:lamp"): "cellar", IRI("urn:bell"): "cellar"}
 
 
-@pytest.mark.parametrize("content", ["", "[]", '{"urn:a": 1}', "{"])
+@pytest.mark.parametrize("content", ["", "[]", '{"urn:a": 1}', '{"urn:a": "attic", "urn:b": 1}', "{"])
 def test_what_cannot_be_read_is_named(content: str, tmp_path: Path) -> None:
     (tmp_path / FILE).write_text(content)
     with pytest.raises(AuthorError, match=FILE):

@@ -23,6 +23,7 @@ from selfconf.access.expiry import CERTIFICATE_CHECK
 from selfconf.api.sites.joining import REACHED
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
+from selfconf.bus.presented_certificate import presented
 from selfconf.bus.zenoh import GREETING, client, with_port
 from selfconf.bus.zenoh.session import Security, open_session
 from selfconf.protocol.codec import decode
@@ -98,6 +99,25 @@ def test_a_certificate_that_is_revoked_is_told_of_once(tmp_path: Path) -> None:
     assert not watched.is_trusted
     (said,) = watched.said
     assert said.startswith("the certificate of conf.alice was revoked: it is not trusted any more")
+
+
+@pytest.mark.parametrize("revoked", [True, False], ids=["revoked", "expired"])
+def test_a_certificate_that_is_not_good_is_withheld_until_it_is(tmp_path: Path, revoked: bool) -> None:
+    """Each link that is tried with it in vain would keep others out of the hub for a while."""
+    authority = Authority.init(tmp_path / "keys")
+    authority.issue(ALICE, tmp_path / "alice", days=8.0)
+    watched = Watched(tmp_path, KeysFolder(tmp_path / "alice"))
+    shown = presented(tmp_path / "alice" / "certificate.pem")
+    watched.pass_days(7.9)
+    assert shown.exists()
+    if revoked:
+        authority.revoke(ALICE)
+    watched.pass_days(0.0 if revoked else 0.2)
+    assert not shown.exists()
+    if not revoked:
+        authority.renew(tmp_path / "alice", days=30.0)
+        watched.pass_days(0.0)
+        assert shown.exists()
 
 
 def test_a_revocation_is_heard_of_though_its_list_is_older_than_the_certificate(tmp_path: Path) -> None:

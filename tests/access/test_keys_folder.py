@@ -32,11 +32,26 @@ def test_keys_are_read_by_their_owner_alone(authority: Authority, tmp_path: Path
         KeysFolder(tmp_path / "alice")
 
 
-def test_a_certificate_of_an_authority_that_others_may_replace_is_refused(authority: Authority, tmp_path: Path) -> None:
+@pytest.mark.parametrize("key", ["authority.key", "components.key", "certificate.key"])
+def test_a_folder_with_a_key_that_others_may_read_is_refused(authority: Authority, tmp_path: Path, key: str) -> None:
     authority.issue(ALICE, tmp_path / "alice")
-    (tmp_path / "alice" / "authority.pem").chmod(0o664)
-    with pytest.raises(AuthorError, match=r"others may write into .*authority\.pem, .*`chmod go-w .*authority\.pem`"):
+    (tmp_path / "alice" / key).touch(0o600)
+    KeysFolder(tmp_path / "alice")
+    (tmp_path / "alice" / key).chmod(0o604)
+    with pytest.raises(AuthorError, match=rf"others may read .*{key}, so it is no secret"):
         KeysFolder(tmp_path / "alice")
+
+
+@pytest.mark.parametrize("believed", [".", "authority.pem", "components.pem"])
+def test_a_certificate_of_an_authority_that_others_may_replace_is_refused(
+    authority: Authority, tmp_path: Path, believed: str
+) -> None:
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
+    HostAuthority(KeysFolder(tmp_path / "attic")).hub_authorities()
+    spoilt = tmp_path / "attic" / believed
+    spoilt.chmod(spoilt.stat().st_mode | 0o020)
+    with pytest.raises(AuthorError, match=rf"others may write into {spoilt}, .*`chmod go-w {spoilt}`"):
+        KeysFolder(tmp_path / "attic")
 
 
 def test_a_holder_shows_what_it_was_issued(authority: Authority, tmp_path: Path) -> None:
